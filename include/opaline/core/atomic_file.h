@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Output files that appear whole or not at all.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace opaline {
+
+/// A name beside the final file to write to; `commit` puts it in place of the final one, and without it the
+/// destructor removes it: an interrupted or failed run leaves the old file or none.
+class AtomicFile {
+ public:
+  /// error Error{run_failed} if the folder cannot be written
+  explicit AtomicFile(std::string path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Where to write; keeps the final file's extension, for writers that choose the format by it.
+  const std::string& temporary() const { return temporary_; }
+
+  /// Flushes to the disk and renames.
+  /// error Error{run_failed} naming the file: disk full, I/O error
+  void commit();
+
+ private:
+  std::string path_, temporary_;
+  bool committed_ = false;
+};
+
+/// Writes bytes to path through an AtomicFile.
+void write_file(const std::string& path, std::string_view bytes);
+
+}  // namespace opaline

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a long stage talks to its caller: progress out, cancellation in. The library never prints.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+
+namespace opaline {
+
+/// Work counters of one stage, shared by its threads; polled by whoever shows the progress.
+struct Monitor {
+  std::atomic<std::size_t> done{0};
+  std::atomic<std::size_t> total{0};
+  std::atomic<bool> cancelled{false};
+
+  void begin(std::size_t work) {
+    done = 0;
+    total = work;
+  }
+};
+
+/// Counts work as done and throws Error{interrupted} when the caller asked to stop; a null monitor does nothing.
+void advance(Monitor* monitor, std::size_t work);
+
+}  // namespace opaline

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A triangle mesh as plain data, and what loading it found.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "opaline/core/vec3.h"
+
+namespace opaline {
+
+struct Mesh {
+  std::vector<Vec3d> positions;                         ///< mm, world space
+  std::vector<Vec3f> normals;                           ///< unit, one a vertex; empty: faceted
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+};
+
+/// What was found and mended while a mesh was made ready; counts are of triangles unless said.
+struct MeshReport {
+  std::size_t zero_area_dropped = 0, duplicates_dropped = 0, flipped = 0;
+  std::size_t holes_filled = 0, hole_triangles_added = 0;
+  std::size_t open_edges = 0, non_manifold_edges = 0;
+  std::vector<std::string> warnings;  ///< one line each, for the user, naming the file or shape
+};
+
+struct CheckedMesh {
+  Mesh mesh;
+  MeshReport report;
+};
+
+/// Total area of the triangles, mm^2.
+double surface_area(const Mesh& mesh);
+
+struct Bounds {
+  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+};
+
+/// The smallest box around the vertices; of an empty mesh low > high.
+Bounds bounds(const Mesh& mesh);
+
+}  // namespace opaline

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a scene file (JSON with comments) to a Scene; every key is described in scenes/README.md.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// Reads and checks a scene file; lengths are converted to mm by its mm_per_unit.
+/// in    overrides: "media.marble.eta=1.4": a path of keys (array elements by index or by "name") and a JSON value
+///       (a value that is not JSON is taken as a string), applied before checking
+/// error Error{bad_input} with file, line and column, what was expected, what was found, and the nearest valid
+///       name: no such file, broken JSON, unknown or duplicate key, wrong type, value out of range
+Scene load_scene(const std::string& path, std::span<const std::string> overrides = {});
+
+/// The same from text; `file` stands in messages and its folder in front of relative mesh paths.
+Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides = {});
+
+}  // namespace opaline

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene as plain data.
+//
+// Conventions, everywhere in the project: right-handed coordinates, +y up, normals outward, directions point
+// away from the surface, lengths in mm, coefficients in 1/mm, irradiance and radiant exitance in W/mm^2,
+// radiance in W/(mm^2 sr), colours linear Rec.709, eta = index of refraction inside / outside. Loading a scene
+// converts its units to mm once (mm_per_unit); nothing after it converts again.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "opaline/core/vec3.h"
+
+namespace opaline {
+
+/// Affine map p -> x p.x + y p.y + z p.z + translation.
+struct Transform {
+  Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, translation{};
+};
+
+inline Vec3d transform_point(const Transform& t, const Vec3d& p) {
+  return t.x * p.x + t.y * p.y + t.z * p.z + t.translation;
+}
+
+// ---- media ----------------------------------------------------------------------------------------------
+
+/// Which radial diffuse reflectance profile R_d(r) stands for the medium.
+enum class ProfileKind {
+  dipole,               ///< Jensen et al. 2001
+  normalized_diffusion  ///< Christensen & Burley 2015
+};
+
+/// Reduced coefficients per channel, 1/mm, finite and >= 0.
+struct PhysicalMedium {
+  Rgb sigma_a, sigma_s_prime;
+};
+
+/// Artist's parameters after OpenPBR.
+struct ArtistMedium {
+  Rgb subsurface_color;   ///< total diffuse reflectance per entered flux, [0, 1]
+  Rgb subsurface_radius;  ///< 1/sigma_t per channel, mm, >= 0 (radius times subsurface_radius_scale)
+  double anisotropy = 0;  ///< mean cosine g, (-1, 1)
+};
+
+struct Medium {
+  std::string name;
+  std::variant<PhysicalMedium, ArtistMedium> coefficients;
+  double eta = 1.3;
+  ProfileKind profile = ProfileKind::dipole;
+};
+
+// ---- shapes ---------------------------------------------------------------------------------------------
+
+struct MeshFile {
+  std::string path;         ///< as opened: the scene file's folder is already in front of a relative path
+  bool fill_holes = false;  ///< close every hole before rendering
+  /// If set: scale so that the largest side of the bounding box is this long (mm), centre x and z on the
+  /// origin, and stand the mesh on y = 0; applied before the shape's transform.
+  std::optional<double> fit_size;
+};
+
+// Built-in shapes; lengths in mm. `Slab` is a box named for its use: x and z extent, thickness along y.
+struct SphereShape {
+  Vec3d center{};
+  double radius = 1;
+};
+struct BoxShape {
+  Vec3d low{-1, -1, -1}, high{1, 1, 1};
+};
+struct QuadShape {  ///< the parallelogram corner, corner + u, corner + u + v, corner + v; normal along u x v
+  Vec3d corner{}, u{1, 0, 0}, v{0, 1, 0};
+};
+struct SlabShape {
+  Vec3d center{};
+  double width = 1, depth = 1, thickness = 1;  ///< along x, z, y
+};
+struct TorusShape {  ///< axis along y
+  Vec3d center{};
+  double major_radius = 1, minor_radius = 0.25;
+};
+
+using ShapeSource = std::variant<MeshFile, SphereShape, BoxShape, QuadShape, SlabShape, TorusShape>;
+
+enum class NormalMode {
+  smooth,   ///< area-weighted average at each vertex, or the file's own normals where it has them
+  faceted,  ///< geometric normals
+};
+
+struct Shape {
+  std::string name;
+  ShapeSource source;
+  Transform to_world;  ///< from mm in the shape's space to mm in the world
+  NormalMode normals = NormalMode::smooth;
+  /// Index into Scene::media, or none for an opaque Lambert surface of `reflectance`.
+  std::optional<std::size_t> medium;
+  Rgb reflectance{0.5, 0.5, 0.5};
+  /// Translucent shapes with the same non-empty group blend as one object; others never bleed into each other.
+  std::string group;
+};
+
+// ---- lights ---------------------------------------------------------------------------------------------
+
+struct PointLight {
+  Vec3d position;
+  Rgb intensity;  ///< W/sr; irradiance at distance d mm is intensity / d^2 in W/mm^2
+};
+struct DirectionalLight {
+  Vec3d direction;  ///< unit, the way the light travels
+  Rgb irradiance;   ///< on a surface that faces it, W/mm^2
+};
+struct SphereLight {
+  Vec3d center;
+  double radius;
+  Rgb radiance;
+};
+struct QuadLight {  ///< emits on the side of u x v only
+  Vec3d corner, u, v;
+  Rgb radiance;
+};
+struct Surroundings {  ///< the same radiance from everywhere
+  Rgb radiance;
+};
+
+using LightSource = std::variant<PointLight, DirectionalLight, SphereLight, QuadLight, Surroundings>;
+
+struct Light {
+  std::string name;
+  LightSource source;
+};
+
+// ---- picture --------------------------------------------------------------------------------------------
+
+struct Camera {
+  Vec3d position{0, 0, 5}, look_at{0, 0, 0}, up{0, 1, 0};
+  double field_of_view = 40;  ///< full vertical angle, degrees, (0, 180)
+};
+
+enum class PixelFilter { box, gaussian };
+
+struct Film {
+  std::array<int, 2> resolution{512, 512};   ///< width, height
+  std::optional<std::array<int, 4>> crop;    ///< x0, y0, x1, y1 in pixels, upper ends excluded; from top left
+  int samples_per_pixel = 1;
+  PixelFilter filter = PixelFilter::box;     ///< box of one pixel; gaussian of standard deviation 0.5, radius 1.5
+  bool half = true;                          ///< 16-bit EXR; false: 32-bit
+  double exposure = 0;                       ///< stops, for PNG only
+};
+
+enum class Method { hierarchical, lambert };
+enum class EvaluatorKind { classic, brute_force };
+
+struct Settings {
+  Method method = Method::hierarchical;
+  EvaluatorKind evaluator = EvaluatorKind::classic;
+  double max_solid_angle = 0.3;        ///< classic: open a node when area / distance^2 exceeds it, sr
+  bool near_field = true;              ///< split the kernel near the shading point
+  std::optional<double> sample_spacing;  ///< sqrt(area / samples), mm; none: from the mean free path
+  std::optional<std::size_t> samples;  ///< per group; none: from the spacing
+  std::size_t max_samples = 2000000;   ///< per group
+  int light_samples = 64;              ///< shadow rays per sample and area light, or surroundings
+  std::uint64_t seed = 0;
+};
+
+struct Scene {
+  std::string file;  ///< for messages
+  std::vector<Medium> media;
+  std::vector<Shape> shapes;
+  std::vector<Light> lights;
+  Camera camera;
+  Film film;
+  Settings settings;
+};
+
+}  // namespace opaline

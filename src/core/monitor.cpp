@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/core/monitor.h"
+
+#include "opaline/core/error.h"
+
+namespace opaline {
+
+void advance(Monitor* monitor, std::size_t work) {
+  if (monitor == nullptr) return;
+  monitor->done += work;
+  if (monitor->cancelled) throw Error(ErrorKind::interrupted, {}, 0, 0, "interrupted");
+}
+
+}  // namespace opaline
