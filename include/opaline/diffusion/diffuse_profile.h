@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a scene's medium to its radial diffuse reflectance profile per channel.
+#pragma once
+
+#include <array>
+#include <variant>
+
+#include "opaline/diffusion/dipole.h"
+#include "opaline/diffusion/normalized_diffusion.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// One channel; monostate: nothing scatters there (sigma_s' = 0) and the diffuse part is exactly 0.
+using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion>;
+
+double diffuse_reflectance_profile(const ChannelProfile& profile, double r);
+double diffuse_reflectance_within(const ChannelProfile& profile, double r);
+double total_diffuse_reflectance(const ChannelProfile& profile);
+
+/// Everything about a medium that rendering needs, computed once.
+struct DiffuseProfile {
+  std::array<ChannelProfile, 3> channels;
+  Rgb mean_free_path{};              ///< 1/sigma_t', mm; 0 where the medium neither scatters nor absorbs
+  Rgb total{};                       ///< total diffuse reflectance per entered flux
+  double eta = 1;
+  double average_reflectance = 0;    ///< F_bar, from outside
+  bool translucent = false;          ///< some channel scatters
+};
+
+DiffuseProfile make_diffuse_profile(const Medium& medium);
+
+/// Integral over r < h of 2 pi r R_d(r) (1 - w(r/h)), w the near-field weight below: the near part of the total.
+double near_field_reflectance(const ChannelProfile& profile, double h);
+
+/// w(t) = t^3 (10 - 15 t + 6 t^2) below 1, else 1: the far kernel is R_d(r) w(r/h).
+template <class T>
+T far_weight(T t) {
+  return t >= T(1) ? T(1) : t * t * t * (T(10) + t * (T(-15) + T(6) * t));
+}
+
+}  // namespace opaline

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The normalized diffusion profile of one channel (Christensen & Burley 2015).
+#pragma once
+
+namespace opaline {
+
+/// R_d(r) = A (exp(-r/d) + exp(-r/3d)) / (8 pi d r); includes single scattering. A fit for index-matched
+/// boundaries: its cumulative distribution is off by up to .17 at eta 1.3, .26 at 1.5.
+struct NormalizedDiffusion {
+  double total = 0;  ///< A
+  double d = 0;      ///< shape length, mm
+};
+
+/// Diffuse entry fit d = l / (1.9 - A + 3.5 (A - 0.8)^2), l = mean free path in mm, A in [0, 1].
+NormalizedDiffusion make_normalized_diffusion(double mean_free_path, double total);
+
+/// R_d(r), 1/mm^2, r > 0 in mm (infinite at 0).
+double diffuse_reflectance_profile(const NormalizedDiffusion& profile, double r);
+/// A (1 - exp(-r/d)/4 - 3 exp(-r/3d)/4).
+double diffuse_reflectance_within(const NormalizedDiffusion& profile, double r);
+double total_diffuse_reflectance(const NormalizedDiffusion& profile);
+
+}  // namespace opaline

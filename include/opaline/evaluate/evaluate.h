@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Radiant exitance from the tree of entered flux.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "opaline/core/monitor.h"
+#include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/diffusion/kernel_table.h"
+#include "opaline/octree/octree.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// The kernel split near the shading point: R_d = R_near + R_far with R_far = R_d w(r/h). The far part is summed
+/// over the samples; the near part, too steep for them, is an integral times the irradiance around the point.
+struct SplitKernel {
+  KernelTable table;
+  bool split = true;
+  float radius = 0;                    ///< h, 2.5 sample spacings, mm
+  std::array<float, 3> near{};         ///< integral of R_near over the plane
+  /// Channels whose mean free path is below the sample spacing: the irradiance at the point itself is needed
+  /// there, the samples' would blur it.
+  std::array<bool, 3> needs_irradiance{};
+};
+
+/// in    spacing: sqrt(area / samples), mm; extent: largest distance between a query and a sample, mm
+SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, double extent, bool split);
+
+struct Query {
+  Vec3f position;  ///< mm, recentred as the samples are
+  Vec3f normal;
+};
+
+struct Exitance {
+  RgbF exitance;    ///< M_o, W/mm^2
+  RgbF irradiance;  ///< E interpolated from the samples within h, W/mm^2
+};
+
+struct EvaluateInput {
+  const Octree& octree;
+  const SplitKernel& kernel;
+  std::span<const Query> queries;
+  /// Entered irradiance at each query, for the channels that need it; empty: interpolated ones everywhere.
+  std::span<const RgbF> irradiance = {};
+  EvaluatorKind evaluator = EvaluatorKind::classic;
+  double max_solid_angle = 0.3;
+  Monitor* monitor = nullptr;
+};
+
+/// Radiant exitance at each query point, in their order; finite and >= 0.
+/// `classic`: each query walks the tree from its root and takes a node as one flux at its centroid when the node's
+/// area over its squared distance is at most max_solid_angle and it lies wholly beyond h; leaves are summed sample
+/// by sample. `brute_force`: every sample, the limit of max_solid_angle -> 0 but for the order of sums.
+/// from  Jensen & Buhler 2002 sec. 3; near field: see SplitKernel
+std::vector<Exitance> evaluate(const EvaluateInput& input);
+
+/// Kernel evaluations and nodes visited by one classic query: what its time is made of.
+struct TraversalCost {
+  std::size_t nodes = 0, kernels = 0;
+};
+TraversalCost classic_cost(const EvaluateInput& input, std::size_t query);
+
+}  // namespace opaline

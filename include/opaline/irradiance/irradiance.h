@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Entered irradiance at surface samples, kept per light.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "opaline/core/monitor.h"
+#include "opaline/geometry/world.h"
+#include "opaline/sampling/sample_surface.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+struct IrradianceInput {
+  const World& world;
+  const RayScene& rays;
+  std::span<const SurfaceSample> samples;
+  std::span<const Light> lights;  ///< in the world's recentred space
+  double eta = 1;                 ///< inside / outside
+  int light_samples = 64;         ///< shadow rays a sample for lights with an area
+  std::uint64_t seed = 0;
+  Monitor* monitor = nullptr;
+};
+
+/// E(x) = integral of L_i Ft(omega_i) cos d omega is linear in each light's colour, and Ft is the same for all
+/// channels: one number a sample and light is enough, and recolouring a light traces no ray.
+struct LightTransfer {
+  std::vector<float> weights;  ///< one a sample: E per unit emission, >= 0
+  /// RMS over the samples of the estimated standard error, over the mean; 0 for point and directional lights.
+  double relative_error = 0;
+};
+
+/// One transfer per light. Cosines and Ft use the shading normal; which side a light is on, the geometric one.
+/// Everything in the scene casts full shadows.
+std::vector<LightTransfer> compute_irradiance(const IrradianceInput& input);
+
+/// E per sample, W/mm^2, per unit area of the surface: the sum over lights of emission x weight.
+std::vector<RgbF> combine_lights(std::span<const LightTransfer> transfers, std::span<const Light> lights);
+
+struct PointIrradianceInput {
+  const RayScene& rays;
+  std::span<const SurfacePoint> points;
+  std::span<const std::uint64_t> keys;  ///< one a point: chooses its place in the low-discrepancy points
+  std::span<const Light> lights;        ///< recentred
+  double eta = 0;                       ///< inside / outside; 0: no boundary, Ft = 1 (opaque surfaces)
+  int light_samples = 64;
+  std::uint64_t seed = 0;
+};
+
+/// Irradiance at arbitrary points, all lights together: for shading where samples are not wanted or too coarse.
+std::vector<RgbF> irradiance_at(const PointIrradianceInput& input);
+
+}  // namespace opaline

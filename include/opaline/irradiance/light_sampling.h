@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that arrives at a surface point from one light of the scene, as shadow rays with weights.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "opaline/core/vec3.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// One sample of a light seen from a point: the contribution to irradiance is radiance_weight x cos x Ft x (1 if
+/// not occluded) x emission, emission being the light's colour (intensity, irradiance or radiance).
+struct LightSample {
+  Vec3f direction;   ///< unit, from the point towards the light
+  float distance;    ///< mm; infinity for directional lights and surroundings
+  float weight = 0;  ///< intensity -> 1/d^2, irradiance -> 1, radiance -> solid angle / samples; 0: no light here
+};
+
+/// The light's colour: what a sample's weight multiplies.
+Rgb emission(const Light& light);
+
+/// True where one sample is exact (point and directional lights).
+bool is_delta(const Light& light);
+
+/// The light moved by -origin into recentred space.
+Light recentred(const Light& light, const Vec3d& origin);
+
+/// Sample of a light from a point.
+/// in    unit_square: in [0, 1)^2, unused by delta lights; samples: how many share the light's solid angle
+///       normal: unit; surroundings are sampled by its cosine, all others by solid angle (sphere) or area (quad)
+LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& normal,
+                         std::array<double, 2> unit_square, int samples);
+
+/// Radiance of area lights that a ray meets before `far` (nearest one), and whether there is any.
+struct EmitterHit {
+  bool hit = false;
+  float t = 0;
+  RgbF radiance{};
+};
+EmitterHit intersect_emitter(const Light& light, const Vec3f& origin, const Vec3f& direction, float far);
+
+}  // namespace opaline

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Samples gathered into a tree of entered flux.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "opaline/core/vec3.h"
+
+namespace opaline {
+
+/// One point of the cloud: what evaluation needs of a surface sample.
+struct FluxSample {
+  Vec3f position;    ///< mm, recentred
+  float area = 0;    ///< mm^2
+  RgbF irradiance;   ///< entered, W/mm^2
+  Vec3f normal;
+};
+
+/// Nodes stand in depth-first order: the first child follows its parent, `skip` is the next node past a subtree.
+/// Arrays have lanes R, G, B and, last, area: each channel has its own flux-weighted centroid.
+struct alignas(64) OctreeNode {
+  std::array<float, 4> x{}, y{}, z{};  ///< centroids, mm; without flux: the area's centroid
+  std::array<float, 4> flux{};         ///< sum of area x irradiance / Octree::flux_unit; last: sum of areas, mm^2
+  Vec3f center{}, half{};              ///< tight box around the node's samples
+  std::uint32_t skip = 0;
+  std::uint32_t first = 0, count = 0;  ///< its samples
+  bool leaf = false;
+};
+
+/// Samples in tree order, in the form the inner loop reads.
+struct alignas(32) TreeSample {
+  float x, y, z, area;
+  std::array<float, 4> flux;  ///< area x irradiance / Octree::flux_unit; last lane 0
+};
+
+struct Octree {
+  std::vector<OctreeNode> nodes;  ///< empty without samples
+  std::vector<TreeSample> samples;
+  std::vector<Vec3f> normals;     ///< of the samples
+  /// Power of two that brings the largest irradiance to [1/2, 1): neither 1e-30 nor 1e30 W leave float's range.
+  float flux_unit = 1;
+  std::size_t bytes() const;
+};
+
+/// Leaves hold at most this many samples, unless they coincide.
+inline constexpr std::uint32_t kLeafSamples = 8;
+
+/// Builds the tree. The result depends on the samples, not on their order; equal points end in one leaf.
+Octree build_octree(std::span<const FluxSample> samples);
+
+}  // namespace opaline

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a scene requires, before any work is done for it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "opaline/geometry/world.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// Translucent shapes that share samples and one tree.
+struct GroupPlan {
+  std::string name;                   ///< the group's, or its only shape's
+  std::vector<std::uint32_t> meshes;  ///< indices into World::meshes
+  std::size_t medium = 0;             ///< index into Scene::media
+  double area = 0;                    ///< mm^2
+  double smallest_mean_free_path = 0; ///< over the channels that scatter, mm
+  double spacing = 0;                 ///< sqrt(area / samples), mm
+  std::size_t samples = 0;
+  std::string reason;                 ///< why this many
+};
+
+struct Plan {
+  std::vector<GroupPlan> groups;      ///< empty: nothing translucent, no precompute
+  std::vector<std::string> stages;    ///< that will run, each with its reason
+  std::vector<std::string> warnings;  ///< one line each, with the likely fix
+  std::size_t bytes = 0;              ///< expected peak of meshes, rays, samples, trees and picture
+  std::size_t triangles = 0;
+};
+
+/// Decides groups and sample counts: spacing of the smallest mean free path, unless the settings say otherwise.
+Plan make_plan(const Scene& scene, const World& world);
+
+}  // namespace opaline

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a plan to trees of entered flux, one a group: all of a translucent picture that does not depend on the camera.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "opaline/core/monitor.h"
+#include "opaline/core/stopwatch.h"
+#include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/evaluate/evaluate.h"
+#include "opaline/irradiance/irradiance.h"
+#include "opaline/octree/octree.h"
+#include "opaline/render/plan.h"
+#include "opaline/sampling/sample_surface.h"
+
+namespace opaline {
+
+struct TranslucentGroup {
+  GroupPlan plan;
+  DiffuseProfile profile;
+  SurfaceSamples surface;
+  std::vector<LightTransfer> transfers;  ///< one a light
+  std::vector<RgbF> irradiance;          ///< one a sample, all lights
+  Octree octree;
+  SplitKernel kernel;
+};
+
+struct PrecomputeInput {
+  const Scene& scene;
+  const World& world;
+  const RayScene& rays;
+  const Plan& plan;
+  Monitor* monitor = nullptr;
+};
+
+struct Precompute {
+  std::vector<TranslucentGroup> groups;
+  std::vector<StageCost> costs;  ///< sampling, irradiance, octree
+};
+
+Precompute precompute(const PrecomputeInput& input);
+
+/// Radiant exitance at points of a group's surface, for callers with points of their own.
+/// in    points: world space, mm; normals: unit, outward, one a point
+/// out   M_o in W/mm^2 per point, in their order
+std::vector<RgbF> radiant_exitance(const TranslucentGroup& group, const World& world,
+                                   std::span<const Vec3d> points, std::span<const Vec3f> normals,
+                                   const Settings& settings);
+
+/// Writes all samples as a binary PLY: x y z, nx ny nz, area, irradiance r g b, shape; world space, mm.
+/// error Error{run_failed} naming the file
+void write_samples_ply(const std::string& path, const Precompute& precompute, const World& world);
+
+}  // namespace opaline

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From everything to a picture.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "opaline/core/monitor.h"
+#include "opaline/image/image.h"
+#include "opaline/render/precompute.h"
+
+namespace opaline {
+
+struct RenderInput {
+  const Scene& scene;
+  const World& world;
+  const RayScene& rays;
+  std::span<const TranslucentGroup> groups = {};  ///< of the precompute; not needed by Method::lambert
+  Monitor* monitor = nullptr;
+};
+
+struct RenderResult {
+  Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2 sr)
+  std::size_t queries = 0;     ///< points at which exitance was evaluated
+  std::size_t non_finite = 0;  ///< pixel values that are not finite; 0 unless something is broken
+};
+
+/// Radiance seen by the camera.
+/// `hierarchical`: translucent surfaces send out M_o Ft(omega_o) / (pi (1 - F_bar)) with M_o from the trees;
+/// `lambert`: the same with M_o = total diffuse reflectance x E at the point itself, the limit of a vanishing mean
+/// free path and the floor of all costs. Both add the mirror image of area lights and surroundings, weight F.
+/// Opaque surfaces are Lambertian and lit directly. Light does not bounce between objects.
+RenderResult render(const RenderInput& input);
+
+}  // namespace opaline

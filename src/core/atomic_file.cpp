@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/core/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Descriptor {
+  int number = -1;
+  ~Descriptor() { close(); }
+  /// 0 or -1 with errno; once.
+  int close() { return number < 0 ? 0 : ::close(std::exchange(number, -1)); }
+};
+
+std::string reason() {
+  return std::strerror(errno);
+}
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+/// A link stays a link: its target is replaced.
+std::string resolve_link(const std::string& path) {
+  std::error_code failure;
+  if (!fs::is_symlink(path, failure)) return path;
+  const fs::path target = fs::weakly_canonical(path, failure);
+  if (failure) throw run_failed(path, "cannot write: " + failure.message());
+  return target.string();
+}
+
+/// Said before the work and not after it: a rename would replace a device or a write-protected file without a
+/// word.
+void require_replaceable(const std::string& path) {
+  if (!fs::path(path).has_filename()) throw run_failed(path, "cannot write: not a file name");
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  if (status.type() == fs::file_type::not_found) return;
+  if (!fs::status_known(status)) throw run_failed(path, "cannot write: " + failure.message());
+  if (fs::is_directory(status)) throw run_failed(path, "cannot write: it is a folder");
+  if (!fs::is_regular_file(status)) throw run_failed(path, "cannot write: it is not a regular file");
+  if (::access(path.c_str(), W_OK) != 0) throw run_failed(path, "cannot write: " + reason());
+}
+
+/// Creates an empty file beside `path` under a name that nobody had, also where hosts share the folder.
+std::string create_beside(const fs::path& path) {
+  const fs::path folder = folder_of(path);
+  const std::string stem = ".opaline-" + std::to_string(::getpid()) + '-';
+  for (int counter = 0;; ++counter) {
+    const fs::path name = folder / (stem + std::to_string(counter) + path.extension().string());
+    Descriptor file{::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
+    if (file.number >= 0) return name.string();
+    if (errno != EEXIST)
+      throw run_failed(path.string(), "cannot write in the folder '" + folder.string() + "': " + reason());
+  }
+}
+
+/// 0, or the errno of what failed.
+int flush_to_disk(const fs::path& path, int flags) {
+  Descriptor file{::open(path.c_str(), flags | O_CLOEXEC)};
+  if (file.number < 0 || ::fsync(file.number) != 0 || file.close() != 0) return errno;
+  return 0;
+}
+
+void write_all(const std::string& path, std::string_view bytes, const std::string& name) {
+  Descriptor file{::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC)};
+  if (file.number < 0) throw run_failed(name, "cannot write: " + reason());
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file.number, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw run_failed(name, "cannot write: " + reason());
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (file.close() != 0) throw run_failed(name, "cannot write: " + reason());
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::string path) : path_(resolve_link(path)) {
+  require_replaceable(path_);
+  temporary_ = create_beside(path_);
+}
+
+AtomicFile::~AtomicFile() {
+  if (!committed_) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::commit() {
+  require(!committed_, "an atomic file is committed once");
+  int failure = flush_to_disk(temporary_, O_WRONLY);
+  if (failure == 0 && std::rename(temporary_.c_str(), path_.c_str()) != 0) failure = errno;
+  if (failure != 0) {
+    ::unlink(temporary_.c_str());
+    throw run_failed(path_, std::string("cannot write: ") + std::strerror(failure));
+  }
+  committed_ = true;
+  // The new file is in place. A folder that may not be opened for reading, or a file system that cannot flush
+  // folders (EINVAL), is no failure of the run.
+  failure = flush_to_disk(folder_of(path_), O_RDONLY | O_DIRECTORY);
+  if (failure != 0 && failure != EACCES && failure != EINVAL)
+    throw run_failed(path_, std::string("written, but its folder not flushed: ") + std::strerror(failure));
+}
+
+void write_file(const std::string& path, std::string_view bytes) {
+  AtomicFile file(path);
+  write_all(file.temporary(), bytes, path);
+  file.commit();
+}
+
+}  // namespace opaline

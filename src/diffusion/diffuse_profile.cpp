@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/diffusion/diffuse_profile.h"
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <type_traits>
+
+#include "opaline/diffusion/fresnel.h"
+
+namespace opaline {
+namespace {
+
+// The reduced medium of one channel: 1 - alpha' is carried by itself, against cancellation.
+struct ReducedMedium {
+  double mean_free_path = 0, absorbed = 1;
+};
+
+ReducedMedium reduce(const PhysicalMedium& medium, std::size_t channel, double) {
+  const double sigma_a = medium.sigma_a[channel], sigma_t_prime = sigma_a + medium.sigma_s_prime[channel];
+  if (sigma_t_prime == 0) return {};
+  return {1 / sigma_t_prime, sigma_a / sigma_t_prime};
+}
+
+// Albedo inversion on the dipole's closed form; 1/sigma_t is unreduced, so g takes part.
+ReducedMedium reduce(const ArtistMedium& medium, std::size_t channel, double mismatch) {
+  const double absorbed = invert_dipole_albedo(medium.subsurface_color[channel], mismatch);
+  const double g = medium.anisotropy;
+  // alpha'/(1-alpha') = (1-g) alpha/(1-alpha); sigma_t' / sigma_t = 1 - g alpha.
+  const double unreduced_absorbed = absorbed * (1 - g) / (1 - absorbed * g);
+  return {medium.subsurface_radius[channel] / (1 - g * (1 - unreduced_absorbed)), absorbed};
+}
+
+ChannelProfile make_channel(const ReducedMedium& medium, ProfileKind kind, double mismatch) {
+  if (medium.absorbed >= 1) return std::monostate{};
+  const Dipole dipole = make_dipole(medium.mean_free_path, medium.absorbed, mismatch);
+  if (kind == ProfileKind::dipole) return dipole;
+  // Until a fit of its own exists, A(alpha', eta) is the dipole's total.
+  return make_normalized_diffusion(medium.mean_free_path, total_diffuse_reflectance(dipole));
+}
+
+template <class Function>
+double apply_to(const ChannelProfile& profile, const Function& function) {
+  return std::visit(
+      [&](const auto& p) -> double {
+        if constexpr (std::is_same_v<std::decay_t<decltype(p)>, std::monostate>)
+          return 0;
+        else
+          return function(p);
+      },
+      profile);
+}
+
+}  // namespace
+
+double diffuse_reflectance_profile(const ChannelProfile& profile, double r) {
+  return apply_to(profile, [r](const auto& p) { return diffuse_reflectance_profile(p, r); });
+}
+
+double diffuse_reflectance_within(const ChannelProfile& profile, double r) {
+  return apply_to(profile, [r](const auto& p) { return diffuse_reflectance_within(p, r); });
+}
+
+double total_diffuse_reflectance(const ChannelProfile& profile) {
+  return apply_to(profile, [](const auto& p) { return total_diffuse_reflectance(p); });
+}
+
+DiffuseProfile make_diffuse_profile(const Medium& medium) {
+  DiffuseProfile profile;
+  profile.eta = medium.eta;
+  profile.average_reflectance = average_reflectance_outside(medium.eta);
+  const double mismatch = boundary_mismatch(medium.eta);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const ReducedMedium reduced =
+        std::visit([&](const auto& coefficients) { return reduce(coefficients, c, mismatch); }, medium.coefficients);
+    profile.channels[c] = make_channel(reduced, medium.profile, mismatch);
+    profile.mean_free_path[c] = reduced.mean_free_path;
+    profile.total[c] = total_diffuse_reflectance(profile.channels[c]);
+    profile.translucent = profile.translucent || profile.total[c] > 0;
+  }
+  return profile;
+}
+
+double near_field_reflectance(const ChannelProfile& profile, double h) {
+  if (h <= 0) return 0;
+  // By parts: the cumulative distribution is bounded and smooth where the kernel itself may be singular.
+  const auto integrand = [&](double t) {
+    const double slope = 30 * t * t * (1 - t) * (1 - t);
+    return diffuse_reflectance_within(profile, t * h) * slope;
+  };
+  using Rule = boost::math::quadrature::gauss<double, 30>;
+  constexpr int kPieces = 16;
+  double sum = 0;
+  for (int i = 0; i < kPieces; ++i)
+    sum += Rule::integrate(integrand, double(i) / kPieces, double(i + 1) / kPieces);
+  return sum;
+}
+
+}  // namespace opaline

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/diffusion/dipole.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace opaline {
+namespace {
+
+// z (1 + sigma_tr d) exp(-sigma_tr d) / d^3 of one source at distance z from the surface.
+double source_term(double z, double sigma_tr, double r) {
+  const double d = std::sqrt(r * r + z * z);
+  return z == 0 ? 0 : z * (1 + sigma_tr * d) * std::exp(-sigma_tr * d) / (d * d * d);
+}
+
+// The integral of r' source_term from r to infinity, exactly: z exp(-sigma_tr d) / d.
+double source_beyond(double z, double sigma_tr, double r) {
+  const double d = std::sqrt(r * r + z * z);
+  return z == 0 ? 0 : z / d * std::exp(-sigma_tr * d);
+}
+
+}  // namespace
+
+Dipole make_dipole(double mean_free_path, double absorbed, double boundary_mismatch) {
+  Dipole dipole;
+  dipole.reduced_albedo = 1 - absorbed;
+  dipole.z_real = mean_free_path;
+  dipole.z_virtual = mean_free_path * (1 + 4.0 / 3.0 * boundary_mismatch);
+  dipole.s_real = std::sqrt(3 * absorbed);
+  dipole.s_virtual = dipole.s_real * (1 + 4.0 / 3.0 * boundary_mismatch);
+  dipole.sigma_tr = mean_free_path > 0 ? dipole.s_real / mean_free_path : 0;
+  return dipole;
+}
+
+double diffuse_reflectance_profile(const Dipole& dipole, double r) {
+  return dipole.reduced_albedo / (4 * std::numbers::pi) *
+         (source_term(dipole.z_real, dipole.sigma_tr, r) + source_term(dipole.z_virtual, dipole.sigma_tr, r));
+}
+
+double diffuse_reflectance_within(const Dipole& dipole, double r) {
+  if (r <= 0) return 0;
+  return total_diffuse_reflectance(dipole) -
+         dipole.reduced_albedo / 2 *
+             (source_beyond(dipole.z_real, dipole.sigma_tr, r) + source_beyond(dipole.z_virtual, dipole.sigma_tr, r));
+}
+
+double total_diffuse_reflectance(const Dipole& dipole) {
+  return dipole.reduced_albedo / 2 * (std::exp(-dipole.s_real) + std::exp(-dipole.s_virtual));
+}
+
+double invert_dipole_albedo(double total, double boundary_mismatch) {
+  if (total >= 1) return 0;
+  if (total <= 0) return 1;
+  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1; bisect its logarithm, so that the relative error
+  // of 1 - alpha' is small where the medium hardly absorbs.
+  double low = -80, high = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    if (total_diffuse_reflectance(make_dipole(1, std::exp2(middle), boundary_mismatch)) > total)
+      low = middle;
+    else
+      high = middle;
+  }
+  return std::exp2(0.5 * (low + high));
+}
+
+}  // namespace opaline

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/diffusion/kernel_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace opaline {
+namespace {
+
+// Coefficients of the cubic through f at the four Chebyshev points of [0, 1].
+std::array<double, 4> interpolating_cubic(const std::array<double, 4>& x, const std::array<double, 4>& f) {
+  std::array<double, 4> difference = f;  // Newton's divided differences
+  for (int order = 1; order < 4; ++order)
+    for (int i = 3; i >= order; --i) difference[i] = (difference[i] - difference[i - 1]) / (x[i] - x[i - order]);
+  std::array<double, 4> c{difference[3], 0, 0, 0};  // nested form, expanded from the innermost term
+  for (int i = 2; i >= 0; --i) {
+    for (int k = 3; k >= 1; --k) c[k] = c[k - 1] - x[i] * c[k];
+    c[0] = difference[i] - x[i] * c[0];
+  }
+  return c;
+}
+
+}  // namespace
+
+KernelTable::KernelTable(const DiffuseProfile& profile, double r_min, double r_max) {
+  // One length scale, so that s does not change when everything is scaled by a power of two.
+  const double scale = r_max;
+  inverse_scale2_ = float(1 / (scale * scale));
+  const auto reflectance = [&](std::size_t channel, double s) {
+    return diffuse_reflectance_profile(profile.channels[channel], std::sqrt(s) * scale);
+  };
+  // End where even the last channel has fallen under 1e-30 of the entered flux per squared scale.
+  const auto negligible = [&](double s) {
+    double largest = 0;
+    for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, reflectance(c, s));
+    return largest * scale * scale < 1e-30;
+  };
+  constexpr int kPerOctave = 1 << kSegmentBits;
+  const int low_octave = std::max(-100, int(std::floor(2 * std::log2(r_min / r_max))));
+  int high_octave = 1;  // s_max = 2: r_max itself lies inside
+  while (high_octave > low_octave + 1 && negligible(std::exp2(high_octave - 1))) --high_octave;
+
+  s_min_ = float(std::exp2(low_octave));
+  s_max_ = float(std::exp2(high_octave));
+  first_ = std::bit_cast<std::uint32_t>(s_min_) >> kFractionBits;
+  std::array<double, 4> nodes{};
+  for (int i = 0; i < 4; ++i) nodes[i] = 0.5 - 0.5 * std::cos(std::numbers::pi * (2 * i + 1) / 8);
+
+  for (int octave = low_octave; octave < high_octave; ++octave)
+    for (int part = 0; part < kPerOctave; ++part) {
+      const double start = std::exp2(octave) * (1 + double(part) / kPerOctave);
+      const double width = std::exp2(octave) / kPerOctave;
+      Segment segment{};
+      for (int c = 0; c < 3; ++c) {
+        std::array<double, 4> values{};
+        for (int i = 0; i < 4; ++i) values[i] = reflectance(std::size_t(c), start + width * nodes[i]);
+        const std::array<double, 4> cubic = interpolating_cubic(nodes, values);
+        segment.c0[c] = float(cubic[0]);
+        segment.c1[c] = float(cubic[1]);
+        segment.c2[c] = float(cubic[2]);
+        segment.c3[c] = float(cubic[3]);
+      }
+      segments_.push_back(segment);
+    }
+  segments_.push_back(Segment{});  // beyond s_max: exactly 0
+}
+
+}  // namespace opaline

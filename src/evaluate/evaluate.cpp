@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/evaluate/evaluate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "evaluate/gather.h"
+#include "opaline/core/parallel.h"
+
+namespace opaline {
+namespace {
+
+// A node may stand as one point when it is small from here and wholly outside the near field.
+bool is_far(const OctreeNode& node, const Vec3f& p, __m128 r2, float max_solid_angle, float near2) {
+  const __m128 limit = _mm_mul_ps(_mm_set1_ps(max_solid_angle), r2);
+  if (_mm_movemask_ps(_mm_cmpgt_ps(_mm_set1_ps(node.flux[3]), limit)) != 0) return false;
+  const Vec3f d = p - node.center;
+  const Vec3f gap = component_max(Vec3f{std::abs(d.x), std::abs(d.y), std::abs(d.z)} - node.half, Vec3f{});
+  const float gap2 = dot(gap, gap);
+  return gap2 > 0 && gap2 >= near2;
+}
+
+template <class Count>
+void walk(const EvaluateInput& input, const Query& query, Gather& gather, Count& count) {
+  const std::vector<OctreeNode>& nodes = input.octree.nodes;
+  const float max_solid_angle = float(input.max_solid_angle);
+  const float near2 = input.kernel.radius * input.kernel.radius;
+  const __m128 px = _mm_set1_ps(query.position.x), py = _mm_set1_ps(query.position.y),
+               pz = _mm_set1_ps(query.position.z);
+  for (std::uint32_t i = 0; i < nodes.size();) {
+    const OctreeNode& node = nodes[i];
+    count.node();
+    const __m128 dx = _mm_sub_ps(_mm_load_ps(node.x.data()), px), dy = _mm_sub_ps(_mm_load_ps(node.y.data()), py),
+                 dz = _mm_sub_ps(_mm_load_ps(node.z.data()), pz);
+    const __m128 r2 = _mm_add_ps(_mm_mul_ps(dx, dx), _mm_add_ps(_mm_mul_ps(dy, dy), _mm_mul_ps(dz, dz)));
+    if (is_far(node, query.position, r2, max_solid_angle, near2)) {
+      gather.add_node(node, r2);
+      count.kernels(1);
+      i = node.skip;
+    } else if (node.leaf) {
+      gather.add_samples(node.first, node.first + node.count);
+      count.kernels(node.count);
+      i = node.skip;
+    } else {
+      ++i;
+    }
+  }
+}
+
+struct NoCount {
+  void node() {}
+  void kernels(std::size_t) {}
+};
+
+Exitance evaluate_one(const EvaluateInput& input, std::size_t q) {
+  Gather gather(input.octree, input.kernel, input.queries[q]);
+  NoCount count;
+  if (input.evaluator == EvaluatorKind::classic)
+    walk(input, input.queries[q], gather, count);
+  else
+    gather.add_samples(0, std::uint32_t(input.octree.samples.size()));
+  return gather.result(input.irradiance.empty() ? nullptr : &input.irradiance[q]);
+}
+
+}  // namespace
+
+SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, double extent, bool split) {
+  // Closer than a quarter of the spacing, R_d w is negligible; without the split R_d is held there.
+  const double r_min = spacing / 4, radius = 2.5 * spacing;
+  SplitKernel kernel{KernelTable(profile, r_min, std::max(extent, 2 * radius)), split, float(radius), {}, {}};
+  for (std::size_t c = 0; split && c < 3; ++c) {
+    kernel.near[c] = float(near_field_reflectance(profile.channels[c], radius));
+    kernel.needs_irradiance[c] = kernel.near[c] > 0 && profile.mean_free_path[c] < spacing;
+  }
+  return kernel;
+}
+
+std::vector<Exitance> evaluate(const EvaluateInput& input) {
+  std::vector<Exitance> result(input.queries.size());
+  if (input.octree.nodes.empty()) return result;
+  parallel_chunks(input.queries.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t q = begin; q < end; ++q) result[q] = evaluate_one(input, q);
+    advance(input.monitor, end - begin);
+  });
+  return result;
+}
+
+TraversalCost classic_cost(const EvaluateInput& input, std::size_t query) {
+  struct {
+    TraversalCost cost;
+    void node() { ++cost.nodes; }
+    void kernels(std::size_t n) { cost.kernels += n; }
+  } count;
+  Gather gather(input.octree, input.kernel, input.queries[query]);
+  walk(input, input.queries[query], gather, count);
+  return count.cost;
+}
+
+}  // namespace opaline

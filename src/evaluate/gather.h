@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The sum over far nodes and samples at one query point, and its near field.
+#pragma once
+
+#include <emmintrin.h>
+
+#include "opaline/evaluate/evaluate.h"
+#include "opaline/sampling/sample_surface.h"
+
+namespace opaline {
+
+class Gather {
+ public:
+  Gather(const Octree& octree, const SplitKernel& kernel, const Query& query)
+      : octree_(octree), kernel_(kernel), query_(query), near2_(kernel.radius * kernel.radius) {}
+
+  /// A node beyond the near field, lanes of r2 the squared distances of its centroids.
+  void add_node(const OctreeNode& node, __m128 r2) {
+    alignas(16) float d[4];
+    _mm_store_ps(d, r2);
+    // Lights of one colour give all channels the same centroid.
+    const __m128 k = d[0] == d[1] && d[1] == d[2] ? kernel_.table(d[0]) : kernel_.table(d[0], d[1], d[2]);
+    accumulate(_mm_mul_ps(k, _mm_load_ps(node.flux.data())));
+  }
+
+  void add_samples(std::uint32_t begin, std::uint32_t end) {
+    __m128 sum = _mm_setzero_ps();
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const TreeSample& s = octree_.samples[i];
+      const float dx = s.x - query_.position.x, dy = s.y - query_.position.y, dz = s.z - query_.position.z;
+      const float r2 = dx * dx + (dy * dy + dz * dz);
+      const __m128 flux = _mm_load_ps(s.flux.data());
+      __m128 k = kernel_.table(r2);
+      if (r2 < near2_) k = _mm_mul_ps(k, _mm_set1_ps(add_near(i, r2, flux)));
+      sum = _mm_add_ps(sum, _mm_mul_ps(k, flux));
+    }
+    accumulate(sum);
+  }
+
+  /// given: entered irradiance at the query, or null to interpolate every channel.
+  Exitance result(const RgbF* given) const {
+    alignas(16) double sum[4];
+    _mm_store_pd(sum, low_);
+    _mm_store_pd(sum + 2, high_);
+    alignas(16) float flux[4];
+    _mm_store_ps(flux, near_flux_);
+    Exitance out;
+    const float unit = octree_.flux_unit, share = surface_share();
+    for (std::size_t c = 0; c < 3; ++c) {
+      out.irradiance[c] = near_weight_ > 0 ? flux[c] / near_weight_ * unit : 0;
+      const float e = given != nullptr && kernel_.needs_irradiance[c] ? (*given)[c] : out.irradiance[c];
+      out.exitance[c] = float(sum[c]) * unit + kernel_.near[c] * e * share;
+    }
+    return out;
+  }
+
+ private:
+  // Notes a sample within h for the irradiance around the point and returns the far weight of its kernel. Samples
+  // of another sheet are no neighbours on the surface: their kernel stays whole.
+  float add_near(std::uint32_t i, float r2, __m128 flux) {
+    if (!same_sheet(octree_.normals[i], query_.normal)) return 1;
+    const float t2 = r2 / near2_, w = (1 - t2) * (1 - t2);
+    near_flux_ = _mm_add_ps(near_flux_, _mm_mul_ps(flux, _mm_set1_ps(w)));
+    near_weight_ += w * octree_.samples[i].area;
+    return kernel_.split ? far_weight(std::sqrt(t2)) : 1;
+  }
+
+  // How much surface there is within h, over a plane's: less at an open border, more along a crease. Deviations of
+  // a few per cent are the noise of the sum itself and count as none.
+  float surface_share() const {
+    const float plane = float(std::numbers::pi) * near2_ / 3;  // integral of the weight (1 - r^2/h^2)^2
+    const float deviation = near_weight_ / plane - 1, size = std::abs(deviation);
+    constexpr float kNoise = 0.03f, kReal = 0.10f;
+    const float t = std::clamp((size - kNoise) / (kReal - kNoise), 0.0f, 1.0f);
+    return 1 + deviation * t * t * (3 - 2 * t);
+  }
+
+  void accumulate(__m128 sum) {
+    low_ = _mm_add_pd(low_, _mm_cvtps_pd(sum));
+    high_ = _mm_add_pd(high_, _mm_cvtps_pd(_mm_movehl_ps(sum, sum)));
+  }
+
+  const Octree& octree_;
+  const SplitKernel& kernel_;
+  const Query& query_;
+  float near2_;
+  __m128d low_ = _mm_setzero_pd(), high_ = _mm_setzero_pd();
+  __m128 near_flux_ = _mm_setzero_ps();
+  float near_weight_ = 0;
+};
+
+}  // namespace opaline

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The shapes a scene can name instead of a file, cut into triangles, with their exact normals.
+#pragma once
+
+#include <string>
+
+#include "opaline/scene/scene.h"
+#include "source_mesh.h"
+
+namespace opaline {
+
+/// Vertices lie on the true surface; the area is within 1e-3 of the true one; all but the quad are closed.
+/// name  of the shape, for messages
+/// error Error{bad_input} for a size that is not finite and > 0
+SourceMesh tessellate(const SphereShape& sphere, const std::string& name);
+SourceMesh tessellate(const BoxShape& box, const std::string& name);
+SourceMesh tessellate(const QuadShape& quad, const std::string& name);
+SourceMesh tessellate(const SlabShape& slab, const std::string& name);
+SourceMesh tessellate(const TorusShape& torus, const std::string& name);
+
+}  // namespace opaline

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "check_mesh.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "opaline/core/error.h"
+#include "orient.h"
+#include "repair_mesh.h"
+#include "topology.h"
+#include "vertex_normals.h"
+
+namespace opaline {
+namespace {
+
+class MeshChecker {
+ public:
+  MeshChecker(SourceMesh source, const CheckSettings& settings)
+      : settings_(settings), source_(std::move(source)) {
+    report_.warnings = std::move(source_.warnings);
+    report_.zero_area_dropped = source_.collapsed;
+  }
+
+  CheckedMesh run() {
+    merge_vertices();
+    drop_collapsed_and_duplicates();
+    mend_winding_and_holes();
+    drop_slivers();
+    if (source_.triangles.empty())
+      throw bad_file(settings_.name, "the mesh has no area", "at least one triangle with an area",
+                     std::to_string(report_.zero_area_dropped) + " of no area");
+    warn_about_drops();
+    CheckedMesh checked;
+    checked.mesh = compacted();
+    if (settings_.smooth) complete_normals(checked.mesh, settings_.name, report_.warnings);
+    checked.report = std::move(report_);
+    return checked;
+  }
+
+ private:
+  void warn(const std::string& text) { report_.warnings.push_back(settings_.name + ": " + text); }
+
+  /// site_: the first vertex at the same position, which is what neighbourhood goes by. The mesh itself keeps
+  /// vertices apart only where their normals differ.
+  void merge_vertices() {
+    if (!settings_.smooth) source_.normals.clear();
+    for (Vec3f& n : source_.normals)
+      if (!is_finite(n)) n = {};
+    const std::vector<std::uint32_t> same = weld(source_.positions, source_.normals);
+    for (Triangle& triangle : source_.triangles)
+      for (std::uint32_t& v : triangle) v = same[v];
+    site_ = source_.normals.empty() ? same : weld(source_.positions);
+  }
+
+  Triangle sites(const Triangle& t) const { return {site_[t[0]], site_[t[1]], site_[t[2]]}; }
+
+  std::vector<Triangle> all_sites() const {
+    std::vector<Triangle> triangles;
+    triangles.reserve(source_.triangles.size());
+    for (const Triangle& t : source_.triangles) triangles.push_back(sites(t));
+    return triangles;
+  }
+
+  /// Keeps the triangles for which drop(index) is false; returns how many went.
+  template <class Predicate>
+  std::size_t drop_triangles(Predicate drop) {
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < source_.triangles.size(); ++t)
+      if (!drop(t)) source_.triangles[kept++] = source_.triangles[t];
+    const std::size_t dropped = source_.triangles.size() - kept;
+    source_.triangles.resize(kept);
+    return dropped;
+  }
+
+  void drop_collapsed_and_duplicates() {
+    report_.zero_area_dropped += drop_triangles([&](std::size_t t) {
+      const auto [a, b, c] = sites(source_.triangles[t]);
+      return a == b || b == c || c == a;
+    });
+    const std::vector<bool> duplicate = find_duplicates(all_sites());
+    report_.duplicates_dropped = drop_triangles([&](std::size_t t) { return duplicate[t]; });
+  }
+
+  void mend_winding_and_holes() {
+    std::vector<Triangle> triangles = all_sites();
+    EdgeTable edges(triangles, source_.positions.size());
+    if (settings_.fill_holes && !open_edges(edges).empty()) {
+      apply(find_winding(source_.positions, triangles, edges), false);
+      fill(edges);
+      triangles = all_sites();
+      edges = EdgeTable(triangles, source_.positions.size());
+    }
+    apply(find_winding(source_.positions, triangles, edges), true);
+    count_edges(edges);
+  }
+
+  static std::vector<Edge> open_edges(const EdgeTable& edges) {
+    std::vector<Edge> open;
+    edges.for_each([&](std::uint32_t low, std::uint32_t high, std::span<const std::uint32_t> corners) {
+      if (corners.size() == 1) open.push_back({low, high});
+    });
+    return open;
+  }
+
+  void apply(const Winding& winding, bool final) {
+    for (std::size_t t = 0; t < winding.flip.size(); ++t) {
+      if (!winding.flip[t]) continue;
+      std::swap(source_.triangles[t][1], source_.triangles[t][2]);
+      ++report_.flipped;
+    }
+    if (winding.inconsistent > 0)
+      warn(std::to_string(winding.inconsistent) + " triangles wound against their neighbours were flipped");
+    if (winding.inside_out > 0)
+      warn(std::to_string(winding.inside_out) + " triangles of closed parts wound inward were flipped");
+    if (final && winding.unorientable_edges > 0)
+      warn("one-sided surface: no winding suits " + std::to_string(winding.unorientable_edges) + " edges");
+  }
+
+  void fill(const EdgeTable& edges) {
+    const HoleFilling filling = fill_holes(source_.positions, all_sites(), open_edges(edges));
+    source_.triangles.insert(source_.triangles.end(), filling.triangles.begin(), filling.triangles.end());
+    report_.holes_filled = filling.filled;
+    report_.hole_triangles_added = filling.triangles.size();
+    if (filling.unfilled.empty()) return;
+    warn(std::to_string(filling.unfilled.size()) + " holes could not be filled, the largest has " +
+         std::to_string(*std::max_element(filling.unfilled.begin(), filling.unfilled.end())) + " edges");
+  }
+
+  void count_edges(const EdgeTable& edges) {
+    edges.for_each([&](std::uint32_t, std::uint32_t, std::span<const std::uint32_t> corners) {
+      report_.open_edges += corners.size() == 1;
+      report_.non_manifold_edges += corners.size() > 2;
+    });
+    if (report_.open_edges > 0 && !settings_.may_be_open)
+      warn("open mesh: " + std::to_string(report_.open_edges) + " boundary edges; light can leak");
+    if (report_.non_manifold_edges > 0)
+      warn("non-manifold mesh: " + std::to_string(report_.non_manifold_edges) +
+           " edges with more than two triangles; inside and outside may be wrong there");
+  }
+
+  /// Last, because a triangle that is only thin still ties its neighbours together.
+  void drop_slivers() {
+    const std::vector<Vec3d>& p = source_.positions;
+    report_.zero_area_dropped += drop_triangles([&](std::size_t t) {
+      const auto [a, b, c] = source_.triangles[t];
+      const Vec3d ab = p[b] - p[a], bc = p[c] - p[b], ca = p[a] - p[c];
+      const Vec3d twice_area = cross(ab, ca);
+      const double longest = std::max({dot(ab, ab), dot(bc, bc), dot(ca, ca)});
+      return dot(twice_area, twice_area) <= 1e-24 * longest * longest;
+    });
+  }
+
+  void warn_about_drops() {
+    if (report_.zero_area_dropped > 0)
+      warn(std::to_string(report_.zero_area_dropped) + " triangles without area were dropped");
+    if (report_.duplicates_dropped > 0)
+      warn(std::to_string(report_.duplicates_dropped) + " triangles given twice were dropped");
+  }
+
+  /// The mesh with only the vertices its triangles use, in their order.
+  Mesh compacted() {
+    constexpr std::uint32_t unused = 0xffffffff;
+    std::vector<std::uint32_t> place(source_.positions.size(), unused);
+    for (const Triangle& triangle : source_.triangles)
+      for (const std::uint32_t v : triangle) place[v] = 0;
+    Mesh mesh;
+    for (std::size_t v = 0; v < place.size(); ++v) {
+      if (place[v] == unused) continue;
+      place[v] = std::uint32_t(mesh.positions.size());
+      mesh.positions.push_back(source_.positions[v]);
+      if (!source_.normals.empty()) mesh.normals.push_back(source_.normals[v]);
+    }
+    mesh.triangles = std::move(source_.triangles);
+    for (Triangle& triangle : mesh.triangles)
+      for (std::uint32_t& v : triangle) v = place[v];
+    return mesh;
+  }
+
+  const CheckSettings& settings_;
+  SourceMesh source_;
+  MeshReport report_;
+  std::vector<std::uint32_t> site_;
+};
+
+}  // namespace
+
+CheckedMesh check_mesh(SourceMesh source, const CheckSettings& settings) {
+  return MeshChecker(std::move(source), settings).run();
+}
+
+}  // namespace opaline

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/geometry/make_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "builtin_shapes.h"
+#include "check_mesh.h"
+#include "opaline/core/error.h"
+#include "read_mesh.h"
+
+namespace opaline {
+namespace {
+
+/// How messages call the shape: its file, or "shape 'name'".
+std::string label(const Shape& shape) {
+  if (const auto* file = std::get_if<MeshFile>(&shape.source)) return file->path;
+  return "shape '" + shape.name + "'";
+}
+
+struct SourceReader {
+  const std::string& name;
+  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path); }
+  template <class Builtin>
+  SourceMesh operator()(const Builtin& shape) const {
+    return tessellate(shape, name);
+  }
+};
+
+/// Of the vertices that triangles use.
+Bounds used_bounds(const SourceMesh& mesh) {
+  Bounds box;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      box.low = component_min(box.low, mesh.positions[v]);
+      box.high = component_max(box.high, mesh.positions[v]);
+    }
+  }
+  return box;
+}
+
+/// See MeshFile::fit_size.
+void fit(SourceMesh& mesh, double size, const std::string& name) {
+  if (!(std::isfinite(size) && size > 0))
+    throw bad_file(name, "bad fit_size", "a finite number above 0", std::to_string(size));
+  if (mesh.triangles.empty()) return;
+  const Bounds box = used_bounds(mesh);
+  const double largest = max_component(box.high - box.low);
+  if (!(largest > 0)) throw bad_file(name, "the mesh has no area", "", "all vertices at one point");
+  const double scale = size / largest;
+  const Vec3d origin((box.low.x + box.high.x) / 2, box.low.y, (box.low.z + box.high.z) / 2);
+  for (Vec3d& p : mesh.positions) p = (p - origin) * scale;
+}
+
+/// The map of normals: the inverse transpose up to a positive factor, so that they stay on their side.
+struct NormalMap {
+  Vec3d x, y, z;
+  Vec3f operator()(const Vec3f& n) const {
+    return Vec3f(normalized(x * double(n.x) + y * double(n.y) + z * double(n.z)));
+  }
+};
+
+void place(SourceMesh& mesh, const Transform& to_world, const std::string& name) {
+  const Vec3d x = normalized(to_world.x), y = normalized(to_world.y), z = normalized(to_world.z);
+  const double determinant = dot(x, cross(y, z));  // of the directions alone: no matter of scale
+  if (!(std::abs(determinant) > 1e-12) || !is_finite(to_world.translation))
+    throw bad_file(name, "the transform is singular or not finite", "three independent axes",
+                   "relative determinant " + std::to_string(determinant));
+  for (Vec3d& p : mesh.positions) {
+    p = transform_point(to_world, p);
+    if (!is_finite(p) || max_component(component_max(p, -p)) >= 1e18)
+      throw bad_file(name, "a vertex is too far out after the transform", "coordinates below 1e18");
+  }
+  const double side = determinant < 0 ? -1 : 1;
+  const double lx = length(to_world.x), ly = length(to_world.y), lz = length(to_world.z);
+  const double largest = std::max({lx, ly, lz});
+  const NormalMap map{cross(y, z) * (side * (largest / lx)), cross(z, x) * (side * (largest / ly)),
+                      cross(x, y) * (side * (largest / lz))};
+  for (Vec3f& n : mesh.normals) n = map(n);
+  if (determinant < 0)
+    for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+}
+
+}  // namespace
+
+CheckedMesh make_mesh(const Shape& shape) {
+  const std::string name = label(shape);
+  SourceMesh mesh = std::visit(SourceReader{name}, shape.source);
+  CheckSettings settings;
+  settings.name = name;
+  settings.smooth = shape.normals == NormalMode::smooth;
+  settings.may_be_open = std::holds_alternative<QuadShape>(shape.source) && !shape.medium;
+  if (const auto* file = std::get_if<MeshFile>(&shape.source)) {
+    settings.fill_holes = file->fill_holes;
+    if (file->fit_size) fit(mesh, *file->fit_size, name);
+  }
+  place(mesh, shape.to_world, name);
+  return check_mesh(std::move(mesh), settings);
+}
+
+}  // namespace opaline

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh_scan.h"
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace opaline {
+
+void VertexCheck::check(const Vec3d& p, std::size_t index, int line) {
+  const bool good = std::abs(p.x) < coordinate_limit && std::abs(p.y) < coordinate_limit &&
+                    std::abs(p.z) < coordinate_limit;  // false for NaN as well
+  if (good) return;
+  if (bad_++ > 0) return;
+  first_index_ = index;
+  first_line_ = line;
+  first_ = p;
+}
+
+void VertexCheck::throw_if_any(const std::string& path) const {
+  if (bad_ == 0) return;
+  char got[160];
+  std::snprintf(got, sizeof got, "(%g, %g, %g)", first_.x, first_.y, first_.z);
+  const std::string count = bad_ == 1 ? "1 vertex has" : std::to_string(bad_) + " vertices have";
+  throw bad_line(path, first_line_,
+                 count + " a coordinate that is not finite or too large, the first is vertex " +
+                     std::to_string(first_index_ + 1),
+                 "finite coordinates below 1e18", got);
+}
+
+Error bad_line(const std::string& path, int line, std::string message, std::string expected,
+               std::string got) {
+  return Error(ErrorKind::bad_input, path, line, 0, std::move(message), std::move(expected), std::move(got));
+}
+
+void require_faces(const std::string& path, std::size_t vertices, std::size_t faces) {
+  if (vertices == 0) throw bad_file(path, "the mesh has no vertices", "at least three", "none");
+  if (faces == 0) throw bad_file(path, "the mesh has no faces", "at least one", "none");
+}
+
+}  // namespace opaline

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The header of a PLY file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace opaline {
+
+enum class PlyScalar { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+std::size_t byte_size(PlyScalar type);
+inline bool is_floating(PlyScalar type) {
+  return type >= PlyScalar::float32;
+}
+
+struct PlyProperty {
+  std::string name;
+  PlyScalar type = PlyScalar::float32;  ///< of the value, or of each entry of a list
+  bool is_list = false;
+  PlyScalar count_type = PlyScalar::uint8;  ///< of a list's length
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+enum class PlyEncoding { ascii, little_endian, big_endian };
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::ascii;
+  std::vector<PlyElement> elements;
+  std::size_t size = 0;  ///< bytes, up to and with the newline after end_header
+  int lines = 0;
+};
+
+/// error Error{bad_input} with the line
+PlyHeader read_ply_header(const std::string& path, const std::string& bytes);
+
+/// The name OpenMesh knows a type by; a list's length must be of its int, uint8 or uint16.
+std::string ply_type_name(PlyScalar type);
+
+}  // namespace opaline

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "repair_mesh.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/border.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <algorithm>
+#include <exception>
+#include <map>
+
+namespace opaline {
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+using SurfaceMesh = CGAL::Surface_mesh<Point>;
+using Halfedge = SurfaceMesh::Halfedge_index;
+
+constexpr std::size_t largest_cubic_hole = 500;  // its search takes time cubic in the number of edges
+
+class HoleFiller {
+ public:
+  HoleFiller(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
+             const std::vector<Edge>& open_edges)
+      : positions_(positions), open_edges_(open_edges) {
+    build(triangles);
+  }
+
+  HoleFilling run() {
+    std::vector<Halfedge> borders;
+    pmp::extract_boundary_cycles(mesh_, std::back_inserter(borders));
+    for (const Halfedge border : borders) fill(border);
+    return std::move(result_);
+  }
+
+ private:
+  /// CGAL's half-edges take no edge of three triangles and no two fans at one vertex: orient_polygon_soup
+  /// doubles vertices there; original_ leads back.
+  void build(const std::vector<Triangle>& triangles) {
+    std::vector<std::uint32_t> compact(positions_.size(), 0xffffffff);
+    std::vector<Point> points;
+    std::vector<std::array<std::size_t, 3>> polygons;
+    polygons.reserve(triangles.size());
+    for (const Triangle& triangle : triangles) {
+      auto& polygon = polygons.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = triangle[k];
+        if (compact[v] == 0xffffffff) {
+          compact[v] = std::uint32_t(points.size());
+          points.emplace_back(positions_[v].x, positions_[v].y, positions_[v].z);
+          original_.push_back(v);
+        }
+        polygon[k] = compact[v];
+      }
+    }
+    if (!pmp::is_polygon_soup_a_polygon_mesh(polygons)) {
+      const std::size_t before = points.size();
+      pmp::orient_polygon_soup(points, polygons);
+      trace_back(points, before);
+    }
+    pmp::polygon_soup_to_polygon_mesh(points, polygons, mesh_);
+  }
+
+  void trace_back(const std::vector<Point>& points, std::size_t before) {
+    std::map<Point, std::uint32_t> by_position;  // positions are unique: the mesh is welded
+    if (points.size() == before) return;
+    for (std::size_t i = 0; i < before; ++i) by_position.emplace(points[i], original_[i]);
+    for (std::size_t i = before; i < points.size(); ++i) original_.push_back(by_position.at(points[i]));
+  }
+
+  std::uint32_t original(SurfaceMesh::Vertex_index v) const { return original_[std::size_t(v)]; }
+
+  /// Whether every edge of the border is open in the mesh as it was, not cut where three triangles meet.
+  bool is_hole(Halfedge border, std::size_t& edges) const {
+    bool open = true;
+    for (const Halfedge h : CGAL::halfedges_around_face(border, mesh_)) {
+      const auto [low, high] = std::minmax({original(mesh_.source(h)), original(mesh_.target(h))});
+      open &= std::binary_search(open_edges_.begin(), open_edges_.end(), Edge{low, high});
+      ++edges;
+    }
+    return open;
+  }
+
+  void fill(Halfedge border) {
+    std::size_t edges = 0;
+    if (!is_hole(border, edges)) {
+      result_.unfilled.push_back(edges);
+      return;
+    }
+    std::vector<SurfaceMesh::Face_index> patch;
+    try {
+      pmp::triangulate_hole(mesh_, border, std::back_inserter(patch),
+                            CGAL::parameters::do_not_use_cubic_algorithm(edges > largest_cubic_hole));
+    } catch (const std::exception&) {
+      patch.clear();  // CGAL's answer to degenerate holes: an assertion
+    }
+    if (patch.empty()) {
+      result_.unfilled.push_back(edges);
+      return;
+    }
+    ++result_.filled;
+    for (const auto face : patch) {
+      Triangle triangle{};
+      std::size_t k = 0;
+      for (const auto v : CGAL::vertices_around_face(mesh_.halfedge(face), mesh_))
+        triangle[k++] = original(v);
+      result_.triangles.push_back(triangle);
+    }
+  }
+
+  const std::vector<Vec3d>& positions_;
+  const std::vector<Edge>& open_edges_;
+  std::vector<std::uint32_t> original_;  // of each CGAL vertex
+  SurfaceMesh mesh_;
+  HoleFilling result_;
+};
+
+}  // namespace
+
+HoleFilling fill_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
+                       const std::vector<Edge>& open_edges) {
+  return HoleFiller(positions, triangles, open_edges).run();
+}
+
+}  // namespace opaline

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles as they come from a file or a built-in shape, before they are placed, checked and mended.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "opaline/core/vec3.h"
+
+namespace opaline {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+struct SourceMesh {
+  std::vector<Vec3d> positions;
+  std::vector<Vec3f> normals;  ///< empty, or one a vertex, of any length; zero where there is none
+  std::vector<Triangle> triangles;
+  std::size_t collapsed = 0;  ///< triangles left out already for want of three different corners
+  std::vector<std::string> warnings;
+};
+
+}  // namespace opaline

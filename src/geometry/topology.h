@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which vertices, edges and triangles of a soup are the same.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "source_mesh.h"
+
+namespace opaline {
+
+/// For each vertex the first one at exactly the same position (0 and -0 are the same); with normals given, of
+/// exactly the same normal as well.
+std::vector<std::uint32_t> weld(const std::vector<Vec3d>& positions, const std::vector<Vec3f>& normals = {});
+
+/// For each triangle whether an earlier one has the same three vertices, in whatever order.
+std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles);
+
+/// The edges of a soup of triangles: each with the corners it starts from. Corner 3 t + k is the edge of
+/// triangle t from its vertex k to the next. Edges are in the order of (lower vertex, higher vertex), corners
+/// ascend.
+class EdgeTable {
+ public:
+  EdgeTable(const std::vector<Triangle>& triangles, std::size_t vertices);
+
+  /// visit(lower vertex, higher vertex, corners)
+  template <class Visitor>
+  void for_each(Visitor visit) const {
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t lower = 0; lower + 1 < start_.size(); ++lower) {
+      for (std::size_t at = start_[lower]; at < start_[lower + 1];) {
+        const std::uint32_t higher = entries_[at].higher;
+        corners.clear();
+        for (; at < start_[lower + 1] && entries_[at].higher == higher; ++at)
+          corners.push_back(entries_[at].corner);
+        visit(lower, higher, std::span<const std::uint32_t>(corners));
+      }
+    }
+  }
+
+ private:
+  struct Entry {
+    std::uint32_t higher, corner;
+  };
+  std::vector<std::uint32_t> start_;  // by lower vertex, into entries_
+  std::vector<Entry> entries_;
+};
+
+}  // namespace opaline

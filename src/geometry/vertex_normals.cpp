@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "vertex_normals.h"
+
+#include <cmath>
+
+#include "topology.h"
+
+namespace opaline {
+namespace {
+
+Vec3d unit_normal(const Mesh& mesh, const Triangle& t) {
+  const Vec3d& a = mesh.positions[t[0]];
+  return normalized(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a));
+}
+
+/// One average for all vertices at the same position.
+std::vector<Vec3d> averages(const Mesh& mesh, const std::vector<std::uint32_t>& site) {
+  std::vector<Vec3d> sum(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d normal = unit_normal(mesh, t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3d& corner = mesh.positions[t[k]];
+      const Vec3d u = mesh.positions[t[(k + 1) % 3]] - corner, v = mesh.positions[t[(k + 2) % 3]] - corner;
+      sum[site[t[k]]] += normal * std::atan2(length(cross(u, v)), dot(u, v));
+    }
+  }
+  return sum;
+}
+
+/// Vertices whose triangles cancel out get the normal of one of them.
+void average_missing(Mesh& mesh, const std::vector<bool>& missing) {
+  const std::vector<std::uint32_t> site = weld(mesh.positions);
+  const std::vector<Vec3d> sum = averages(mesh, site);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) {
+      if (!missing[v]) continue;
+      const Vec3d& average = sum[site[v]];
+      mesh.normals[v] = Vec3f(length(average) > 1e-6 ? normalized(average) : unit_normal(mesh, t));
+    }
+  }
+}
+
+/// Normals are often left behind when a mesh is turned inside out.
+std::size_t turn_outward(Mesh& mesh) {
+  std::vector<double> agreement(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d normal = unit_normal(mesh, t);
+    for (const std::uint32_t v : t) agreement[v] += dot(normal, Vec3d(mesh.normals[v]));
+  }
+  std::size_t turned = 0;
+  for (std::size_t v = 0; v < agreement.size(); ++v) {
+    if (agreement[v] >= 0) continue;
+    mesh.normals[v] = -mesh.normals[v];
+    ++turned;
+  }
+  return turned;
+}
+
+}  // namespace
+
+void complete_normals(Mesh& mesh, const std::string& name, std::vector<std::string>& warnings) {
+  const bool own = !mesh.normals.empty();
+  mesh.normals.resize(mesh.positions.size());
+  std::vector<bool> missing(mesh.positions.size());
+  std::size_t count = 0;
+  for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
+    const Vec3d unit = normalized(Vec3d(mesh.normals[v]));  // in double: the square of a small float is zero
+    mesh.normals[v] = Vec3f(unit);
+    missing[v] = unit == Vec3d();
+    count += missing[v];
+  }
+  if (count > 0) average_missing(mesh, missing);
+  if (!own) return;
+  if (count > 0)
+    warnings.push_back(name + ": " + std::to_string(count) + " vertices without a usable normal; computed");
+  const std::size_t turned = turn_outward(mesh);
+  if (turned > 0)
+    warnings.push_back(name + ": " + std::to_string(turned) +
+                       " normals pointed into the surface; turned round");
+}
+
+}  // namespace opaline

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "png_chunks.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::array<std::uint32_t, 256> make_crc_table() {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    table[byte] = byte;
+    for (int bit = 0; bit < 8; ++bit) table[byte] = (table[byte] & 1 ? 0xedb88320u : 0u) ^ (table[byte] >> 1);
+  }
+  return table;
+}
+
+std::uint32_t crc_of(std::string_view bytes) {
+  static constexpr std::array<std::uint32_t, 256> table = make_crc_table();
+  std::uint32_t crc = 0xffffffffu;
+  for (const char byte : bytes) crc = table[(crc ^ static_cast<unsigned char>(byte)) & 0xff] ^ (crc >> 8);
+  return ~crc;
+}
+
+std::uint32_t big_endian(std::string_view bytes) {
+  std::uint32_t value = 0;
+  for (const char byte : bytes.substr(0, 4)) value = value << 8 | static_cast<unsigned char>(byte);
+  return value;
+}
+
+}  // namespace
+
+void check_png_chunks(const std::string& path) {
+  const std::uintmax_t size = std::filesystem::file_size(path);
+  std::ifstream file(path, std::ios::binary);
+  std::uintmax_t at = 8;  // after the signature
+  std::string chunk;      // its type and data, then its CRC
+  while (!chunk.starts_with("IEND")) {
+    char length[4] = {};
+    file.seekg(static_cast<std::streamoff>(at));
+    file.read(length, sizeof length);
+    const std::uintmax_t data = big_endian({length, sizeof length});
+    if (at + 12 + data > size) throw bad_file(path, "the picture is truncated");
+    chunk.resize(4 + data + 4);
+    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
+    if (!file) throw bad_file(path, "cannot read");
+    if (crc_of({chunk.data(), 4 + data}) != big_endian({chunk.data() + 4 + data, 4}))
+      throw bad_file(path, "the picture is damaged: wrong CRC of the chunk at byte " + std::to_string(at));
+    at += 12 + data;
+  }
+}
+
+}  // namespace opaline

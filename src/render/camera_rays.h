@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From pixels to rays.
+#pragma once
+
+#include <vector>
+
+#include "opaline/geometry/world.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// Rays through the film. Directions have length 1 along the view axis: a ray's time is the depth Z in mm. All
+/// pixels share one pattern of sub-pixel places, drawn from the filter's density; a single sample is the centre.
+class CameraRays {
+ public:
+  CameraRays(const Camera& camera, const Film& film, const Vec3d& world_origin);
+
+  /// x, y: pixel in the whole picture; sample in [0, samples_per_pixel).
+  Ray ray(int x, int y, int sample) const;
+
+ private:
+  Vec3d position_, forward_, right_, down_;  // right_ and down_: one pixel on the film plane at depth 1
+  double center_x_, center_y_;
+  struct Place {
+    double x, y;
+  };
+  std::vector<Place> places_;  // relative to the pixel's centre
+};
+
+}  // namespace opaline

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The layers of a picture and what one ray adds to them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "opaline/core/vec3.h"
+
+namespace opaline {
+
+/// What one camera ray saw; zero where it saw nothing.
+struct PixelSample {
+  RgbF diffuse{}, specular{};
+  RgbF emitted{};     ///< lights and surroundings seen directly
+  float coverage = 0; ///< 1 on a surface
+  RgbF albedo{}, irradiance{};
+  Vec3f normal{}, position{};
+  float depth = 0;
+
+  static constexpr int kChannels = 23;
+};
+
+inline const std::vector<std::string>& layer_names() {
+  static const std::vector<std::string> names{
+      "R",        "G",        "B",   "A",   "diffuse.R", "diffuse.G", "diffuse.B", "specular.R",
+      "specular.G", "specular.B", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z",
+      "P.X",      "P.Y",      "P.Z", "Z",   "irradiance.R", "irradiance.G", "irradiance.B"};
+  return names;
+}
+
+/// Writes the mean of `count` samples to one pixel: radiance and coverage over all of them; albedo, normal, position,
+/// depth and irradiance over those that met a surface. sum.coverage counts these.
+inline void store_pixel(const PixelSample& sum, int count, float* out) {
+  const float all = 1.0f / float(count), seen = sum.coverage > 0 ? 1.0f / sum.coverage : 0.0f;
+  const auto put = [&out](const Vec3f& value, float scale) {
+    for (std::size_t c = 0; c < 3; ++c) *out++ = value[c] * scale;
+  };
+  put(sum.diffuse + sum.specular + sum.emitted, all);
+  *out++ = sum.coverage * all;
+  put(sum.diffuse, all);
+  put(sum.specular, all);
+  put(sum.albedo, seen);
+  put(normalized(sum.normal), 1);
+  put(sum.position, seen);
+  *out++ = sum.depth * seen;
+  put(sum.irradiance, seen);
+}
+
+inline void add_sample(PixelSample& sum, const PixelSample& s) {
+  sum.diffuse += s.diffuse;
+  sum.specular += s.specular;
+  sum.emitted += s.emitted;
+  sum.coverage += s.coverage;
+  sum.albedo += s.albedo;
+  sum.irradiance += s.irradiance;
+  sum.normal += s.normal;
+  sum.position += s.position;
+  sum.depth += s.depth;
+}
+
+}  // namespace opaline

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/render/precompute.h"
+
+#include "opaline/core/random.h"
+#include "opaline/irradiance/light_sampling.h"
+
+namespace opaline {
+namespace {
+
+std::vector<FluxSample> flux_samples(const TranslucentGroup& group) {
+  std::vector<FluxSample> flux(group.surface.samples.size());
+  for (std::size_t i = 0; i < flux.size(); ++i) {
+    const SurfaceSample& s = group.surface.samples[i];
+    flux[i] = {s.position, s.area, group.irradiance.empty() ? RgbF{} : group.irradiance[i], s.normal};
+  }
+  return flux;
+}
+
+void add_cost(StageCost& total, const StageCost& part) {
+  total.wall_seconds += part.wall_seconds;
+  total.cpu_seconds += part.cpu_seconds;
+}
+
+}  // namespace
+
+Precompute precompute(const PrecomputeInput& input) {
+  const Settings& settings = input.scene.settings;
+  std::vector<Light> lights;
+  for (const Light& light : input.scene.lights) lights.push_back(recentred(light, input.world.origin));
+  Precompute result;
+  StageCost sampling{"sampling"}, irradiance{"irradiance"}, octree{"octree"};
+  for (std::size_t g = 0; g < input.plan.groups.size(); ++g) {
+    const GroupPlan& plan = input.plan.groups[g];
+    const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium]);
+    const Stopwatch sampling_watch;
+    SurfaceSamples surface = sample_surface(
+        {input.world, plan.meshes, plan.samples, hash_bits(settings.seed, g), 10, input.monitor});
+    add_cost(sampling, sampling_watch.cost({}));
+
+    const Stopwatch irradiance_watch;
+    std::vector<LightTransfer> transfers =
+        compute_irradiance({input.world, input.rays, surface.samples, lights, profile.eta, settings.light_samples,
+                            hash_bits(settings.seed, g + 1000), input.monitor});
+    std::vector<RgbF> entered = combine_lights(transfers, lights);
+    add_cost(irradiance, irradiance_watch.cost({}));
+
+    const Stopwatch octree_watch;
+    SplitKernel kernel = make_split_kernel(profile, surface.spacing(), input.world.diagonal, settings.near_field);
+    TranslucentGroup group{plan, profile, std::move(surface), std::move(transfers), std::move(entered), {},
+                           std::move(kernel)};
+    group.octree = build_octree(flux_samples(group));
+    add_cost(octree, octree_watch.cost({}));
+    result.groups.push_back(std::move(group));
+  }
+  result.costs = {sampling, irradiance, octree};
+  return result;
+}
+
+std::vector<RgbF> radiant_exitance(const TranslucentGroup& group, const World& world,
+                                   std::span<const Vec3d> points, std::span<const Vec3f> normals,
+                                   const Settings& settings) {
+  std::vector<Query> queries(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) queries[i] = {Vec3f(points[i] - world.origin), normals[i]};
+  const std::vector<Exitance> exitance =
+      evaluate({group.octree, group.kernel, queries, {}, settings.evaluator, settings.max_solid_angle});
+  std::vector<RgbF> result(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) result[i] = exitance[i].exitance;
+  return result;
+}
+
+}  // namespace opaline

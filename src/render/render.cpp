@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/render/render.h"
+
+#include <atomic>
+#include <cmath>
+
+#include "opaline/core/parallel.h"
+#include "render/camera_rays.h"
+#include "render/layers.h"
+#include "render/shade.h"
+
+namespace opaline {
+namespace {
+
+// Tiles lie on a fixed grid of the whole picture: a crop's pixels are those of the whole.
+constexpr int kTile = 16;
+
+struct Rectangle {
+  int x0, y0, x1, y1;
+};
+
+Rectangle rendered_part(const Film& film) {
+  if (film.crop) return {(*film.crop)[0], (*film.crop)[1], (*film.crop)[2], (*film.crop)[3]};
+  return {0, 0, film.resolution[0], film.resolution[1]};
+}
+
+class TileRenderer {
+ public:
+  TileRenderer(const RenderInput& input, const CameraRays& camera, const Shader& shader, Image& image)
+      : input_(input), camera_(camera), shader_(shader), image_(image) {}
+
+  // Renders one tile; returns its number of exitance queries.
+  std::size_t render(const Rectangle& tile) const {
+    const std::size_t pixels = std::size_t(tile.x1 - tile.x0) * std::size_t(tile.y1 - tile.y0);
+    const int count = input_.scene.film.samples_per_pixel;
+    std::vector<PixelSample> sums(pixels), samples(pixels);
+    std::vector<Ray> rays(pixels);
+    std::vector<Hit> hits(pixels);
+    std::vector<std::uint64_t> keys(pixels);
+    std::size_t queries = 0;
+    for (int s = 0; s < count; ++s) {
+      std::size_t i = 0;
+      for (int y = tile.y0; y < tile.y1; ++y)
+        for (int x = tile.x0; x < tile.x1; ++x, ++i) {
+          rays[i] = camera_.ray(x, y, s);
+          keys[i] = (std::uint64_t(y) * std::uint64_t(image_.full_width) + std::uint64_t(x)) * std::uint64_t(count) +
+                    std::uint64_t(s);
+        }
+      input_.rays.intersect(rays, hits);
+      std::fill(samples.begin(), samples.end(), PixelSample{});
+      queries += shader_.shade(rays, hits, keys, samples);
+      for (i = 0; i < pixels; ++i) add_sample(sums[i], samples[i]);
+    }
+    std::size_t i = 0;
+    for (int y = tile.y0; y < tile.y1; ++y)
+      for (int x = tile.x0; x < tile.x1; ++x) store_pixel(sums[i++], count, pixel(x, y));
+    return queries;
+  }
+
+ private:
+  float* pixel(int x, int y) const {
+    const std::size_t row = std::size_t(y - image_.crop_y), column = std::size_t(x - image_.crop_x);
+    return image_.pixels.data() + (row * std::size_t(image_.width) + column) * PixelSample::kChannels;
+  }
+
+  const RenderInput& input_;
+  const CameraRays& camera_;
+  const Shader& shader_;
+  Image& image_;
+};
+
+std::vector<Rectangle> tiles_of(const Rectangle& part) {
+  std::vector<Rectangle> tiles;
+  for (int y = part.y0 / kTile * kTile; y < part.y1; y += kTile)
+    for (int x = part.x0 / kTile * kTile; x < part.x1; x += kTile)
+      tiles.push_back({std::max(x, part.x0), std::max(y, part.y0), std::min(x + kTile, part.x1),
+                       std::min(y + kTile, part.y1)});
+  return tiles;
+}
+
+}  // namespace
+
+RenderResult render(const RenderInput& input) {
+  const Film& film = input.scene.film;
+  const Rectangle part = rendered_part(film);
+  RenderResult result;
+  Image& image = result.image;
+  image.width = part.x1 - part.x0;
+  image.height = part.y1 - part.y0;
+  image.crop_x = part.x0;
+  image.crop_y = part.y0;
+  image.full_width = film.resolution[0];
+  image.full_height = film.resolution[1];
+  image.channels = layer_names();
+  image.pixels.resize(std::size_t(image.width) * std::size_t(image.height) * PixelSample::kChannels);
+
+  const CameraRays camera(input.scene.camera, film, input.world.origin);
+  const Shader shader(input);
+  const TileRenderer renderer(input, camera, shader, image);
+  const std::vector<Rectangle> tiles = tiles_of(part);
+  if (input.monitor != nullptr) input.monitor->begin(tiles.size());
+  std::atomic<std::size_t> queries{0};
+  parallel_chunks(tiles.size(), 1, [&](std::size_t begin, std::size_t, std::size_t) {
+    queries += renderer.render(tiles[begin]);
+    advance(input.monitor, 1);
+  });
+  result.queries = queries;
+  for (const float value : image.pixels) result.non_finite += std::isfinite(value) ? 0 : 1;
+  return result;
+}
+
+}  // namespace opaline

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The triangles of several meshes as one list with cumulative areas.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "opaline/geometry/world.h"
+
+namespace opaline {
+
+struct TriangleId {
+  std::uint32_t mesh, triangle;
+};
+
+class TriangleList {
+ public:
+  TriangleList(const World& world, std::span<const std::uint32_t> meshes) : world_(world) {
+    double sum = 0;
+    for (const std::uint32_t m : meshes) {
+      first_.push_back(cumulative_.size());
+      meshes_.push_back(m);
+      const Mesh& mesh = world.meshes[m];
+      for (const auto& corner : mesh.triangles) {
+        const Vec3d a = mesh.positions[corner[0]];
+        sum += 0.5 * length(cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a));
+        cumulative_.push_back(sum);
+      }
+    }
+  }
+
+  std::size_t size() const { return cumulative_.size(); }
+  double area() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
+  /// Area of the triangles up to and including this one.
+  double cumulative(std::size_t index) const { return cumulative_[index]; }
+  /// The triangle in which the cumulative area passes the given one.
+  std::size_t find(double area) const {
+    const auto it = std::upper_bound(cumulative_.begin(), cumulative_.end(), area);
+    return std::min<std::size_t>(std::size_t(it - cumulative_.begin()), size() - 1);
+  }
+
+  TriangleId id(std::size_t index) const {
+    const auto it = std::upper_bound(first_.begin(), first_.end(), index) - 1;
+    return {meshes_[std::size_t(it - first_.begin())], std::uint32_t(index - *it)};
+  }
+  const Mesh& mesh(TriangleId id) const { return world_.meshes[id.mesh]; }
+
+  struct Corners {
+    Vec3d a, b, c;
+    Vec3f geometric_normal() const { return Vec3f(normalized(cross(b - a, c - a))); }
+    Vec3f at(float u, float v) const { return Vec3f(a + (b - a) * double(u) + (c - a) * double(v)); }
+  };
+  Corners corners(TriangleId id) const {
+    const Mesh& m = mesh(id);
+    const auto& corner = m.triangles[id.triangle];
+    return {m.positions[corner[0]], m.positions[corner[1]], m.positions[corner[2]]};
+  }
+
+ private:
+  const World& world_;
+  std::vector<std::size_t> first_;
+  std::vector<std::uint32_t> meshes_;
+  std::vector<double> cumulative_;
+};
+
+}  // namespace opaline

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/scene/load_scene.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <vector>
+
+#include "overrides.h"
+#include "readers.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::size_t largest_file = std::size_t{64} << 20;  // bytes
+
+std::string read_text(const std::string& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (!std::filesystem::exists(status)) throw bad_file(path, "no such scene file");
+  if (std::filesystem::is_directory(status)) throw bad_file(path, "is a folder", "a scene file");
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw bad_file(path, std::string("cannot be read: ") + std::strerror(errno));
+  std::string text;
+  std::vector<char> chunk(1 << 16);
+  while (text.size() <= largest_file && (in.read(chunk.data(), std::ssize(chunk)) || in.gcount() > 0))
+    text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
+  if (in.bad()) throw bad_file(path, "cannot be read");
+  if (text.size() > largest_file) throw bad_file(path, "too large for a scene file", "at most 64 MiB");
+  return text;
+}
+
+/// Reads the elements of a list, and rejects a name used twice.
+template <class T, class Read>
+std::vector<T> read_named(const std::optional<Value>& list, const std::string& default_name, Read read) {
+  std::vector<T> records;
+  std::set<std::string> names;
+  if (!list) return records;
+  for (const Value& value : list->list()) {
+    records.push_back(read(value, default_name + std::to_string(records.size())));
+    const std::string& name = records.back().name;
+    if (names.insert(name).second) continue;
+    for (const Value& member : value.members())
+      if (member.node().key == "name") member.fail("is taken", "a name used once");
+    value.fail("gets a default name that is taken: '" + printable(name) + "'");
+  }
+  return records;
+}
+
+void read_surroundings(const Value& value, std::vector<Light>& lights) {
+  const Rgb radiance = value.color(non_negative);
+  if (radiance != Rgb{}) lights.push_back({"surroundings", Surroundings{radiance}});
+}
+
+Scene read_scene(const Document& document) {
+  const ObjectReader reader(Value(document, document.root, ""), "scene");
+  Scene scene;
+  scene.file = document.file;
+  const auto unit = reader.find("mm_per_unit");
+  const double mm_per_unit = unit ? unit->number({1e-12, 1e12}) : 1;
+  if (const auto media = reader.find("media"))
+    for (const Value& medium : media->members()) scene.media.push_back(read_medium(medium));
+  ShapeContext context{
+      std::filesystem::path(document.file).parent_path().string(), mm_per_unit, &scene.media, {}};
+  scene.shapes = read_named<Shape>(
+      reader.find("shapes"), "shape",
+      [&](const Value& value, const std::string& name) { return read_shape(value, name, context); });
+  scene.lights = read_named<Light>(
+      reader.find("lights"), "light",
+      [&](const Value& value, const std::string& name) { return read_light(value, name, mm_per_unit); });
+  if (const auto surroundings = reader.find("surroundings")) read_surroundings(*surroundings, scene.lights);
+  scene.camera = read_camera(reader.find("camera"), mm_per_unit);
+  if (const auto film = reader.find("film")) scene.film = read_film(*film);
+  if (const auto settings = reader.find("settings")) scene.settings = read_settings(*settings, mm_per_unit);
+  return scene;
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& path, std::span<const std::string> overrides) {
+  return parse_scene(read_text(path), path, overrides);
+}
+
+Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    throw bad_file(file, "the scene file is empty", "a JSON object {...}");
+  Document document{file, text, {overrides.begin(), overrides.end()}, {}};
+  document.root = parse_tree(document, text);
+  if (document.root.kind == Node::Kind::object) apply_overrides(document);
+  return read_scene(document);
+}
+
+}  // namespace opaline

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "overrides.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "schema.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::array<std::string_view, 2> synonyms{"specular_ior", "eta"};
+
+bool same_key(std::string_view a, std::string_view b) {
+  const auto is_synonym = [](std::string_view key) {
+    return std::find(synonyms.begin(), synonyms.end(), key) != synonyms.end();
+  };
+  return a == b || (is_synonym(a) && is_synonym(b));
+}
+
+/// What a list's element is called: its own name, or the default one ("shape0" in "shapes").
+std::string element_name(const Node& list, std::size_t i) {
+  const Node* name = find_member(list.children[i], "name");
+  if (name != nullptr && name->kind == Node::Kind::string) return name->text;
+  return list.key.substr(0, list.key.size() - list.key.ends_with('s')) + std::to_string(i);
+}
+
+class Override {
+ public:
+  Override(Document& document, int index)
+      : document_(document), index_(index), text_(document.overrides[static_cast<std::size_t>(index)]) {}
+
+  void apply() {
+    const std::size_t equals = text_.find('=');
+    if (equals == std::string_view::npos || equals == 0) fail("no value given", "path.to.key=value");
+    const std::string_view path = text_.substr(0, equals);
+    Node* node = &document_.root;
+    for (std::size_t begin = 0; begin <= path.size();) {
+      const std::size_t end = std::min(path.find('.', begin), path.size());
+      if (end == begin) fail("an empty name in the path", "path.to.key=value");
+      node = &step(*node, path.substr(begin, end - begin), path.substr(0, begin > 0 ? begin - 1 : 0));
+      begin = end + 1;
+    }
+    replace(*node, text_.substr(equals + 1));
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message, const std::string& expected = {}) const {
+    throw error_at(document_, 0, index_, message, expected);
+  }
+
+  /// The child of `parent` at this step of the path, created if it is a missing key.
+  Node& step(Node& parent, std::string_view name, std::string_view so_far) const {
+    if (parent.kind == Node::Kind::array) return element(parent, name, so_far);
+    if (parent.kind != Node::Kind::object)
+      fail("'" + printable(so_far) + "' is a single value, there is no '" + printable(name) + "' in it");
+    for (Node& child : parent.children) {
+      if (!same_key(child.key, name)) continue;
+      child.key = name;
+      return child;
+    }
+    Node& child = parent.children.emplace_back();
+    child.kind = Node::Kind::object;
+    child.key = name;
+    child.override_index = index_;
+    return child;
+  }
+
+  Node& element(Node& list, std::string_view name, std::string_view so_far) const {
+    std::size_t i = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), i);
+    if (error == std::errc{} && end == name.data() + name.size() && i < list.children.size())
+      return list.children[i];
+    std::vector<std::string> names;
+    for (i = 0; i < list.children.size(); ++i) {
+      names.push_back(element_name(list, i));
+      if (names.back() == name) return list.children[i];
+    }
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    fail("no element '" + printable(name) + "' in '" + printable(so_far) + "'" + did_you_mean(name, views),
+         "an index below " + std::to_string(list.children.size()) + " or a name");
+  }
+
+  void replace(Node& node, std::string_view value) const {
+    Node fresh;
+    if (nlohmann::json::accept(value.begin(), value.end(), /*ignore_comments=*/true)) {
+      fresh = parse_tree(document_, value, index_);
+    } else {
+      fresh.kind = Node::Kind::string;
+      fresh.text = value;
+      fresh.override_index = index_;
+    }
+    fresh.key = std::move(node.key);
+    node = std::move(fresh);
+  }
+
+  Document& document_;
+  int index_;
+  std::string_view text_;
+};
+
+}  // namespace
+
+void apply_overrides(Document& document) {
+  for (std::size_t i = 0; i < document.overrides.size(); ++i) Override(document, static_cast<int>(i)).apply();
+}
+
+}  // namespace opaline

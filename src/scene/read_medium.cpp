@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+
+#include "presets.h"
+#include "readers.h"
+
+namespace opaline {
+namespace {
+
+constexpr Range anisotropy_range{-1, 1, true, true};
+constexpr Range eta_range{0.1, 10};
+constexpr std::array<std::string_view, 2> profile_names{"dipole", "normalized_diffusion"};
+
+/// A way to say what the medium is: the key that decides for it, and those that go with it.
+struct Form {
+  std::string_view decisive;
+  std::vector<std::string_view> companions;
+};
+
+const std::vector<Form>& forms() {
+  static const std::vector<Form> table{
+      {"preset", {}},
+      {"sigma_s_prime", {"sigma_a"}},
+      {"sigma_s", {"sigma_a", "g"}},
+      {"subsurface_color", {"subsurface_radius", "subsurface_radius_scale", "subsurface_scatter_anisotropy"}},
+  };
+  return table;
+}
+
+/// The decisive key of the medium's form. error if there is none, several, or a key of another form beside it
+std::string_view form_of(const ObjectReader& medium) {
+  const std::string ways =
+      "preset, sigma_a + sigma_s_prime, sigma_a + sigma_s (+ g), or subsurface_color + subsurface_radius";
+  const Form* form = nullptr;
+  for (const Node& member : medium.node().children)
+    for (const Form& f : forms()) {
+      if (member.key != f.decisive) continue;
+      if (form != nullptr)
+        medium.need(member.key).fail_key("cannot stand beside '" + std::string(form->decisive) + "'", ways);
+      form = &f;
+    }
+  if (form == nullptr) medium.fail("does not say what the medium is", ways);
+  for (const Form& other : forms())
+    for (const std::string_view key : other.companions)
+      if (std::find(form->companions.begin(), form->companions.end(), key) == form->companions.end())
+        if (const std::optional<Value> value = medium.find(key))
+          value->fail_key("has no meaning beside '" + std::string(form->decisive) + "'", ways);
+  return form->decisive;
+}
+
+const Preset& preset_of(const Value& value) {
+  std::vector<std::string_view> names;
+  for (const Preset& preset : presets()) names.push_back(preset.name);
+  return presets()[value.choice(names)];
+}
+
+PhysicalMedium read_physical(const ObjectReader& medium) {
+  PhysicalMedium result;
+  result.sigma_a = medium.need("sigma_a").number_or_triple(non_negative);
+  if (const auto sigma_s_prime = medium.find("sigma_s_prime")) {
+    result.sigma_s_prime = sigma_s_prime->number_or_triple(non_negative);
+    return result;
+  }
+  const auto g = medium.find("g");
+  result.sigma_s_prime =
+      medium.need("sigma_s").number_or_triple(non_negative) * (1 - (g ? g->number(anisotropy_range) : 0));
+  return result;
+}
+
+ArtistMedium read_artist(const ObjectReader& medium) {
+  ArtistMedium result;
+  result.subsurface_color = medium.need("subsurface_color").color(unit_interval);
+  result.subsurface_radius = medium.need("subsurface_radius").number_or_triple(non_negative);
+  if (const auto scale = medium.find("subsurface_radius_scale"))
+    result.subsurface_radius = result.subsurface_radius * scale->number_or_triple(non_negative);
+  if (const auto g = medium.find("subsurface_scatter_anisotropy"))
+    result.anisotropy = g->number(anisotropy_range);
+  return result;
+}
+
+}  // namespace
+
+Medium read_medium(const Value& value) {
+  const ObjectReader reader(value, "medium");
+  Medium medium;
+  medium.name = value.node().key;
+  if (medium.name.empty()) value.fail_key("has no name", "a name that is not empty");
+  const std::string_view form = form_of(reader);
+  if (form == "preset") {
+    const Preset& preset = preset_of(reader.need("preset"));
+    medium.coefficients = preset.coefficients;
+    medium.eta = preset.eta;
+  } else if (form == "subsurface_color") {
+    medium.coefficients = read_artist(reader);
+  } else {
+    medium.coefficients = read_physical(reader);
+  }
+  const auto eta = reader.find("eta"), specular_ior = reader.find("specular_ior");
+  if (eta && specular_ior) eta->fail_key("and 'specular_ior' are the same", "one of the two");
+  if (eta || specular_ior) medium.eta = (eta ? eta : specular_ior)->number(eta_range);
+  if (const auto profile = reader.find("profile"))
+    medium.profile = static_cast<ProfileKind>(profile->choice(profile_names));
+  return medium;
+}
+
+}  // namespace opaline

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <filesystem>
+
+#include "presets.h"
+#include "readers.h"
+#include "schema.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::array<std::string_view, 6> source_names{"file", "sphere", "box", "quad", "slab", "torus"};
+constexpr std::array<std::string_view, 2> normal_names{"smooth", "faceted"};
+
+MeshFile read_mesh_file(const ObjectReader& shape, const ShapeContext& context) {
+  MeshFile mesh;
+  mesh.path = (std::filesystem::path(context.folder) / shape.need("file").string()).string();
+  if (const auto fill_holes = shape.find("fill_holes")) mesh.fill_holes = fill_holes->boolean();
+  if (const auto fit_size = shape.find("fit_size")) mesh.fit_size = fit_size->length(context.mm_per_unit);
+  return mesh;
+}
+
+Vec3d read_center(const ObjectReader& reader, double mm_per_unit) {
+  const auto center = reader.find("center");
+  return center ? center->point(mm_per_unit) : Vec3d{};
+}
+
+SphereShape read_sphere(const ObjectReader& reader, double mm_per_unit) {
+  return {read_center(reader, mm_per_unit), reader.need("radius").length(mm_per_unit)};
+}
+
+BoxShape read_box(const ObjectReader& reader, double mm_per_unit) {
+  const Value high_value = reader.need("high");
+  const Vec3d low = reader.need("low").point(mm_per_unit), high = high_value.point(mm_per_unit);
+  if (min_component(high - low) <= 0) high_value.fail("is not beyond 'low'", "more than 'low' in x, y and z");
+  return {low, high};
+}
+
+QuadShape read_quad(const ObjectReader& reader, double mm_per_unit) {
+  const Value v_value = reader.need("v");
+  const Vec3d u = reader.need("u").point(mm_per_unit), v = v_value.point(mm_per_unit);
+  check_parallelogram(u, v, v_value);
+  return {reader.need("corner").point(mm_per_unit), u, v};
+}
+
+SlabShape read_slab(const ObjectReader& reader, double mm_per_unit) {
+  return {read_center(reader, mm_per_unit), reader.need("width").length(mm_per_unit),
+          reader.need("depth").length(mm_per_unit), reader.need("thickness").length(mm_per_unit)};
+}
+
+TorusShape read_torus(const ObjectReader& reader, double mm_per_unit) {
+  const Value minor_value = reader.need("minor_radius");
+  const double major = reader.need("major_radius").length(mm_per_unit),
+               minor = minor_value.length(mm_per_unit);
+  if (minor >= major) minor_value.fail("closes the hole", "less than 'major_radius'");
+  return {read_center(reader, mm_per_unit), major, minor};
+}
+
+ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context) {
+  const std::string_view kind = shape.exactly_one_of(source_names);
+  if (kind == "file") return read_mesh_file(shape, context);
+  for (const std::string_view option : {"fill_holes", "fit_size"})
+    if (const auto value = shape.find(option)) value->fail_key("has no meaning without 'file'");
+  const ObjectReader source(shape.need(kind), "shape." + std::string(kind));
+  const double mm_per_unit = context.mm_per_unit;
+  if (kind == "sphere") return read_sphere(source, mm_per_unit);
+  if (kind == "box") return read_box(source, mm_per_unit);
+  if (kind == "quad") return read_quad(source, mm_per_unit);
+  if (kind == "slab") return read_slab(source, mm_per_unit);
+  return read_torus(source, mm_per_unit);
+}
+
+std::size_t find_medium(const Value& value, const std::vector<Medium>& media) {
+  const std::string name = value.string();
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < media.size(); ++i) {
+    if (media[i].name == name) return i;
+    names.push_back(media[i].name);
+  }
+  std::string hint = did_you_mean(name, names);
+  for (const Preset& preset : presets())
+    if (preset.name == name)
+      hint = " (a preset: say \"media\": {\"" + name + "\": {\"preset\": \"" + name + "\"}})";
+  value.fail("names no medium of this scene" + hint,
+             names.empty() ? "a name from 'media', which is empty" : "one of " + printable(join(names)));
+}
+
+void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shape) {
+  const auto medium = reader.find("medium"), reflectance = reader.find("reflectance");
+  const auto group = reader.find("group");
+  if (medium && reflectance)
+    reflectance->fail_key("cannot stand beside 'medium'", "one of the two: translucent or opaque");
+  if (medium) shape.medium = find_medium(*medium, *context.media);
+  if (reflectance) shape.reflectance = reflectance->color(unit_interval);
+  if (!group) return;
+  shape.group = group->string();
+  if (!medium) group->fail_key("has no meaning without 'medium'");
+  const auto [first, is_new] = context.group_media.try_emplace(shape.group, *shape.medium);
+  if (!is_new && first->second != *shape.medium)
+    group->fail("mixes two media", "the medium of the group's first shape, '" +
+                                       printable((*context.media)[first->second].name) + "'");
+}
+
+}  // namespace
+
+void check_parallelogram(const Vec3d& u, const Vec3d& v, const Value& v_value) {
+  // Unit vectors first: the product of very long or short ones would over- or underflow.
+  if (length(cross(normalized(u), normalized(v))) < 1e-9)
+    v_value.fail("spans no area", "not parallel to 'u'");
+}
+
+Shape read_shape(const Value& value, const std::string& name, ShapeContext& context) {
+  const ObjectReader reader(value, "shape");
+  Shape shape;
+  const auto own_name = reader.find("name"), transform = reader.find("transform"),
+             normals = reader.find("normals");
+  shape.name = own_name ? own_name->string() : name;
+  shape.source = read_source(reader, context);
+  if (transform) shape.to_world = read_transform(*transform, context.mm_per_unit);
+  // A mesh file that is not fitted to a size in mm is still in scene units.
+  const auto* mesh = std::get_if<MeshFile>(&shape.source);
+  if (mesh != nullptr && !mesh->fit_size)
+    for (Vec3d* axis : {&shape.to_world.x, &shape.to_world.y, &shape.to_world.z})
+      *axis *= context.mm_per_unit;
+  if (normals) shape.normals = static_cast<NormalMode>(normals->choice(normal_names));
+  read_surface(reader, context, shape);
+  return shape;
+}
+
+}  // namespace opaline

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From checked values to the records of a Scene, one reader a part of the file.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "opaline/scene/scene.h"
+#include "value.h"
+
+namespace opaline {
+
+/// What a shape needs to know about the scene around it.
+struct ShapeContext {
+  std::string folder;  ///< stands in front of relative mesh paths
+  double mm_per_unit = 1;
+  const std::vector<Medium>* media = nullptr;
+  std::map<std::string, std::size_t> group_media;  ///< filled while reading
+};
+
+Medium read_medium(const Value& value);
+/// `name` is what the shape is called without one of its own.
+Shape read_shape(const Value& value, const std::string& name, ShapeContext& context);
+Light read_light(const Value& value, const std::string& name, double mm_per_unit);
+/// Without a value: the defaults, whose lengths are in scene units.
+Camera read_camera(const std::optional<Value>& value, double mm_per_unit);
+Film read_film(const Value& value);
+Settings read_settings(const Value& value, double mm_per_unit);
+
+/// A list of steps, applied in order.
+Transform read_transform(const Value& value, double mm_per_unit);
+
+/// Throws at v if u and v span no area.
+void check_parallelogram(const Vec3d& u, const Vec3d& v, const Value& v_value);
+
+}  // namespace opaline

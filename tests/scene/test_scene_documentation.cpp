@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "scene/schema.h"
+#include "scene_test.h"
+
+namespace opaline {
+namespace {
+
+const std::string scenes = OPALINE_SCENES_DIR;
+
+/// The text between the first two backticks, or nothing.
+std::string between_backticks(const std::string& line) {
+  const std::size_t begin = line.find('`'), end = line.find('`', begin + 1);
+  return end == std::string::npos ? "" : line.substr(begin + 1, end - begin - 1);
+}
+
+// Claim: scenes/README.md documents exactly the keys that the parser knows, each in the table of its section.
+// Source: schema.cpp. Fails if a key is added to either side alone.
+TEST(SceneDocumentation, CoversEveryKey) {
+  std::ifstream in(scenes + "/README.md");
+  ASSERT_TRUE(in);
+  std::set<std::string> documented;
+  std::string line, section;
+  while (std::getline(in, line)) {
+    if (line.starts_with("##")) section = between_backticks(line);
+    if (!line.starts_with("| `")) continue;
+    EXPECT_TRUE(documented.insert(section + '.' + between_backticks(line)).second) << "twice: " << line;
+  }
+  const std::vector<std::string> keys = all_known_keys();
+  const std::set<std::string> known(keys.begin(), keys.end());
+  EXPECT_EQ(known.size(), keys.size());
+  EXPECT_GT(known.size(), 70u);
+  EXPECT_EQ(documented, known);
+}
+
+// Claim: the scenes that ship are valid. Fails if one of them has a mistake.
+TEST(SceneDocumentation, ShippedScenesLoad) {
+  for (const char* name : {"bunny-marble", "sphere", "backlit-slab"}) {
+    Scene scene;
+    ASSERT_NO_THROW(scene = load_scene(scenes + '/' + name + ".json")) << name;
+    EXPECT_TRUE(std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const Shape& s) {
+      return s.medium;
+    })) << name;
+  }
+}
+
+// Claim: bunny-marble is the scene that published timings of other renderers were taken on. Source: its
+// description there: 50 mm, marble, eta 1.5, this camera, these lights, 512 x 512, box filter, one sample,
+// black surroundings. Fails if the file drifts, and figures no longer compare.
+TEST(SceneDocumentation, BunnyMarbleIsTheComparisonScene) {
+  const Scene scene = load_scene(scenes + "/bunny-marble.json");
+  ASSERT_EQ(scene.shapes.size(), 1u);
+  const auto mesh = std::get<MeshFile>(scene.shapes[0].source);
+  EXPECT_EQ(mesh.path, scenes + "/assets/bunny.obj");
+  EXPECT_TRUE(mesh.fill_holes);
+  EXPECT_EQ(mesh.fit_size, 50);
+  EXPECT_EQ(scene.shapes[0].normals, NormalMode::smooth);
+  const Medium& medium = scene.media.at(scene.shapes[0].medium.value());
+  EXPECT_EQ(medium.eta, 1.5);
+  EXPECT_EQ(std::get<PhysicalMedium>(medium.coefficients).sigma_s_prime, Rgb(2.19, 2.62, 3.00));
+  ASSERT_EQ(scene.lights.size(), 2u);
+  const auto back = std::get<PointLight>(scene.lights[0].source),
+             front = std::get<PointLight>(scene.lights[1].source);
+  EXPECT_EQ(back.position, Vec3d(-60, 90, -60));
+  EXPECT_EQ(back.intensity, Rgb(60000, 60000, 60000));
+  EXPECT_EQ(front.position, Vec3d(70, 70, 110));
+  EXPECT_EQ(front.intensity, Rgb(30000, 30000, 30000));
+  EXPECT_EQ(scene.camera.position, Vec3d(0, 32, 140));
+  EXPECT_EQ(scene.camera.look_at, Vec3d(0, 24, 0));
+  EXPECT_EQ(scene.camera.field_of_view, 25);
+  EXPECT_EQ(scene.film.resolution, (std::array<int, 2>{512, 512}));
+  EXPECT_EQ(scene.film.samples_per_pixel, 1);
+  EXPECT_EQ(scene.film.filter, PixelFilter::box);
+}
+
+}  // namespace
+}  // namespace opaline
