@@ -190,14 +190,17 @@ class PlyScanner {
     const std::size_t first = offset() - word_size_;
     std::copy_n(bytes_.begin() + std::ptrdiff_t(first), word_size_, bytes_.begin() + std::ptrdiff_t(write_));
     write_ += word_size_;
-    if (ascii()) separate('\n');
+    if (ascii()) separate();
   }
 
-  void separate(char blank) {
-    if (write_ == bytes_.size())
-      bytes_ += blank, at_ = TextCursor(bytes_, write_ + 1, at_.line());
-    else
-      bytes_[write_] = blank;
+  /// Behind a word that is still in its place the blank is there already.
+  void separate() {
+    if (write_ == bytes_.size()) {
+      bytes_ += ' ';
+      at_ = TextCursor(bytes_, bytes_.size(), at_.line());
+    } else if (write_ < at_.offset()) {
+      bytes_[write_] = ' ';
+    }
     ++write_;
   }
 

@@ -36,11 +36,9 @@ const char* format_of(const std::string& path) {
   throw bad_file(path, "not a picture that can be read", "an EXR or PNG picture");
 }
 
-/// Fetches every pending message: one left behind would be printed at exit.
+/// The pending message; not fetched, it would be printed at exit.
 std::string complaint_of(const OIIO::ImageInput* input) {
-  std::string complaint = input ? input->geterror() : std::string();
-  const std::string general = OIIO::geterror();
-  if (complaint.empty()) complaint = general;
+  const std::string complaint = input ? input->geterror() : OIIO::geterror();
   return one_line(complaint.empty() ? "no reason given" : complaint);
 }
 

@@ -28,7 +28,7 @@ class TokenCursor {
     } else if (std::string_view("{}[]").find(text_[at_]) != std::string_view::npos) {
       ++at_;
     } else {
-      at_ = std::min(text_.find_first_of(" \t\r\n,:{}[]\"/", at_), text_.size());
+      at_ = std::min(text_.find_first_of(" \t\r\n,:{}[]\"/", at_ + 1), text_.size());
     }
     return start;
   }

@@ -118,6 +118,9 @@ TEST(BadPictures, HugeClaim) {
     }
     put_bytes(folder.file("huge.exr"), bytes);
     expect_bad_input(folder.file("huge.exr"), std::to_string(side));
+    const std::optional<Error> error = error_of([&] { read_image(folder.file("huge.exr")); });
+    EXPECT_TRUE(side > 30000 || error->message.find("the size it claims") != std::string::npos)
+        << error->what();
   }
 }
 
@@ -164,9 +167,9 @@ TEST(BadPictures, Unwritable) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-// Claim: a disk that is full at any byte, the last one too, raises run_failed with the system's reason; the old
-// file is intact and nothing lies beside it. Source: image.h. Fails if: OpenImageIO writes by itself (it then loses
-// a failure in the last kilobytes of an EXR and in all of a small PNG).
+// Claim: a disk that is full at any byte, the last one too, raises run_failed with the system's reason; the
+// old file is intact and nothing lies beside it. Source: image.h. Fails if: OpenImageIO writes by itself (it
+// then loses a failure in the last kilobytes of an EXR and in all of a small PNG).
 TEST(BadPictures, FullDisk) {
   const ScratchFolder folder;
   for (const char* extension : {"exr", "png"}) {

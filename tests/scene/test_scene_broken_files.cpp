@@ -118,8 +118,8 @@ void expect_load_error(const std::string& path, const std::string& fragment) {
   }
 }
 
-// Claim: a file that cannot be a scene is refused by name, before its bytes fill the memory. Source:
-// load_scene.h. Fails if read_text's loop has no limit, or if a folder is opened like a file.
+// Claim: a file that cannot be a scene is refused by name. Source: load_scene.h.
+// Fails if read_text takes more than 64 MiB, or opens a folder like a file.
 TEST_F(SceneFiles, AreRefusedByName) {
   expect_load_error((folder_ / "missing.json").string(), "no such scene file");
   expect_load_error(folder_.string(), "is a folder");

@@ -106,8 +106,8 @@ TEST(SceneValues, Transforms) {
 }
 
 // Claim: every length is converted to mm once: a scene in units of k mm equals the scene in mm with its
-// lengths times k, bit for bit for a power of two; brightness is not converted. Source: PHYSICS "coordinates
-// x k" line. Fails if any length() or point() below loses its mm_per_unit.
+// lengths times k, bit for bit for a power of two; brightness is not converted. Source: scenes/README.md.
+// Fails if any length() or point() below loses its mm_per_unit.
 TEST(SceneValues, LengthsBecomeMillimetres) {
   const Scene scene = parse(R"({"mm_per_unit": 4, "shapes": [
       {"sphere": {"center": [1, 2, 3], "radius": 0.1}}, {"box": {"low": [1, 2, 3], "high": [2, 3, 4]}},

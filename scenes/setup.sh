@@ -1,0 +1,109 @@
+# shellcheck shell=bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Sourced by scenes/demo and tests/run: functions that take a Debian 12 from nothing to a built program and the
+# demo's mesh. What is already there costs no time. Exit codes are the program's: 2 when the user has something
+# to do first, 3 when a step failed.
+set -euo pipefail
+
+root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
+
+# Only what no other package of the list brings along; OpenImageIO's CMake targets do not load without its tools.
+# Both lists are for the scripts that source this file.
+# shellcheck disable=SC2034
+build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev libopenimageio-dev
+  openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev)
+# shellcheck disable=SC2034
+test_packages=(libgtest-dev)
+
+bunny_package=glmark2-data
+bunny_path=./usr/share/glmark2/models/bunny.obj
+bunny_sha256=bff773d28c62e80187b2dfa8c6c8cc771a4c7707ddcdcf2e515913d322d1f548
+
+say() { printf 'opaline: %s\n' "$*"; }
+
+fail() {
+  local code=$1
+  shift
+  say "$*" >&2
+  exit "$code"
+}
+
+# Never asks: not by debconf, not about configuration files, not on standard input. Waits for another apt to end.
+# Downloads as root when root: apt's own user may not write where the mesh goes.
+apt_get() {
+  DEBIAN_FRONTEND=noninteractive apt-get -y -o APT::Sandbox::User=root -o Acquire::Retries=3 \
+    -o DPkg::Lock::Timeout=300 -o Dpkg::Options::=--force-confdef -o Dpkg::Options::=--force-confold "$@" </dev/null
+}
+
+is_installed() {
+  dpkg-query --show --showformat='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed
+}
+
+install_packages() {
+  local package missing=()
+  [[ -n $(type -P apt-get) ]] || fail 2 "this script sets up Debian 12; elsewhere install what $* bring, then use cmake"
+  for package in "$@"; do
+    is_installed "$package" || missing+=("$package")
+  done
+  ((${#missing[@]} > 0)) || return 0
+
+  local install=(install --no-install-recommends "${missing[@]}")
+  ((EUID == 0)) ||
+    fail 2 "packages are missing, run: sudo apt-get update && sudo apt-get -y ${install[*]}"
+  say "installing from Debian: ${missing[*]}"
+  apt_get update || say "apt-get update failed for some sources (above), going on with what is known" >&2
+  apt_get "${install[@]}" || fail 3 "could not install ${missing[*]}: apt's reason is above; is the network there?"
+}
+
+is_the_bunny() { [[ -f $1 ]] && sha256sum --status --check <<<"$bunny_sha256  $1"; }
+
+# In a subshell, so that the trap and the folder are its own.
+fetch_bunny() (
+  mesh=$root/scenes/assets/bunny.obj
+  if is_the_bunny "$mesh"; then exit 0; fi
+  say "fetching scenes/assets/bunny.obj from Debian's package $bunny_package (6.6 MB, not installed)"
+  mkdir -p "${mesh%/*}"
+  scratch=$(mktemp -d "${mesh%/*}/fetch.XXXXXX") # beside the mesh, so that mv is atomic
+  trap 'rm -rf "$scratch"' EXIT
+  cd "$scratch"
+  if ! apt_get -q download "$bunny_package"; then
+    ((EUID == 0)) || fail 2 "$bunny_package could not be fetched; with the network there, run: sudo apt-get update"
+    apt_get update || true
+    apt_get -q download "$bunny_package" || fail 3 "$bunny_package could not be fetched; is the network there?"
+  fi
+  dpkg-deb --fsys-tarfile "$bunny_package"_*.deb | tar -xO "$bunny_path" >bunny.obj
+  is_the_bunny bunny.obj || fail 3 "the bunny.obj of $bunny_package is not the one the scene was made for (sha256)"
+  mv -f bunny.obj "$mesh"
+)
+
+# All cores, but at least 1 GB each: the CGAL sources take up to 1.7 GB to compile.
+job_count() {
+  local cores gigabytes
+  cores=$(nproc)
+  gigabytes=$(awk '$1 == "MemAvailable:" {print int($2 / 1e6)}' /proc/meminfo 2>/dev/null || true)
+  ((${gigabytes:=$cores} > 0)) || gigabytes=1
+  echo $((cores < gigabytes ? cores : gigabytes))
+}
+
+cache_value() { sed -n "s/^$2:INTERNAL=//p" "$1"; }
+
+# in    a build folder, then options for cmake
+configure() {
+  local folder=$1 generator=()
+  local cache=$folder/CMakeCache.txt
+  shift
+  if [[ -f $cache && ! ($(cache_value "$cache" CMAKE_HOME_DIRECTORY) -ef $root &&
+    $(cache_value "$cache" CMAKE_CACHEFILE_DIR) -ef $folder) ]]; then
+    say "$folder was configured for another folder: configuring again"
+    rm -rf "$cache" "$folder/CMakeFiles"
+  fi
+  [[ -f $cache ]] || generator=(-G Ninja)
+  cmake -S "$root" -B "$folder" "${generator[@]}" --log-level=NOTICE "$@" || fail 3 "cmake could not configure $folder"
+}
+
+# in    a build folder, then options for cmake --build
+build() {
+  local folder=$1
+  shift
+  cmake --build "$folder" --parallel "$(job_count)" "$@" || fail 3 "the build in $folder failed"
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line as data.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "cli/log.h"
+
+namespace opaline {
+
+struct RenderArguments {
+  std::string scene;
+  /// For load_scene: what the short options mean, in a fixed order, then every --set in the order given.
+  std::vector<std::string> overrides;
+  std::vector<std::string> outputs;  ///< at least one; .exr or .png, no two alike
+  std::string samples_ply;           ///< empty: none
+  int threads = 0;                   ///< 0: one for each core
+  bool timings_in_metadata = false;
+  Log log;
+};
+
+struct InfoArguments {
+  std::string scene;
+  std::vector<std::string> overrides;
+  Log log;
+};
+
+/// --help or --version: text to print, and done.
+struct ShowText {
+  std::string text;
+};
+
+using Command = std::variant<ShowText, RenderArguments, InfoArguments>;
+
+enum class OutputFormat { exr, png, unknown };
+OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case
+
+/// error Error{bad_input}: an unknown option, a value that is not one, an output that is neither EXR nor PNG
+Command parse_arguments(int argc, const char* const* argv);
+
+}  // namespace opaline

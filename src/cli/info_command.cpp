@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "opaline/core/error.h"
+#include "opaline/scene/load_scene.h"
+
+namespace opaline {
+
+void info_command(const InfoArguments& arguments) {
+  const Scene scene = load_scene(arguments.scene, arguments.overrides);
+  const World world = make_world(scene);
+  print_plan(arguments.log, scene, make_plan(scene, world));
+  if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
+}
+
+}  // namespace opaline

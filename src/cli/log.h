@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program's voice. Text: results on stdout, warnings and errors on stderr. JSON: one object a line on
+// stdout,
+// {"event": "plan" | "warning" | "progress" | "stage" | "done" | "error", ...}.
+#pragma once
+
+#include <cstdio>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace opaline {
+
+enum class LogFormat { text, json };
+
+struct Log {
+  LogFormat format = LogFormat::text;
+  bool quiet = false;  ///< warnings and errors only
+};
+
+using Json = nlohmann::ordered_json;
+
+/// One line without spaces; bytes that are not UTF-8 (a path may hold any) become U+FFFD.
+std::string compact(const Json& value);
+
+/// One line, flushed. Failures are left in ferror(stream): a closed log must not cost a picture.
+void write_line(std::FILE* stream, std::string_view line);
+
+/// A JSON event; only where the log is JSON.
+void print_event(const Log& log, const char* event, const Json& members);
+
+void print_warning(const Log& log, const std::string& text);
+
+/// Prints what ended the run and returns its exit code: Error by its kind, anything else 3.
+int print_failure(const Log& log, const std::exception& failure);
+
+}  // namespace opaline

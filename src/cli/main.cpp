@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The only place where exceptions are caught and become exit codes.
+#include <exception>
+
+#include "cli/commands.h"
+
+namespace {
+
+void run(const opaline::Command& command) {
+  if (const auto* show = std::get_if<opaline::ShowText>(&command)) opaline::write_line(stdout, show->text);
+  if (const auto* render = std::get_if<opaline::RenderArguments>(&command)) opaline::render_command(*render);
+  if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) opaline::info_command(*info);
+}
+
+opaline::Log log_of(const opaline::Command& command) {
+  if (const auto* render = std::get_if<opaline::RenderArguments>(&command)) return render->log;
+  if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) return info->log;
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  opaline::Log log;
+  try {
+    const opaline::Command command = opaline::parse_arguments(argc, argv);
+    log = log_of(command);
+    run(command);
+    return 0;
+  } catch (const std::exception& failure) {
+    return opaline::print_failure(log, failure);
+  }
+}

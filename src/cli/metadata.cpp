@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/metadata.h"
+
+#include <OpenImageIO/hash.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "cli/names.h"
+#include "cli/report.h"
+#include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lengths go in front: what is hashed can be cut in one way only.
+std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file) throw bad_file(path, "cannot be read again");
+  OIIO::SHA1 hash;
+  const auto add = [&](const std::string& part) {
+    const std::string length = std::to_string(part.size()) + ':';
+    hash.append(length.data(), length.size());
+    hash.append(part.data(), part.size());
+  };
+  add(bytes);
+  for (const std::string& text : overrides) add(text);
+  return hash.digest();
+}
+
+Json settings_json(const Scene& scene, const Precompute& precompute) {
+  const Settings& settings = scene.settings;
+  const Film& film = scene.film;
+  Json groups = Json::array();
+  for (const TranslucentGroup& group : precompute.groups)
+    groups.push_back({{"name", group.plan.name},
+                      {"samples", group.surface.samples.size()},
+                      {"spacing_mm", group.surface.spacing()}});
+  Json json{{"method", name_of(settings.method)},
+            {"evaluator", name_of(settings.evaluator)},
+            {"max_solid_angle", settings.max_solid_angle},
+            {"near_field", settings.near_field},
+            {"light_samples", settings.light_samples},
+            {"max_samples", settings.max_samples},
+            {"seed", settings.seed},
+            {"resolution", film.resolution},
+            {"samples_per_pixel", film.samples_per_pixel},
+            {"filter", name_of(film.filter)},
+            {"pixel_type", film.half ? "half" : "float"},
+            {"groups", groups}};
+  if (film.crop) json["crop"] = *film.crop;
+  return json;
+}
+
+std::string shell_quoted(const std::string& argument) {
+  const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=,:+-%@";
+  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) return argument;
+  std::string quoted = "'";
+  for (const char c : argument) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string command_line(const std::string& scene, const std::vector<std::string>& overrides) {
+  std::string line = "opaline render " + shell_quoted(scene);
+  for (const std::string& text : overrides) line += " --set " + shell_quoted(text);
+  return line;
+}
+
+}  // namespace
+
+Metadata make_metadata(const RenderArguments& arguments, const Scene& scene, const Precompute& precompute) {
+  const std::string name = fs::path(arguments.scene).filename().string();
+  Metadata metadata{{"opaline:version", OPALINE_VERSION}, {"opaline:scene", name}};
+  std::error_code ignored;
+  if (fs::is_regular_file(arguments.scene, ignored))
+    metadata.emplace_back("opaline:scene_hash", scene_hash(arguments.scene, arguments.overrides));
+  metadata.emplace_back("opaline:seed", std::to_string(scene.settings.seed));
+  metadata.emplace_back("opaline:settings", compact(settings_json(scene, precompute)));
+  metadata.emplace_back("opaline:command", command_line(name, arguments.overrides));
+  return metadata;
+}
+
+std::pair<std::string, std::string> timings_metadata(const std::vector<StageCost>& costs) {
+  Json stages = Json::array();
+  for (const StageCost& cost : costs) stages.push_back(stage_json(cost));
+  return {"opaline:timings", compact(stages)};
+}
+
+}  // namespace opaline

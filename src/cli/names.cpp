@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/names.h"
+
+namespace opaline {
+
+const char* name_of(Method method) {
+  return method == Method::lambert ? "lambert" : "hierarchical";
+}
+
+const char* name_of(EvaluatorKind evaluator) {
+  return evaluator == EvaluatorKind::brute_force ? "brute_force" : "classic";
+}
+
+const char* name_of(PixelFilter filter) {
+  return filter == PixelFilter::gaussian ? "gaussian" : "box";
+}
+
+const char* name_of(const LightSource& source) {
+  struct Names {
+    const char* operator()(const PointLight&) const { return "point"; }
+    const char* operator()(const DirectionalLight&) const { return "directional"; }
+    const char* operator()(const SphereLight&) const { return "sphere"; }
+    const char* operator()(const QuadLight&) const { return "quad"; }
+    const char* operator()(const Surroundings&) const { return "surroundings"; }
+  };
+  return std::visit(Names{}, source);
+}
+
+}  // namespace opaline

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/names.h"
+#include "cli/report.h"
+#include "cli/units.h"
+
+namespace opaline {
+namespace {
+
+/// The labels make a column.
+void print_row(const std::string& label, const std::string& text) {
+  write_line(stdout, fmt::format("{:<12}{}", label, text));
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return fmt::format("{} {}{}", grouped(count), noun, count == 1 ? "" : "s");
+}
+
+std::string picture_text(const Film& film) {
+  std::string text = fmt::format("{} x {} pixels, ", film.resolution[0], film.resolution[1]);
+  if (film.crop) {
+    const auto& [x0, y0, x1, y1] = *film.crop;
+    text += fmt::format("of them x {} to {}, y {} to {}, ", x0, x1 - 1, y0, y1 - 1);
+  }
+  text += counted(std::size_t(film.samples_per_pixel), "sample") + " each";
+  return text + fmt::format(", {} filter", name_of(film.filter));
+}
+
+std::string lights_text(const std::vector<Light>& lights) {
+  std::string text;
+  for (const Light& light : lights) {
+    const std::string kind = name_of(light.source);
+    text += (text.empty() ? "" : ", ") + light.name + (light.name == kind ? "" : " (" + kind + ")");
+  }
+  return text.empty() ? "none" : text;
+}
+
+void print_group(const Scene& scene, const GroupPlan& group) {
+  print_row("translucent",
+            fmt::format("{} in {}: {:.4g} mm^2, mean free path {:.4g} mm (its smallest channel)", group.name,
+                        scene.media[group.medium].name, group.area, group.smallest_mean_free_path));
+  if (scene.settings.method == Method::lambert) return;
+  print_row("", fmt::format("{}, {:.4g} mm apart: {}", counted(group.samples, "sample"), group.spacing,
+                            group.reason));
+}
+
+void print_text(const Scene& scene, const Plan& plan) {
+  print_row("scene", fmt::format("{}: {}, {}", scene.file, counted(scene.shapes.size(), "shape"),
+                                 counted(plan.triangles, "triangle")));
+  print_row("picture", picture_text(scene.film));
+  print_row("lights", lights_text(scene.lights));
+  for (const GroupPlan& group : plan.groups) print_group(scene, group);
+  if (plan.groups.empty()) print_row("translucent", "nothing: no samples are needed");
+  for (std::size_t i = 0; i < plan.stages.size(); ++i) print_row(i == 0 ? "stages" : "", plan.stages[i]);
+  print_row("memory", "about " + short_bytes(plan.bytes) + " at the peak");
+}
+
+Json group_json(const Scene& scene, const GroupPlan& group) {
+  Json shapes = Json::array();
+  for (const std::uint32_t mesh : group.meshes) shapes.push_back(scene.shapes[mesh].name);
+  return {{"name", group.name},
+          {"shapes", shapes},
+          {"medium", scene.media[group.medium].name},
+          {"area_mm2", group.area},
+          {"smallest_mean_free_path_mm", group.smallest_mean_free_path},
+          {"spacing_mm", group.spacing},
+          {"samples", group.samples},
+          {"reason", group.reason}};
+}
+
+Json plan_json(const Scene& scene, const Plan& plan) {
+  Json lights = Json::array(), groups = Json::array();
+  for (const Light& light : scene.lights)
+    lights.push_back({{"name", light.name}, {"type", name_of(light.source)}});
+  for (const GroupPlan& group : plan.groups) groups.push_back(group_json(scene, group));
+  Json json{{"scene", scene.file},
+            {"method", name_of(scene.settings.method)},
+            {"evaluator", name_of(scene.settings.evaluator)},
+            {"resolution", scene.film.resolution},
+            {"samples_per_pixel", scene.film.samples_per_pixel},
+            {"filter", name_of(scene.film.filter)},
+            {"shapes", scene.shapes.size()},
+            {"triangles", plan.triangles},
+            {"lights", lights},
+            {"groups", groups},
+            {"stages", plan.stages},
+            {"memory_bytes", plan.bytes}};
+  if (scene.film.crop) json["crop"] = *scene.film.crop;
+  return json;
+}
+
+}  // namespace
+
+void print_plan(const Log& log, const Scene& scene, const Plan& plan) {
+  if (!log.quiet && log.format == LogFormat::json) print_event(log, "plan", plan_json(scene, plan));
+  if (!log.quiet && log.format == LogFormat::text) print_text(scene, plan);
+  for (const std::string& warning : plan.warnings) print_warning(log, warning);
+}
+
+}  // namespace opaline

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <tbb/global_control.h>
+
+#include <csignal>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/metadata.h"
+#include "cli/report.h"
+#include "cli/stages.h"
+#include "opaline/core/atomic_file.h"
+#include "opaline/core/error.h"
+#include "opaline/render/render.h"
+#include "opaline/scene/load_scene.h"
+
+namespace opaline {
+namespace {
+
+struct LoadedScene {
+  Scene scene;
+  World world;
+};
+
+/// What cannot be written at the end is said before the work.
+void check_writable(const RenderArguments& arguments) {
+  for (const std::string& path : arguments.outputs) const AtomicFile probe(path);
+  if (!arguments.samples_ply.empty()) const AtomicFile probe(arguments.samples_ply);
+}
+
+bool needs_precompute(const RenderArguments& arguments, const Scene& scene, const Plan& plan) {
+  const bool needed = scene.settings.method == Method::hierarchical && !plan.groups.empty();
+  if (!needed && !arguments.samples_ply.empty())
+    throw bad_file(arguments.samples_ply, "there are no samples to write",
+                   "settings.method \"hierarchical\" and a translucent shape");
+  return needed;
+}
+
+/// Writes everything that was asked for; returns the names.
+std::vector<std::string> write_outputs(const RenderArguments& arguments, const LoadedScene& loaded,
+                                       const Precompute& samples, const Image& image) {
+  std::size_t cut = 0;
+  std::vector<std::string> written;
+  for (const std::string& path : arguments.outputs) {
+    if (output_format(path) == OutputFormat::exr)
+      cut = write_exr(path, image, loaded.scene.film.half).half_overflow;
+    else
+      write_png(path, image, loaded.scene.film.exposure);
+    written.push_back(path);
+  }
+  if (!arguments.samples_ply.empty()) {
+    write_samples_ply(arguments.samples_ply, samples, loaded.world);
+    written.push_back(arguments.samples_ply);
+  }
+  if (cut > 0)
+    print_warning(arguments.log, std::to_string(cut) +
+                                     " values above 65504 do not fit 16 bits and were cut; "
+                                     "--set film.pixel_type=float keeps them");
+  return written;
+}
+
+struct Shading {
+  RenderResult picture;
+  std::uint64_t rays = 0;
+  double cpu_seconds = 0, embree_seconds = 0;
+};
+
+Shading shade(StageRunner& stages, const LoadedScene& loaded, const RayScene& rays,
+              const Precompute& samples) {
+  Shading shading;
+  const RayScene::Statistics before = rays.statistics();
+  shading.picture = stages.run("shading", [&] {
+    return render({loaded.scene, loaded.world, rays, samples.groups, &stages.monitor()});
+  });
+  const RayScene::Statistics after = rays.statistics();
+  shading.rays = after.rays - before.rays;
+  shading.embree_seconds = after.seconds - before.seconds;
+  shading.cpu_seconds = stages.costs().back().cpu_seconds;
+  return shading;
+}
+
+Summary summarize(const Scene& scene, const Precompute& samples, const Shading& shading) {
+  Summary summary;
+  summary.peak_memory = peak_memory();
+  summary.queries = shading.picture.queries;
+  summary.rays = shading.rays;
+  summary.shading_seconds = shading.cpu_seconds;
+  summary.embree_seconds = shading.embree_seconds;
+  for (const TranslucentGroup& group : samples.groups) {
+    summary.samples += group.surface.samples.size();
+    for (std::size_t l = 0; l < group.transfers.size(); ++l)
+      if (group.transfers[l].relative_error > 0)
+        summary.noise.push_back({group.plan.name, scene.lights[l].name, group.transfers[l].relative_error});
+  }
+  return summary;
+}
+
+void run_render(const RenderArguments& arguments) {
+  StageRunner stages(arguments.log);
+  const LoadedScene loaded = stages.run("loading", [&] {
+    Scene scene = load_scene(arguments.scene, arguments.overrides);
+    World world = make_world(scene);
+    return LoadedScene{std::move(scene), std::move(world)};
+  });
+  const Plan plan = make_plan(loaded.scene, loaded.world);
+  const bool translucent = needs_precompute(arguments, loaded.scene, plan);
+  print_plan(arguments.log, loaded.scene, plan);
+
+  const RayScene rays = stages.run("rays", [&] { return RayScene(loaded.world); });
+  Precompute samples;
+  if (translucent) {
+    samples = stages.run_unmeasured("samples", [&] {
+      return precompute({loaded.scene, loaded.world, rays, plan, &stages.monitor()});
+    });
+    for (const StageCost& cost : samples.costs) stages.note(cost);
+  }
+  Shading shading = shade(stages, loaded, rays, samples);
+  if (shading.picture.non_finite > 0)
+    print_warning(arguments.log,
+                  std::to_string(shading.picture.non_finite) +
+                      " values of the picture are not finite and were written as 0; this is a defect");
+  Image& image = shading.picture.image;
+  image.metadata = make_metadata(arguments, loaded.scene, samples);
+  if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
+
+  auto outputs = stages.run("writing", [&] { return write_outputs(arguments, loaded, samples, image); });
+  Summary summary = summarize(loaded.scene, samples, shading);
+  summary.costs = stages.costs();
+  summary.outputs = std::move(outputs);
+  print_summary(arguments.log, summary);
+}
+
+}  // namespace
+
+void render_command(const RenderArguments& arguments) {
+  std::signal(SIGPIPE, SIG_IGN);  // a reader of the log that leaves must not cost the picture
+  std::optional<tbb::global_control> threads;
+  if (arguments.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
+  check_writable(arguments);
+  run_render(arguments);
+}
+
+}  // namespace opaline

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plan before a run and the bill after it, as text or JSON.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/log.h"
+#include "opaline/core/stopwatch.h"
+#include "opaline/render/plan.h"
+
+namespace opaline {
+
+/// What the scene requires and why, then the plan's warnings; nothing but the warnings with --quiet.
+void print_plan(const Log& log, const Scene& scene, const Plan& plan);
+
+/// Standard error of the irradiance a light brings, over its mean (LightTransfer::relative_error).
+struct LightNoise {
+  std::string group, light;
+  double relative_error = 0;
+};
+
+struct Summary {
+  std::vector<StageCost> costs;
+  std::size_t peak_memory = 0;  ///< bytes
+  std::size_t samples = 0, queries = 0;
+  std::vector<LightNoise> noise;
+  /// Of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.
+  std::uint64_t rays = 0;
+  double shading_seconds = 0, embree_seconds = 0;
+  std::vector<std::string> outputs;
+};
+
+Json stage_json(const StageCost& cost);
+
+/// The event "stage" when one ends; as text the closing lines tell.
+void print_stage(const Log& log, const StageCost& cost);
+
+/// Closing lines, or the event "done"; nothing with --quiet.
+void print_summary(const Log& log, const Summary& summary);
+
+}  // namespace opaline

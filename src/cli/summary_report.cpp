@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include "cli/report.h"
+#include "cli/units.h"
+
+namespace opaline {
+namespace {
+
+StageCost total_of(const std::vector<StageCost>& costs) {
+  StageCost total{"total"};
+  for (const StageCost& cost : costs) {
+    total.wall_seconds += cost.wall_seconds;
+    total.cpu_seconds += cost.cpu_seconds;
+  }
+  return total;
+}
+
+/// Mega-rays a CPU second; 0 where there was no time to measure.
+double mega_rays(std::uint64_t rays, double seconds) {
+  return seconds > 0 ? 1e-6 * double(rays) / seconds : 0;
+}
+
+void print_costs(const Summary& summary) {
+  const auto row = [](const StageCost& cost) {
+    write_line(stdout, fmt::format("{:<12}{:>9.3f} s wall{:>9.3f} s CPU", cost.stage, cost.wall_seconds,
+                                   cost.cpu_seconds));
+  };
+  for (const StageCost& cost : summary.costs) row(cost);
+  row(total_of(summary.costs));
+}
+
+void print_text(const Summary& summary) {
+  write_line(stdout, "");
+  print_costs(summary);
+  const auto row = [](const char* label, const std::string& text) {
+    write_line(stdout, fmt::format("{:<12}{}", label, text));
+  };
+  row("memory", short_bytes(summary.peak_memory) + " at the peak");
+  if (summary.samples > 0)
+    row("samples", fmt::format("{}, {} shading points", grouped(summary.samples), grouped(summary.queries)));
+  for (const LightNoise& noise : summary.noise)
+    row("noise", fmt::format("irradiance from {} on {}: {:.2g} % (standard error at a sample)", noise.light,
+                             noise.group, 100 * noise.relative_error));
+  row("rays",
+      fmt::format(
+          "{} in the shading pass: {:.3g} Mray per CPU second, {:.3g} inside Embree alone (the floor)",
+          grouped(summary.rays), mega_rays(summary.rays, summary.shading_seconds),
+          mega_rays(summary.rays, summary.embree_seconds)));
+  for (const std::string& output : summary.outputs) row("wrote", output);
+}
+
+Json done_json(const Summary& summary) {
+  Json stages = Json::array(), noise = Json::array();
+  for (const StageCost& cost : summary.costs) stages.push_back(stage_json(cost));
+  for (const LightNoise& n : summary.noise)
+    noise.push_back({{"group", n.group}, {"light", n.light}, {"relative_error", n.relative_error}});
+  const StageCost total = total_of(summary.costs);
+  return {{"wall_seconds", total.wall_seconds},
+          {"cpu_seconds", total.cpu_seconds},
+          {"stages", stages},
+          {"peak_memory_bytes", summary.peak_memory},
+          {"samples", summary.samples},
+          {"queries", summary.queries},
+          {"irradiance_noise", noise},
+          {"shading_rays", summary.rays},
+          {"shading_cpu_seconds", summary.shading_seconds},
+          {"embree_cpu_seconds", summary.embree_seconds},
+          {"outputs", summary.outputs}};
+}
+
+}  // namespace
+
+Json stage_json(const StageCost& cost) {
+  return {{"stage", cost.stage}, {"wall_seconds", cost.wall_seconds}, {"cpu_seconds", cost.cpu_seconds}};
+}
+
+void print_stage(const Log& log, const StageCost& cost) {
+  if (!log.quiet) print_event(log, "stage", stage_json(cost));
+}
+
+void print_summary(const Log& log, const Summary& summary) {
+  if (log.quiet) return;
+  if (log.format == LogFormat::text) print_text(summary);
+  print_event(log, "done", done_json(summary));
+}
+
+}  // namespace opaline

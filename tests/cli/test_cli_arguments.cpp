@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line: what it offers, and how it answers a mistake.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "run_program.h"
+
+namespace opaline {
+namespace {
+
+// Claim: help and version are asked for, so they are no failure; help shows commands to copy.
+// Source: arguments.h. Fails if: CLI11's exception for --help is taken for an error.
+TEST(CliArguments, HelpAndVersion) {
+  for (const std::vector<std::string>& line : std::vector<std::vector<std::string>>{
+           {"--help"}, {"render", "--help"}, {"info", "-h"}, {"--version"}}) {
+    const Outcome outcome = run_program(line);
+    EXPECT_EQ(outcome.exit_code, 0) << line[0];
+    EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+    EXPECT_FALSE(outcome.out.empty());
+  }
+  EXPECT_TRUE(contains(run_program({"--help"}).out, "opaline render bunny.json -o bunny.exr"));
+  EXPECT_TRUE(run_program({"--version"}).out.starts_with("opaline "));
+}
+
+// Claim: a mistake on the command line is exit 2, one line on stderr that names it, nothing on stdout, no
+// file. Source: DESIGN.md exit codes. Fails if: CLI11's own codes (above 100) come through, or a check is
+// left out.
+TEST(CliArguments, MistakesAreAnsweredInOneLine) {
+  const SceneFolder folder;
+  const std::string& scene = folder.scene;
+  const std::string out = folder.file("out.exr");
+  const struct {
+    std::vector<std::string> arguments;
+    std::string named;
+  } cases[] = {
+      {{}, "no command"},
+      {{"rendr", scene}, "rendr"},
+      {{"render"}, "required"},
+      {{"render", scene}, "--output"},
+      {{"render", "-o", out}, "SCENE"},
+      {{"render", scene, "-o", out, "--sppp", "4"}, "--sppp"},
+      {{"render", scene, "-o", out, "--spp", "many"}, "many"},
+      {{"render", scene, "-o", out, "--spp", "2.5"}, "2.5"},
+      {{"render", scene, "-o", out, "--seed", "-1"}, "-1"},
+      {{"render", scene, "-o", out, "--threads", "0"}, "--threads"},
+      {{"render", scene, "-o", out, "--resolution", "64"}, "WIDTHxHEIGHT"},
+      {{"render", scene, "-o", out, "--resolution", "64x48x3"}, "WIDTHxHEIGHT"},
+      {{"render", scene, "-o", out, "--resolution", "64,48"}, "WIDTHxHEIGHT"},
+      {{"render", scene, "-o", out, "--crop", "0,0,16"}, "x0,y0,x1,y1"},
+      {{"render", scene, "-o", out, "--exposure", "bright"}, "bright"},
+      {{"render", scene, "-o", out, "--log", "xml"}, "xml"},
+      {{"render", scene, "-o", folder.file("out.jpg")}, "out.jpg"},
+      {{"render", scene, "-o", folder.file("exr")}, ".exr or .png"},
+      {{"render", scene, "-o", out, "-o", out}, "same name"},
+      {{"render", scene, "-o", out, "--samples-ply", out}, "same name"},
+      {{"info", scene, "-o", out}, "-o"},
+      {{"render", scene, "-o", out, "--spp", "0"}, "samples_per_pixel"},
+      {{"render", scene, "-o", out, "--spp", "-3"}, "-3"},
+      {{"render", scene, "-o", out, "--method", "lambrt"}, "did you mean 'lambert'"},
+      {{"render", scene, "-o", out, "--crop", "0,0,64,64"}, "crop"},
+      {{"render", scene, "-o", out, "--resolution", "1000000000x1000000000"}, "resolution"},
+      {{"render", scene, "-o", out, "--set", "media.marbel.eta=1.4"}, "marbel"},
+      {{"render", scene, "-o", out, "--set", "film.crop=[0,0,32,32]", "--resolution", "16x16"}, "crop"},
+      {{"render", scene, "-o", out, "--method", "lambert", "--samples-ply", folder.file("s.ply")},
+       "no samples"},
+  };
+  for (const auto& c : cases) {
+    std::vector<std::string> arguments = c.arguments;
+    if (!arguments.empty() && arguments[0] == "render") arguments.push_back("--quiet");
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with("opaline: error: ")) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, c.named)) << "no \"" << c.named << "\" in: " << outcome.err;
+    EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  }
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+// Claim: short options come before every --set, and the last --set wins; several outputs and options may
+// stand around the scene. Source: arguments.h. Fails if: --set values are applied first, or -o takes all that
+// follows.
+TEST(CliArguments, OrderOfOverrides) {
+  const SceneFolder folder;
+  const auto plan = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"info", "--log", "json"});
+    arguments.push_back(folder.scene);
+    return event_of(events_of(run_program(arguments).out), "plan");
+  };
+  EXPECT_EQ(plan({"--spp", "4"})["samples_per_pixel"], 4);
+  EXPECT_EQ(plan({"--set", "film.samples_per_pixel=3", "--spp", "4"})["samples_per_pixel"], 3);
+  EXPECT_EQ(plan({"--set", "settings.samples=7", "--set", "settings.samples=9"})["groups"][0]["samples"], 9);
+  const nlohmann::json all =
+      plan({"--resolution", "8x6", "--crop", "1,2,3,4", "--method", "lambert", "--evaluator", "brute_force",
+            "--exposure", "-1.5", "--seed", "18446744073709551615"});
+  EXPECT_EQ(all["resolution"], (std::vector<int>{8, 6}));
+  EXPECT_EQ(all["crop"], (std::vector<int>{1, 2, 3, 4}));
+  EXPECT_EQ(all["method"], "lambert");
+  EXPECT_EQ(all["evaluator"], "brute_force");
+}
+
+}  // namespace
+}  // namespace opaline

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs that end early: what is said, the exit code, and that the folder is as it was.
+#include <gtest/gtest.h>
+
+#include "run_program.h"
+
+namespace opaline {
+namespace {
+
+// Claim: bad scenes are exit 2 with file and line, and nothing is written. Source: DESIGN.md. Fails if: main
+// maps Error to another code.
+TEST(CliFailures, BadScenes) {
+  const SceneFolder folder;
+  const std::string out = folder.file("a.exr"), scene = folder.file("bad.json");
+  const struct {
+    std::string text, said;
+  } cases[] = {
+      {"", "empty"},
+      {"{\n\"film\": {\"resolutoin\": [2, 2]}}", "bad.json:2:10: "},
+      {"{\"shapes\": [{\"file\": \"missing.ply\"}]}", "missing.ply"},
+  };
+  for (const auto& c : cases) {
+    put_bytes(scene, c.text);
+    const Outcome outcome = run_program({"render", scene, "-o", out, "--quiet"});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_TRUE(contains(outcome.err, c.said)) << outcome.err;
+    EXPECT_EQ(folder.entries(), 2u);
+  }
+  EXPECT_EQ(run_program({"render", folder.file("none.json"), "-o", out}).exit_code, 2);
+}
+
+// Claim: with a JSON log an error is an event with its place, and stderr is empty.
+// Source: log.h. Fails if: print_failure writes text as well.
+TEST(CliFailures, ErrorsAsEvents) {
+  const SceneFolder folder;
+  put_bytes(folder.scene, "{\n\"film\": {\"resolutoin\": [2, 2]}}");
+  const Outcome outcome = run_program({"render", folder.scene, "-o", folder.file("a.exr"), "--log", "json"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+  const nlohmann::json error = event_of(events_of(outcome.out), "error");
+  EXPECT_EQ(error["kind"], "bad_input");
+  EXPECT_EQ(error["exit_code"], 2);
+  EXPECT_EQ(error["file"], folder.scene);
+  EXPECT_EQ(error["line"], 2);
+}
+
+// Claim: an output that cannot be written is said before the work, exit 3: the scene is not even read.
+// Source: commands.h. Fails if: the check moves behind the loading.
+TEST(CliFailures, UnwritableOutputIsSaidAtOnce) {
+  const SceneFolder folder;
+  std::filesystem::create_directory(folder.file("folder.png"));
+  for (const std::string& path : {folder.file("missing/a.exr"), folder.file("folder.png")}) {
+    const Outcome outcome =
+        run_program({"render", folder.file("none.json"), "-o", folder.file("ok.exr"), "-o", path});
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with("opaline: error: " + path)) << outcome.err;
+    EXPECT_TRUE(outcome.out.empty());
+  }
+  EXPECT_EQ(folder.entries(), 2u);
+}
+
+// Claim: a full disk is exit 3, the old file stays, nothing is beside it. Source: atomic_file.h. Fails if: a
+// writer does not go through AtomicFile.
+TEST(CliFailures, FullDiskKeepsTheOldFile) {
+  const SceneFolder folder;
+  for (const char* name : {"a.exr", "a.png"}) {
+    const std::string out = folder.file(name);
+    put_bytes(out, "old");
+    const Outcome outcome = run_program(
+        {"render", folder.scene, "-o", out, "--quiet", "--resolution", "128x128", "--method", "lambert"}, ".",
+        {.file_size = 300, .address_space = {}});
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    EXPECT_EQ(bytes_of(out), "old");
+    std::filesystem::remove(out);
+    EXPECT_EQ(folder.entries(), 1u);
+  }
+}
+
+#ifndef __SANITIZE_ADDRESS__  // which needs more address space than the limit
+// Claim: a picture that memory does not hold is exit 3, "out of memory", with nothing written.
+// Source: DESIGN.md exit codes. Fails if: std::bad_alloc is not told from other exceptions.
+TEST(CliFailures, OutOfMemory) {
+  const SceneFolder folder;
+  const Outcome outcome = run_program({"render", folder.scene, "-o", folder.file("a.exr"), "--quiet",
+                                       "--method", "lambert", "--resolution", "16384x16384"},
+                                      ".", {.file_size = {}, .address_space = rlim_t(4) << 30});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.signal;
+  EXPECT_EQ(outcome.err, "opaline: error: out of memory\n");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+#endif
+
+const std::string kShading = R"({"event":"progress","stage":"shading")";
+
+// Claim: Ctrl-C, and what a batch system sends, end the run soon with 130; the old picture stays, nothing is
+// beside it. Source: DESIGN.md. Fails if: the handler is not installed, or a stage does not look at its
+// monitor.
+TEST(CliFailures, InterruptKeepsTheOldFile) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const SceneFolder folder;
+    const std::string out = folder.file("a.exr");
+    put_bytes(out, "old");
+    Child child({"render", folder.scene, "-o", out, "--log", "json", "--method", "lambert", "--resolution",
+                 "2048x2048", "--spp", "100"});
+    ASSERT_TRUE(child.prints(kShading));
+    child.send(signal);
+    const Outcome outcome = child.wait(20);
+    EXPECT_EQ(outcome.exit_code, 130) << "signal " << outcome.signal;
+    EXPECT_EQ(event_of(events_of(outcome.out), "error")["kind"], "interrupted");
+    EXPECT_EQ(bytes_of(out), "old");
+    EXPECT_EQ(folder.entries(), 2u);
+  }
+}
+
+// Claim: a second Ctrl-C kills at once, whatever the stage does: here one tile of 16 million rays, in which
+// nobody looks at the monitor. Source: interrupt.h. Fails if: the handler stays after the first.
+TEST(CliFailures, SecondInterruptKills) {
+  const SceneFolder folder;
+  Child child({"render", folder.scene, "-o", folder.file("a.exr"), "--log", "json", "--method", "lambert",
+               "--resolution", "16x16", "--spp", "65536"});
+  ASSERT_TRUE(child.prints(kShading));
+  child.send(SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  child.send(SIGINT);
+  const Outcome outcome = child.wait(20);
+  EXPECT_EQ(outcome.signal, SIGINT) << "exit code " << outcome.exit_code;
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+}  // namespace
+}  // namespace opaline

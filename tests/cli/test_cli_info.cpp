@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `opaline info`: the plan, and nothing else.
+#include <gtest/gtest.h>
+
+#include "run_program.h"
+
+namespace opaline {
+namespace {
+
+// Claim: the plan says what there is, how many samples and why, and what memory; info writes no file.
+// Source: DESIGN.md ("shows the plan"). Fails if: a member is left out, or info renders.
+TEST(CliInfo, PlanAsTextAndJson) {
+  const SceneFolder folder;
+  const Outcome text = run_program({"info", folder.scene}, folder.path.string());
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_TRUE(text.err.empty()) << text.err;
+  for (const char* part :
+       {"32 x 32", "key (point)", "ball in marble", "500 samples", "settings.samples", "memory"})
+    EXPECT_TRUE(contains(text.out, part)) << "no \"" << part << "\" in:\n" << text.out;
+
+  const Outcome json = run_program({"info", folder.scene, "--log", "json"}, folder.path.string());
+  const nlohmann::json plan = event_of(events_of(json.out), "plan");
+  EXPECT_EQ(plan["groups"][0]["samples"], 500);
+  EXPECT_EQ(plan["groups"][0]["shapes"], (std::vector<std::string>{"ball"}));
+  EXPECT_EQ(plan["groups"][0]["reason"], "settings.samples");
+  EXPECT_NEAR(plan["groups"][0]["area_mm2"].get<double>(), 400 * 3.14159265, 2);
+  EXPECT_EQ(plan["lights"][0]["type"], "point");
+  EXPECT_GT(plan["memory_bytes"], 1000000);
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+// Claim: a plan's warnings are on stderr, or events. Source: plan.h. Fails if: warnings are dropped.
+TEST(CliInfo, WarningsAreSaid) {
+  const SceneFolder folder;
+  const std::vector<std::string> dark{"info", folder.scene, "--set", "lights=[]"};
+  EXPECT_TRUE(run_program(dark).err.starts_with("opaline: warning: the scene has no lights"));
+  std::vector<std::string> as_json = dark;
+  as_json.insert(as_json.end(), {"--log", "json"});
+  const Outcome outcome = run_program(as_json);
+  EXPECT_TRUE(contains(event_of(events_of(outcome.out), "warning")["message"], "no lights"));
+  EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+}
+
+// Claim: the scenes of the repository that need no mesh file are right. Fails if: a key changes its name.
+TEST(CliInfo, ScenesOfTheRepository) {
+  for (const char* name : {"sphere.json", "backlit-slab.json"}) {
+    const Outcome outcome = run_program({"info", std::string(OPALINE_SCENES_DIR) + "/" + name});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+  }
+}
+
+// Claim: a plan that nobody can read is a failure. Source: commands.h. Fails if: ferror is not looked at.
+TEST(CliInfo, FullStandardOutput) {
+  const SceneFolder folder;
+  const Outcome outcome = run_program({"info", folder.scene}, ".", {.file_size = 10, .address_space = {}});
+  EXPECT_EQ(outcome.exit_code, 3);
+}
+
+}  // namespace
+}  // namespace opaline

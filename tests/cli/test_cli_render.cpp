@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `opaline render`: pictures, what they say about themselves, and the log.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <regex>
+
+#include "opaline/image/image.h"
+#include "run_program.h"
+
+namespace opaline {
+namespace {
+
+std::map<std::string, std::string> metadata_of(const std::string& path) {
+  const Image image = read_image(path);
+  return {image.metadata.begin(), image.metadata.end()};
+}
+
+// Claim: one run writes each output in its format; the EXR says what it was made from.
+// Source: metadata.h. Fails if: an output is skipped, or a value is taken from the command line instead of
+// the scene.
+TEST(CliRender, WritesPicturesAndMetadata) {
+  const SceneFolder folder;
+  const std::string exr = folder.file("a.exr"), png = folder.file("a.PNG"), ply = folder.file("a.ply");
+  const Outcome outcome = run_program({"render", "-o", exr, "-o", png, folder.scene, "--samples-ply", ply,
+                                       "--spp", "2", "--set", "settings.seed=5", "--crop", "4,8,20,32"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Image picture = read_image(exr);
+  EXPECT_EQ(picture.width, 16);
+  EXPECT_EQ(picture.height, 24);
+  EXPECT_EQ(read_image(png).width, 16);
+  EXPECT_TRUE(bytes_of(ply).starts_with("ply\n"));
+
+  auto metadata = metadata_of(exr);
+  EXPECT_EQ(metadata["opaline:scene"], "ball.json");
+  EXPECT_EQ(metadata["opaline:seed"], "5");
+  EXPECT_TRUE(std::regex_match(metadata["opaline:version"], std::regex("\\d+\\.\\d+\\.\\d+")));
+  EXPECT_TRUE(std::regex_match(metadata["opaline:scene_hash"], std::regex("[0-9A-Fa-f]{40}")));
+  const nlohmann::json settings = nlohmann::json::parse(metadata["opaline:settings"]);
+  EXPECT_EQ(settings["samples_per_pixel"], 2);
+  EXPECT_EQ(settings["crop"], (std::vector<int>{4, 8, 20, 32}));
+  const std::size_t samples = settings["groups"][0]["samples"];
+  EXPECT_TRUE(contains(bytes_of(ply), "element vertex " + std::to_string(samples) + "\n"));
+  EXPECT_FALSE(metadata.contains("opaline:timings"));
+}
+
+// Claim: the same bytes in every output for any number of threads and file names, and on every run.
+// Source: DESIGN.md ("Bits do not move"). Fails if: metadata holds the thread count, a time or an output's
+// name.
+TEST(CliRender, BytesDoNotMove) {
+  const SceneFolder folder;
+  const auto render = [&](const std::string& name, const std::string& threads) {
+    const Outcome outcome = run_program({"render", folder.scene, "-o", folder.file(name + ".exr"), "-o",
+                                         folder.file(name + ".png"), "--samples-ply",
+                                         folder.file(name + ".ply"), "--threads", threads, "--quiet"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  };
+  render("one", "1");
+  render("two", "2");
+  render("again", "2");
+  for (const char* extension : {".exr", ".png", ".ply"}) {
+    const std::string expected = bytes_of(folder.file(std::string("one") + extension));
+    EXPECT_FALSE(expected.empty());
+    EXPECT_TRUE(bytes_of(folder.file(std::string("two") + extension)) == expected) << extension;
+    EXPECT_TRUE(bytes_of(folder.file(std::string("again") + extension)) == expected) << extension;
+  }
+}
+
+// Claim: the command in the metadata makes the same file again, byte for byte, quotes and all.
+// Source: metadata.h. Fails if: an override is left out of it, or not quoted.
+TEST(CliRender, CommandOfTheMetadataReproduces) {
+  const SceneFolder folder;
+  const std::string first = folder.file("first.exr");
+  const Outcome outcome =
+      run_program({"render", folder.scene, "-o", first, "--resolution", "20x10", "--seed", "3", "--set",
+                   R"(lights.key.intensity=[9e2, 7e2, 5e2])", "--set", "shapes.ball.name=the artist's ball"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string line = metadata_of(first)["opaline:command"];
+  ASSERT_TRUE(line.starts_with("opaline render ball.json "));
+  const std::string shell = "cd '" + folder.path.string() + "' && '" + OPALINE_PROGRAM + "'" +
+                            line.substr(std::string("opaline").size()) + " -o second.exr --quiet";
+  ASSERT_EQ(std::system(shell.c_str()), 0) << shell;
+  EXPECT_TRUE(bytes_of(folder.file("second.exr")) == bytes_of(first));
+}
+
+// Claim: the scene's hash changes with a byte of the file and with an override, and with nothing else.
+// Source: metadata.h. Fails if: overrides are not hashed.
+TEST(CliRender, SceneHash) {
+  const SceneFolder folder;
+  const std::string out = folder.file("a.exr");
+  const auto hash = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", folder.scene, "-o", out, "--quiet", "--method", "lambert"});
+    EXPECT_EQ(run_program(more).exit_code, 0);
+    return metadata_of(out)["opaline:scene_hash"];
+  };
+  const std::string plain = hash({});
+  EXPECT_EQ(hash({"--threads", "1"}), plain);
+  EXPECT_NE(hash({"--seed", "1"}), plain);
+  put_bytes(folder.scene, bytes_of(folder.scene) + " ");
+  EXPECT_NE(hash({}), plain);
+}
+
+// Claim: timings are in the file only when asked for. Source: arguments.h. Fails if: the flag does nothing.
+TEST(CliRender, TimingsOnRequest) {
+  const SceneFolder folder;
+  const std::string out = folder.file("a.exr");
+  ASSERT_EQ(run_program({"render", folder.scene, "-o", out, "--timings-in-metadata"}).exit_code, 0);
+  const nlohmann::json timings = nlohmann::json::parse(metadata_of(out)["opaline:timings"]);
+  EXPECT_EQ(timings.back()["stage"], "shading");
+  EXPECT_GE(timings.back()["wall_seconds"], 0.0);
+}
+
+// Claim: a JSON log is one object a line on stdout: plan, each stage once in order, done with the whole bill;
+// and nothing on stderr. Source: log.h. Fails if: a text line slips in, or a stage is not noted.
+TEST(CliRender, JsonLog) {
+  const SceneFolder folder;
+  const std::string out = folder.file("a.exr");
+  const Outcome outcome =
+      run_program({"render", folder.scene, "-o", out, "--log", "json", "--set",
+                   R"(lights.key={"type":"sphere","center":[20,30,40],"radius":9,"radiance":1})"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+  const auto events = events_of(outcome.out);
+  std::vector<std::string> stages;
+  for (const auto& event : events)
+    if (event["event"] == "stage") stages.push_back(event["stage"]);
+  EXPECT_EQ(stages, (std::vector<std::string>{"loading", "rays", "sampling", "irradiance", "octree",
+                                              "shading", "writing"}));
+  EXPECT_EQ(event_of(events, "plan")["groups"][0]["name"], "ball");
+  EXPECT_EQ(events.back()["event"], "done");
+  const nlohmann::json& done = events.back();
+  EXPECT_EQ(done["stages"].size(), stages.size());
+  EXPECT_EQ(done["outputs"], std::vector<std::string>{out});
+  EXPECT_GT(done["samples"], 100);
+  EXPECT_GE(done["shading_rays"], 32 * 32);
+  EXPECT_GT(done["embree_cpu_seconds"], 0.0);
+  EXPECT_GT(done["peak_memory_bytes"], 1000000);
+  EXPECT_GT(done["irradiance_noise"][0]["relative_error"], 0.0);
+}
+
+// Claim: as text the bill names every stage, memory, samples, rays and the file; progress is on stderr. With
+// --quiet there is not a byte. Source: commands.h. Fails if: progress goes to stdout, or --quiet forgets a
+// line.
+TEST(CliRender, TextLogAndQuiet) {
+  const SceneFolder folder;
+  const std::string out = folder.file("a.exr");
+  const Outcome text = run_program({"render", folder.scene, "-o", out});
+  for (const char* part : {"loading ", "rays ", "sampling ", "irradiance ", "octree ", "shading ", "writing ",
+                           "total ", "memory ", "samples ", "Mray", "wrote "})
+    EXPECT_TRUE(contains(text.out, std::string("\n") + part) || contains(text.out, part)) << part;
+  EXPECT_TRUE(contains(text.out, out));
+  EXPECT_TRUE(contains(text.err, "shading\n")) << text.err;
+  const Outcome quiet = run_program({"render", folder.scene, "-o", out, "--quiet"});
+  EXPECT_EQ(quiet.exit_code, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+// Claim: the exposure brightens the PNG alone. Source: scene.h. Fails if: it is applied to the EXR, or not at
+// all.
+TEST(CliRender, ExposureIsForThePng) {
+  const SceneFolder folder;
+  const auto render = [&](const std::string& stops) {
+    const std::vector<std::string> line{"render",  folder.scene,         "-o",         folder.file("a.exr"),
+                                        "-o",      folder.file("a.png"), "--exposure", stops,
+                                        "--quiet", "--method",           "lambert"};
+    ASSERT_EQ(run_program(line).exit_code, 0);
+  };
+  render("-1");
+  const std::vector<float> exr = read_image(folder.file("a.exr")).pixels,
+                           dark = read_image(folder.file("a.png")).pixels;
+  render("1");
+  EXPECT_EQ(read_image(folder.file("a.exr")).pixels, exr);
+  const std::vector<float> bright = read_image(folder.file("a.png")).pixels;
+  double sums[2] = {};
+  for (std::size_t i = 0; i < dark.size(); ++i) {
+    sums[0] += double(dark[i]);
+    sums[1] += double(bright[i]);
+  }
+  EXPECT_GT(sums[1], 2 * sums[0]);
+}
+
+}  // namespace
+}  // namespace opaline

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is wrong with a mesh is mended or said: winding, doubles, triangles without area, holes.
+#include <algorithm>
+#include <set>
+
+#include "mesh_test.h"
+
+namespace opaline {
+namespace {
+
+using namespace mesh_test;
+
+/// The triangles as a set, each starting at its lowest vertex: equal for equal meshes.
+std::set<std::array<std::uint32_t, 3>> triangle_set(const Mesh& mesh) {
+  std::set<std::array<std::uint32_t, 3>> set;
+  for (auto triangle : mesh.triangles) {
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+    set.insert(triangle);
+  }
+  return set;
+}
+
+// Claim: a closed mesh wound inward becomes the one wound outward, counted and said. Source: PHYSICS.md
+// section 6, "flipped winding -> same picture, said". Tolerance: none. Fails if: the sign of the volume is
+// not looked at.
+TEST(MeshRepair, FlippedWindingGivesTheSameMesh) {
+  const CheckedMesh good = load(cube()), bad = load(flipped(cube()));
+  EXPECT_EQ(triangle_set(bad.mesh), triangle_set(good.mesh));
+  EXPECT_EQ(bad.mesh.normals, good.mesh.normals);
+  EXPECT_EQ(bad.report.flipped, 12u);
+  EXPECT_TRUE(warns(bad.report, "12 triangles of closed parts wound inward were flipped"));
+  EXPECT_EQ(good.report.flipped, 0u);
+}
+
+// Claim: whichever triangles are flipped, the same mesh comes out. Source, tolerance as above. Fails if:
+// neighbours are not compared, or the relation is lost in the union-find's short cuts.
+TEST(MeshRepair, MixedWindingGivesTheSameMesh) {
+  const auto good = triangle_set(load(cube()).mesh);
+  for (unsigned mask = 1; mask < 4095; mask += 37) {
+    Soup soup = cube();
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < 12; ++t) {
+      if ((mask >> t & 1) == 0) continue;
+      std::swap(soup.triangles[t][1], soup.triangles[t][2]);
+      ++count;
+    }
+    const CheckedMesh mended = load(soup);
+    EXPECT_EQ(triangle_set(mended.mesh), good) << mask;
+    EXPECT_EQ(mended.report.flipped, count) << mask;
+    EXPECT_TRUE(warns(mended.report, "wound against their neighbours")) << mask;
+  }
+}
+
+// Claim: a cavity (a closed part wound inward inside another) stays one; a file that is inside out as a
+// whole, cavity and all, is turned as a whole; parts side by side are judged each for itself. Source: the
+// brief. Tolerance: rounding of volumes. Fails if: every closed part is wound outward, or boxes alone decide
+// nesting.
+TEST(MeshRepair, CavityIsKept) {
+  Soup shell = cube(2);
+  append(shell, flipped(cube(1)));
+  EXPECT_DOUBLE_EQ(signed_volume(load(shell).mesh), 64 - 8);
+  EXPECT_EQ(load(shell).report.flipped, 0u);
+  EXPECT_DOUBLE_EQ(signed_volume(load(flipped(shell)).mesh), 64 - 8);
+  EXPECT_EQ(load(flipped(shell)).report.flipped, 24u);
+
+  Soup apart = cube(2);
+  append(apart, flipped(cube(1, {5, 0, 0})));
+  EXPECT_DOUBLE_EQ(signed_volume(load(apart).mesh), 64 + 8);
+  EXPECT_EQ(load(apart).report.flipped, 12u);
+
+  Soup beside_sphere = sphere(10);  // inside the sphere's box, outside the sphere
+  const double sphere_volume = signed_volume(load(beside_sphere).mesh);
+  append(beside_sphere, flipped(cube(0.5, {9, 9, 9})));
+  EXPECT_NEAR(signed_volume(load(beside_sphere).mesh), sphere_volume + 1, 1e-9);
+}
+
+// Claim: doubles, also those wound the other way or with vertices of their own, and triangles without area
+// are dropped and counted; the closed cube is left. Source: PHYSICS.md section 6. Tolerance: none. Fails if:
+// duplicates are looked for before equal positions are welded, or the area test is a difference of indices
+// alone.
+TEST(MeshRepair, DoublesAndTrianglesWithoutAreaAreDropped) {
+  Soup soup = cube();
+  const auto [a, b, c] = soup.triangles[3];
+  soup.triangles.push_back({b, c, a});
+  soup.triangles.push_back({c, b, a});
+  const auto copy = std::uint32_t(soup.positions.size());
+  soup.positions.push_back(soup.positions[a]);
+  soup.positions.push_back({-0.0, 0, 0});
+  soup.positions.push_back({0, 0, 0});
+  soup.triangles.push_back({copy, b, c});
+  soup.triangles.push_back({a, copy, b});
+  soup.triangles.push_back({copy + 1, copy + 2, b});
+  soup.triangles.push_back({a, a, b});
+  const CheckedMesh mesh = load(soup);
+  EXPECT_EQ(triangle_set(mesh.mesh), triangle_set(load(cube()).mesh));
+  EXPECT_EQ(mesh.report.duplicates_dropped, 3u);
+  EXPECT_EQ(mesh.report.zero_area_dropped, 3u);
+  EXPECT_TRUE(warns(mesh.report, "3 triangles given twice were dropped"));
+  EXPECT_TRUE(warns(mesh.report, "3 triangles without area were dropped"));
+  EXPECT_EQ(mesh.report.open_edges, 0u);
+}
+
+// Claim: a triangle of three points in a line is dropped but does not count as a leak. Source:
+// check_mesh.cpp. Tolerance: none. Fails if: such triangles are dropped before edges are counted.
+TEST(MeshRepair, SliverLeavesNoHole) {
+  Soup soup = cube();
+  soup.positions.push_back({0, -1, -1});             // the middle of edge 0-1
+  soup.triangles.erase(soup.triangles.begin() + 1);  // 0 3 1 becomes 0 3 8, 8 3 1 ...
+  soup.triangles.push_back({0, 3, 8});
+  soup.triangles.push_back({8, 3, 1});
+  soup.triangles.push_back({0, 8, 1});  // ... and a sliver joins them to 0 1 5
+  const CheckedMesh mesh = load(soup);
+  EXPECT_EQ(mesh.report.zero_area_dropped, 1u);
+  EXPECT_EQ(mesh.report.open_edges, 0u);
+  EXPECT_DOUBLE_EQ(surface_area(mesh.mesh), 24);
+}
+
+// Claim: open and non-manifold meshes are taken and said, a Moebius strip too. Source: PHYSICS.md section 6.
+// Tolerance: none. Fails if: edges with one, or more than two, triangles are not counted.
+TEST(MeshRepair, OpenAndNonManifoldAreSaid) {
+  Soup open = cube();
+  open.triangles.pop_back();
+  EXPECT_EQ(load(open).report.open_edges, 3u);
+  EXPECT_TRUE(warns(load(open).report, "open mesh: 3 boundary edges; light can leak"));
+
+  Soup fin = cube();
+  fin.positions.push_back({0, -2, -1});
+  fin.triangles.push_back({0, 1, 8});
+  EXPECT_EQ(load(fin).report.non_manifold_edges, 1u);
+  EXPECT_EQ(load(fin).report.open_edges, 2u);
+  EXPECT_TRUE(warns(load(fin).report, "non-manifold mesh: 1 edges"));
+
+  Soup strip;
+  for (int i = 0; i < 10; ++i) {
+    const double turn = i / 2 * 2 * M_PI / 5, tilt = turn / 2, r = 1 + (i % 2 ? 0.3 : -0.3) * std::cos(tilt);
+    strip.positions.push_back(
+        {r * std::cos(turn), (i % 2 ? 0.3 : -0.3) * std::sin(tilt), r * std::sin(turn)});
+  }
+  for (std::uint32_t i = 0; i < 8; ++i) strip.triangles.push_back({i, i + 1, i + 2});
+  strip.triangles.push_back({8, 9, 1});
+  strip.triangles.push_back({9, 1, 0});
+  EXPECT_EQ(load(strip).mesh.triangles.size(), 10u);
+  EXPECT_TRUE(warns(load(strip).report, "one-sided surface"));
+}
+
+// Claim: a sphere with its cap cut off is closed by fill_holes with the cap's rim as the only vertices, wound
+// like the rest, and the area gained is the rim's polygon. Source: the disc of radius sin(angle) of the rim.
+// Tolerance: 3e-3 relative, the staircase of the rim. Fails if: the patch is not added, or turned round.
+TEST(MeshRepair, CapOfASphereIsFilled) {
+  Soup soup = sphere();
+  std::erase_if(soup.triangles, [&](const auto& t) {
+    return soup.positions[t[0]].y > 0.8 && soup.positions[t[1]].y > 0.8 && soup.positions[t[2]].y > 0.8;
+  });
+  const CheckedMesh open = load(soup), closed = load(soup, true);
+  EXPECT_GT(open.report.open_edges, 100u);
+  EXPECT_EQ(open.report.holes_filled, 0u);
+  EXPECT_EQ(closed.report.open_edges, 0u);
+  EXPECT_EQ(closed.report.holes_filled, 1u);
+  EXPECT_EQ(closed.report.hole_triangles_added, open.report.open_edges - 2);
+  EXPECT_EQ(closed.report.flipped, 0u);
+  EXPECT_EQ(closed.mesh.positions.size(), open.mesh.positions.size());
+  EXPECT_NEAR(surface_area(closed.mesh) - surface_area(open.mesh), M_PI * 0.36, 0.05);
+  EXPECT_NEAR(signed_volume(closed.mesh), M_PI * (4 / 3.0 - 0.04 * 2.8 / 3), 3e-3 * 4);
+  EXPECT_FALSE(warns(closed.report, "open mesh"));
+}
+
+// Claim: holes are filled in a mesh that CGAL's half-edges do not take as it is (two fans meeting in one
+// vertex, a fin on an edge), and what is no hole is left. Source: repair_mesh.cpp. Tolerance: none. Fails if:
+// vertices that CGAL doubles are not led back.
+TEST(MeshRepair, HolesBesideNonManifoldPlacesAreFilled) {
+  Soup soup = cube();
+  append(soup, cube(1, {2, 2, 2}));              // touches the first at one vertex
+  soup.triangles.pop_back();                     // a hole in the second
+  soup.triangles.erase(soup.triangles.begin());  // one in the first
+  soup.positions.push_back({0, -2, 1});
+  soup.triangles.push_back({4, 5, 16});  // a fin
+  const CheckedMesh mesh = load(soup, true);
+  EXPECT_EQ(mesh.report.holes_filled, 2u);
+  EXPECT_EQ(mesh.report.open_edges, 2u);
+  EXPECT_EQ(mesh.mesh.triangles.size(), 25u);
+}
+
+// Claim: vertices that no triangle uses do not survive, and do not count for fit_size. Source: make_mesh.cpp.
+// Tolerance: none. Fails if: the box is taken over all positions.
+TEST(MeshRepair, UnusedVerticesAreLeftOut) {
+  Soup soup = cube();
+  soup.positions.push_back({100, 100, 100});
+  const CheckedMesh mesh = load(soup);
+  EXPECT_EQ(mesh.mesh.positions.size(), 8u);
+}
+
+}  // namespace
+}  // namespace opaline
