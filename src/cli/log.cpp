@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/log.h"
 
-#include <fmt/format.h>
-
 #include <new>
 #include <stdexcept>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "cli/names.h"
 #include "cli/report.h"
 #include "cli/units.h"

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <condition_variable>
 #include <cstdlib>
 #include <mutex>
@@ -88,18 +89,20 @@ void Progress::watch(const std::stop_token& stop) const {
 void Progress::show(const ProgressEstimate& estimate) const {
   const double fraction = estimate.fraction();
   const std::string left = time_left(estimate);
+  const char* part = monitor_.stage;
+  const std::string stage = part != nullptr ? part : stage_;
   if (style_ == Style::json) {
-    Json members{{"stage", stage_}};
+    Json members{{"stage", stage}};
     if (fraction >= 0) members["fraction"] = fraction;
     if (!left.empty()) members["seconds_left"] = estimate.seconds_left();
     print_event(log_, "progress", members);
   } else if (style_ == Style::terminal) {
-    std::string line = fmt::format("{}{:<12}", kClearLine, stage_);
+    std::string line = fmt::format("{}{:<12}", kClearLine, stage);
     if (fraction >= 0)
       line += fmt::format("[{}] {:3.0f} %  {}", bar(fraction), std::floor(100 * fraction), left);
     write_terminal(line);
   } else {
-    std::string line = stage_;
+    std::string line = stage;
     if (fraction >= 0) line += fmt::format(": {:.0f} %", std::floor(100 * fraction));
     if (!left.empty()) line += ", " + left;
     write_line(stderr, line);

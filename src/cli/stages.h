@@ -23,7 +23,7 @@ class StageRunner {
   template <class Work>
   auto run_unmeasured(const std::string& stage, const Work& work) {
     advance(&monitor_, 0);
-    monitor_.begin(0);
+    monitor_.begin(nullptr, 0);
     const Progress progress(log_, monitor_, stage);
     return work();
   }

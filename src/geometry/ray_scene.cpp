@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
+#include <ctime>
 #include <string>
 
 #include "opaline/core/error.h"
@@ -69,23 +69,26 @@ RTCRay to_embree(const Ray& ray) {
   return r;
 }
 
-// Adds the rays and time of a scope to the counters.
+std::uint64_t thread_nanoseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::uint64_t(now.tv_sec) * 1000000000u + std::uint64_t(now.tv_nsec);
+}
+
+// Adds the rays and CPU time of a scope to the counters.
 class CountRays {
  public:
   CountRays(std::atomic<std::uint64_t>& rays, std::atomic<std::uint64_t>& nanoseconds, std::size_t n)
-      : nanoseconds_(nanoseconds), start_(std::chrono::steady_clock::now()) {
+      : nanoseconds_(nanoseconds), start_(thread_nanoseconds()) {
     rays.fetch_add(n, std::memory_order_relaxed);
   }
-  ~CountRays() {
-    const auto spent = std::chrono::steady_clock::now() - start_;
-    nanoseconds_.fetch_add(std::uint64_t(std::chrono::nanoseconds(spent).count()), std::memory_order_relaxed);
-  }
+  ~CountRays() { nanoseconds_.fetch_add(thread_nanoseconds() - start_, std::memory_order_relaxed); }
   CountRays(const CountRays&) = delete;
   CountRays& operator=(const CountRays&) = delete;
 
  private:
   std::atomic<std::uint64_t>& nanoseconds_;
-  std::chrono::steady_clock::time_point start_;
+  std::uint64_t start_;
 };
 
 RTCIntersectContext coherent_context() {

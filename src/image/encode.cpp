@@ -93,7 +93,7 @@ void encode(const std::string& path, const char* format, const OIIO::ImageSpec& 
   bool written = output->set_ioproxy(&sink) && output->open(file.temporary(), spec) &&
                  write_strips(*output, spec, type, rows);
   written = output->close() && written;
-  const std::string complaint = one_line(output->geterror());  // not fetched, it would be printed at exit
+  const std::string complaint = one_line(output->geterror());  // not fetched, OpenImageIO 2.5 prints it
   output.reset();                                              // may still write
   if (const int failure = sink.finish())
     throw run_failed(path, std::string("cannot write: ") + std::strerror(failure));

@@ -36,7 +36,7 @@ const char* format_of(const std::string& path) {
   throw bad_file(path, "not a picture that can be read", "an EXR or PNG picture");
 }
 
-/// The pending message; not fetched, it would be printed at exit.
+/// The pending message; not fetched, OpenImageIO 2.5 and later print it at exit.
 std::string complaint_of(const OIIO::ImageInput* input) {
   const std::string complaint = input ? input->geterror() : OIIO::geterror();
   return one_line(complaint.empty() ? "no reason given" : complaint);

@@ -23,13 +23,18 @@ class ShadowBatch {
 
   int samples() const { return samples_; }
 
+  void reserve(std::size_t points) {
+    carried_.reserve(points * std::size_t(samples_));
+    shadow_.reserve(points * std::size_t(samples_));
+  }
+
   // Adds all rays of one point; `index` chooses its rotation of the low-discrepancy points.
   void add(const SurfacePoint& point, std::uint64_t index) {
-    const std::array<double, 2> shift{unit_double(hash_bits(seed_, 2 * index)),
-                                      unit_double(hash_bits(seed_, 2 * index + 1))};
+    std::array<double, 2> shift{};
+    if (!is_delta(light_)) shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
     for (int s = 0; s < samples_; ++s) {
       const LightSample sample = sample_light(light_, point.position, point.normal,
-                                              samples_ == 1 ? shift : r2_point(std::uint64_t(s), shift), samples_);
+                                              r2_point(std::uint64_t(s), shift), samples_);
       const float cosine = dot(point.normal, sample.direction);
       float carried = 0;
       if (sample.weight > 0 && cosine > 0 && dot(point.geometric, sample.direction) > 0) {
@@ -80,6 +85,7 @@ LightTransfer transfer_from(const IrradianceInput& input, const Light& light, st
   std::vector<ErrorSums> errors(chunk_count(input.samples.size(), kBatchPoints));
   parallel_chunks(input.samples.size(), kBatchPoints, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     ShadowBatch batch(input.rays, light, input.eta, input.light_samples, seed);
+    batch.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceSample& s = input.samples[i];
       batch.add(surface_point(input.world.meshes[s.mesh], s.triangle, s.u, s.v), i);
@@ -109,7 +115,7 @@ LightTransfer transfer_from(const IrradianceInput& input, const Light& light, st
 }  // namespace
 
 std::vector<LightTransfer> compute_irradiance(const IrradianceInput& input) {
-  if (input.monitor != nullptr) input.monitor->begin(input.samples.size() * input.lights.size());
+  if (input.monitor != nullptr) input.monitor->begin("irradiance", input.samples.size() * input.lights.size());
   std::vector<LightTransfer> transfers;
   for (std::size_t l = 0; l < input.lights.size(); ++l)
     transfers.push_back(transfer_from(input, input.lights[l], hash_bits(input.seed, l)));
@@ -130,6 +136,7 @@ std::vector<RgbF> irradiance_at(const PointIrradianceInput& input) {
   for (std::size_t l = 0; l < input.lights.size(); ++l) {
     const RgbF colour(emission(input.lights[l]));
     ShadowBatch batch(input.rays, input.lights[l], input.eta, input.light_samples, hash_bits(input.seed, l));
+    batch.reserve(std::min(kBatchPoints, input.points.size()));
     for (std::size_t begin = 0; begin < input.points.size(); begin += kBatchPoints) {
       const std::size_t end = std::min(input.points.size(), begin + kBatchPoints);
       for (std::size_t i = begin; i < end; ++i) batch.add(input.points[i], input.keys[i]);

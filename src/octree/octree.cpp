@@ -6,21 +6,13 @@
 #include <cmath>
 #include <tuple>
 
+#include "opaline/core/morton.h"
 #include "opaline/core/parallel.h"
 
 namespace opaline {
 namespace {
 
 constexpr int kLevels = 21;  // bits of an integer coordinate; three of them fill a Morton key
-
-// Spreads the low 21 bits of v to every third bit.
-std::uint64_t spread(std::uint64_t v) {
-  v = (v | v << 32) & 0x001F00000000FFFFull;
-  v = (v | v << 16) & 0x001F0000FF0000FFull;
-  v = (v | v << 8) & 0x100F00F00F00F00Full;
-  v = (v | v << 4) & 0x10C30C30C30C30C3ull;
-  return (v | v << 2) & 0x1249249249249249ull;
-}
 
 struct Keyed {
   std::uint64_t key;
@@ -48,8 +40,7 @@ std::vector<Keyed> morton_order(std::span<const FluxSample> samples) {
   parallel_chunks(samples.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f& p = samples[i].position;
-      order[i] = {spread(integer(p.x, low.x)) << 2 | spread(integer(p.y, low.y)) << 1 | spread(integer(p.z, low.z)),
-                  std::uint32_t(i)};
+      order[i] = {morton_key(integer(p.x, low.x), integer(p.y, low.y), integer(p.z, low.z)), std::uint32_t(i)};
     }
   });
   tbb::parallel_sort(order, [&](const Keyed& a, const Keyed& b) {

@@ -2,6 +2,8 @@
 // The layers of a picture and what one ray adds to them.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,8 @@ struct PixelSample {
   Vec3f normal{}, position{};
   float depth = 0;
 
+  bool empty() const { return coverage == 0 && emitted == RgbF{}; }
+
   static constexpr int kChannels = 23;
 };
 
@@ -30,11 +34,16 @@ inline const std::vector<std::string>& layer_names() {
 }
 
 /// Writes the mean of `count` samples to one pixel: radiance and coverage over all of them; albedo, normal, position,
-/// depth and irradiance over those that met a surface. sum.coverage counts these.
-inline void store_pixel(const PixelSample& sum, int count, float* out) {
+/// depth and irradiance over those that met a surface. sum.coverage counts these. Returns the number of values that
+/// are not finite.
+inline std::size_t store_pixel(const PixelSample& sum, int count, float* out) {
   const float all = 1.0f / float(count), seen = sum.coverage > 0 ? 1.0f / sum.coverage : 0.0f;
+  const float* const begin = out;
   const auto put = [&out](const Vec3f& value, float scale) {
-    for (std::size_t c = 0; c < 3; ++c) *out++ = value[c] * scale;
+    out[0] = value.x * scale;
+    out[1] = value.y * scale;
+    out[2] = value.z * scale;
+    out += 3;
   };
   put(sum.diffuse + sum.specular + sum.emitted, all);
   *out++ = sum.coverage * all;
@@ -45,6 +54,7 @@ inline void store_pixel(const PixelSample& sum, int count, float* out) {
   put(sum.position, seen);
   *out++ = sum.depth * seen;
   put(sum.irradiance, seen);
+  return std::size_t(std::count_if(begin, begin + PixelSample::kChannels, [](float v) { return !std::isfinite(v); }));
 }
 
 inline void add_sample(PixelSample& sum, const PixelSample& s) {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/octree/octree.h"
+#include "opaline/irradiance/light_sampling.h"
 #include "opaline/sampling/sample_surface.h"
 
 namespace opaline {
@@ -85,7 +85,10 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world, std::
 void list_stages(const Scene& scene, Plan& plan) {
   if (scene.settings.method == Method::hierarchical && !plan.groups.empty()) {
     plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
-    plan.stages.push_back(fmt::format("irradiance: {} light(s), a shadow ray each", scene.lights.size()));
+    std::size_t rays = 0;
+    for (const Light& light : scene.lights) rays += is_delta(light) ? 1 : std::size_t(scene.settings.light_samples);
+    plan.stages.push_back(
+        fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample", scene.lights.size(), rays));
     plan.stages.push_back("octree");
     plan.stages.push_back(scene.settings.evaluator == EvaluatorKind::classic
                               ? fmt::format("evaluation: classic traversal, {} sr", scene.settings.max_solid_angle)

@@ -2,7 +2,6 @@
 #include "opaline/render/render.h"
 
 #include <atomic>
-#include <cmath>
 
 #include "opaline/core/parallel.h"
 #include "render/camera_rays.h"
@@ -29,35 +28,50 @@ class TileRenderer {
   TileRenderer(const RenderInput& input, const CameraRays& camera, const Shader& shader, Image& image)
       : input_(input), camera_(camera), shader_(shader), image_(image) {}
 
-  // Renders one tile; returns its number of exitance queries.
-  std::size_t render(const Rectangle& tile) const {
+  struct Counts {
+    std::size_t queries = 0, non_finite = 0;
+  };
+
+  Counts render(const Rectangle& tile) const {
     const std::size_t pixels = std::size_t(tile.x1 - tile.x0) * std::size_t(tile.y1 - tile.y0);
-    const int count = input_.scene.film.samples_per_pixel;
-    std::vector<PixelSample> sums(pixels), samples(pixels);
+    const int samples = input_.scene.film.samples_per_pixel;
+    std::vector<PixelSample> sums(pixels), seen(samples > 1 ? pixels : 0);
     std::vector<Ray> rays(pixels);
     std::vector<Hit> hits(pixels);
     std::vector<std::uint64_t> keys(pixels);
-    std::size_t queries = 0;
-    for (int s = 0; s < count; ++s) {
+    Counts counts;
+    for (int s = 0; s < samples; ++s) {
       std::size_t i = 0;
       for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x, ++i) {
           rays[i] = camera_.ray(x, y, s);
-          keys[i] = (std::uint64_t(y) * std::uint64_t(image_.full_width) + std::uint64_t(x)) * std::uint64_t(count) +
+          keys[i] = (std::uint64_t(y) * std::uint64_t(image_.full_width) + std::uint64_t(x)) * std::uint64_t(samples) +
                     std::uint64_t(s);
         }
+      advance(input_.monitor, 1);
       input_.rays.intersect(rays, hits);
-      std::fill(samples.begin(), samples.end(), PixelSample{});
-      queries += shader_.shade(rays, hits, keys, samples);
-      for (i = 0; i < pixels; ++i) add_sample(sums[i], samples[i]);
+      if (s == 0) {
+        counts.queries += shader_.shade(rays, hits, keys, sums);
+        continue;
+      }
+      std::fill(seen.begin(), seen.end(), PixelSample{});
+      counts.queries += shader_.shade(rays, hits, keys, seen);
+      for (i = 0; i < pixels; ++i) add_sample(sums[i], seen[i]);
     }
-    std::size_t i = 0;
-    for (int y = tile.y0; y < tile.y1; ++y)
-      for (int x = tile.x0; x < tile.x1; ++x) store_pixel(sums[i++], count, pixel(x, y));
-    return queries;
+    counts.non_finite = store(tile, sums, samples);
+    return counts;
   }
 
  private:
+  // Pixels without anything stay as they are: zero, and their memory untouched.
+  std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, int samples) const {
+    std::size_t i = 0, non_finite = 0;
+    for (int y = tile.y0; y < tile.y1; ++y)
+      for (int x = tile.x0; x < tile.x1; ++x, ++i)
+        if (!sums[i].empty()) non_finite += store_pixel(sums[i], samples, pixel(x, y));
+    return non_finite;
+  }
+
   float* pixel(int x, int y) const {
     const std::size_t row = std::size_t(y - image_.crop_y), column = std::size_t(x - image_.crop_x);
     return image_.pixels.data() + (row * std::size_t(image_.width) + column) * PixelSample::kChannels;
@@ -98,14 +112,15 @@ RenderResult render(const RenderInput& input) {
   const Shader shader(input);
   const TileRenderer renderer(input, camera, shader, image);
   const std::vector<Rectangle> tiles = tiles_of(part);
-  if (input.monitor != nullptr) input.monitor->begin(tiles.size());
-  std::atomic<std::size_t> queries{0};
+  if (input.monitor != nullptr) input.monitor->begin("shading", tiles.size() * std::size_t(film.samples_per_pixel));
+  std::atomic<std::size_t> queries{0}, non_finite{0};
   parallel_chunks(tiles.size(), 1, [&](std::size_t begin, std::size_t, std::size_t) {
-    queries += renderer.render(tiles[begin]);
-    advance(input.monitor, 1);
+    const TileRenderer::Counts counts = renderer.render(tiles[begin]);
+    queries += counts.queries;
+    non_finite += counts.non_finite;
   });
   result.queries = queries;
-  for (const float value : image.pixels) result.non_finite += std::isfinite(value) ? 0 : 1;
+  result.non_finite = non_finite;
   return result;
 }
 

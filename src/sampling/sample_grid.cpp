@@ -4,32 +4,29 @@
 namespace opaline {
 
 void SampleGrid::reserve_cell(std::uint64_t key) {
-  const auto place = [&](std::uint64_t k) {
-    std::size_t slot = hash(k);
-    while (keys_[slot] != kEmpty && keys_[slot] != k) slot = (slot + 1) & (keys_.size() - 1);
-    return slot;
-  };
-  const std::size_t slot = place(key);
-  if (keys_[slot] == key) return;
-  keys_[slot] = key;
-  if (++used_ * 2 < keys_.size()) return;
-  std::vector<std::uint64_t> old_keys(keys_.size() * 2, kEmpty);
-  std::vector<Cell> old_cells(cells_.size() * 2);
-  --shift_;
-  old_keys.swap(keys_);
-  old_cells.swap(cells_);
-  for (std::size_t i = 0; i < old_keys.size(); ++i) {
-    if (old_keys[i] == kEmpty) continue;
-    const std::size_t moved = place(old_keys[i]);
-    keys_[moved] = old_keys[i];
-    cells_[moved] = old_cells[i];
+  auto* block = const_cast<Block*>(find_block(key >> 6));
+  if (block == nullptr) {
+    blocks_.push_back({key >> 6, 0, {}});
+    if (blocks_.size() * 2 > slots_.size()) grow();
+    insert_slot(std::uint32_t(blocks_.size() - 1));
+    block = &blocks_.back();
   }
+  if (block->occupied >> (key & 63) & 1) return;
+  block->occupied |= std::uint64_t(1) << (key & 63);
+  block->cells[key & 63] = std::uint32_t(cells_.size());
+  cells_.emplace_back();
 }
 
-void SampleGrid::add(std::uint64_t key, const Vec3f& position, const Vec3f& geometric_normal) {
-  Cell& cell = *find(key);
-  samples_.push_back({position, geometric_normal, cell.first});
-  cell.first = std::uint32_t(samples_.size() - 1);
+void SampleGrid::grow() {
+  slots_.assign(slots_.size() * 2, kNone);
+  --shift_;
+  for (std::uint32_t i = 0; i + 1 < blocks_.size(); ++i) insert_slot(i);
+}
+
+void SampleGrid::insert_slot(std::uint32_t block) {
+  std::size_t slot = hash(blocks_[block].key);
+  while (slots_[slot] != kNone) slot = (slot + 1) & (slots_.size() - 1);
+  slots_[slot] = block;
 }
 
 }  // namespace opaline

@@ -2,103 +2,164 @@
 // A sparse grid of cells over space that finds the samples near a point.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "opaline/core/morton.h"
 #include "opaline/core/vec3.h"
 
 namespace opaline {
 
-/// Open-addressing hash from cell to a list of samples. Cells are twice the Poisson radius wide: a ball of one
-/// radius meets at most eight. Adding is serial; looking up is safe from many threads.
+/// Cells are twice the Poisson radius wide: a ball of one radius meets at most eight. Blocks of 4 x 4 x 4 cells are
+/// found by a hash and hold a bit for each cell that exists: space around a surface is mostly empty. Samples lie
+/// cell by cell, along the Morton curve as far as cells were made together.
 class SampleGrid {
  public:
-  static constexpr std::uint32_t kNone = ~0u;
-  static constexpr std::uint32_t kLast = (1u << 20) - 1;  // largest coordinate of a cell
-
+  struct Cell {
+    std::uint32_t first = 0, count = 0;              // its samples
+    std::uint32_t round_first = 0, round_count = 0;  // candidates accepted in the round under way
+  };
+  struct Place {  // where on the mesh a sample is
+    std::uint32_t triangle;
+    float u, v;
+  };
   struct Sample {
     Vec3f position, geometric_normal;
-    std::uint32_t next = kNone;
-  };
-  struct Cell {
-    std::uint32_t first = kNone;                      // newest sample of the cell
-    std::uint32_t round_begin = 0, round_count = 0;  // samples accepted in the round under way
+    Place place;
   };
   struct Coordinates {
     std::uint32_t x, y, z;
   };
 
-  SampleGrid(const Vec3f& low, float cell_size) : low_(low), cell_(cell_size), inverse_cell_(1 / cell_size), keys_(1024, kEmpty), cells_(1024) {}
+  SampleGrid(const Vec3f& low, float cell_size)
+      : low_(low), cell_size_(cell_size), inverse_cell_(1 / cell_size), slots_(1024, kNone) {}
 
   Coordinates coordinates(const Vec3f& p) const {
     const Vec3f c = (p - low_) * inverse_cell_;
     return {clamp_coordinate(c.x), clamp_coordinate(c.y), clamp_coordinate(c.z)};
   }
-  /// 60 bits.
-  static std::uint64_t key(const Coordinates& c) {
-    return std::uint64_t(c.x) | std::uint64_t(c.y) << 20 | std::uint64_t(c.z) << 40;
+  /// 60 bits; the lowest three are the cell's parities.
+  std::uint64_t key(const Vec3f& p) const {
+    const Coordinates c = coordinates(p);
+    return morton_key(c.x, c.y, c.z);
   }
 
-  const Cell* find(std::uint64_t key) const {
-    std::size_t slot = hash(key);
-    while (keys_[slot] != key) {
-      if (keys_[slot] == kEmpty) return nullptr;
-      slot = (slot + 1) & (keys_.size() - 1);
-    }
-    return &cells_[slot];
-  }
-  Cell* find(std::uint64_t key) { return const_cast<Cell*>(static_cast<const SampleGrid&>(*this).find(key)); }
-
-  /// Makes sure that the cell exists; later calls may move all cells.
+  /// An existing cell.
+  Cell& cell(std::uint64_t key) { return cells_[find_block(key >> 6)->cells[key & 63]]; }
+  /// Makes sure that the cell exists; may move all cells.
   void reserve_cell(std::uint64_t key);
-  /// Adds a sample to its existing cell.
-  void add(std::uint64_t key, const Vec3f& position, const Vec3f& geometric_normal);
 
-  const std::vector<Sample>& samples() const { return samples_; }
+  /// Ends a round: takes in the candidates accepted in it. accepted(i): the sample of candidate i, for i in each
+  /// cell's [round_first, round_first + round_count).
+  template <class Accepted>
+  void end_round(const Accepted& accepted) {
+    std::vector<Vec3f> positions, normals;
+    std::vector<Place> places;
+    positions.reserve(positions_.size() * 5 / 4);
+    normals.reserve(positions_.size() * 5 / 4);
+    places.reserve(positions_.size() * 5 / 4);
+    const auto add = [&](const Sample& s) {
+      positions.push_back(s.position);
+      normals.push_back(s.geometric_normal);
+      places.push_back(s.place);
+    };
+    for (Cell& cell : cells_) {
+      const auto first = std::uint32_t(positions.size());
+      for (std::uint32_t i = cell.first; i < cell.first + cell.count; ++i) add({positions_[i], normals_[i], places_[i]});
+      for (std::uint32_t i = 0; i < cell.round_count; ++i) add(accepted(cell.round_first + i));
+      cell = {first, cell.count + cell.round_count, 0, 0};
+    }
+    positions_.swap(positions);
+    normals_.swap(normals);
+    places_.swap(places);
+  }
 
-  /// Calls visit(cell) for each existing cell that the ball of this radius around p meets.
+  std::size_t size() const { return positions_.size(); }
+  const Vec3f& position(std::size_t sample) const { return positions_[sample]; }
+  const Vec3f& geometric_normal(std::size_t sample) const { return normals_[sample]; }
+  const Place& place(std::size_t sample) const { return places_[sample]; }
+
+  /// Calls visit(cell) for each existing cell that the ball of this radius around p meets, until one returns true.
   template <class Visit>
   void for_cells_near(const Vec3f& p, float radius, const Visit& visit) const {
     const Coordinates a = coordinates(p - Vec3f(radius)), b = coordinates(p + Vec3f(radius));
     const Vec3f place = p - low_;
-    // Slightly more than the radius: the last cell also holds everything beyond the grid.
+    // Slightly more than the radius: rounding must not lose a cell.
     const float reach2 = radius * radius * 1.0001f;
-    for (std::uint32_t z = a.z; z <= b.z; ++z) {
-      const float z2 = gap2(place.z, z);
-      for (std::uint32_t y = a.y; y <= b.y; ++y) {
-        const float yz2 = z2 + gap2(place.y, y);
-        if (yz2 > reach2) continue;
-        for (std::uint32_t x = a.x; x <= b.x; ++x) {
-          if (yz2 + gap2(place.x, x) > reach2) continue;
-          if (const Cell* cell = find(key({x, y, z}))) visit(*cell);
+    for (std::uint32_t bz = a.z >> 2; bz <= b.z >> 2; ++bz)
+      for (std::uint32_t by = a.y >> 2; by <= b.y >> 2; ++by)
+        for (std::uint32_t bx = a.x >> 2; bx <= b.x >> 2; ++bx) {
+          const Block* block = find_block(morton_key(bx, by, bz));
+          if (block == nullptr) continue;
+          std::uint64_t inside =
+              block->occupied & range_mask(a.x, b.x, bx, 0) & range_mask(a.y, b.y, by, 1) & range_mask(a.z, b.z, bz, 2);
+          for (; inside != 0; inside &= inside - 1) {
+            const auto bit = std::uint32_t(std::countr_zero(inside));
+            const float gap2 = gap2_to(place.x, 4 * bx + axis_bits(bit)) + gap2_to(place.y, 4 * by + axis_bits(bit >> 1)) +
+                               gap2_to(place.z, 4 * bz + axis_bits(bit >> 2));
+            if (gap2 <= reach2 && visit(cells_[block->cells[bit]])) return;
+          }
         }
-      }
-    }
   }
 
  private:
-  static constexpr std::uint64_t kEmpty = ~0ull;
+  static constexpr std::uint32_t kNone = ~0u;
+  static constexpr std::uint32_t kLast = (1u << 20) - 1;  // largest coordinate; its cells hold all beyond, too
+
+  struct Block {
+    std::uint64_t key, occupied;
+    std::array<std::uint32_t, 64> cells;
+  };
+
+  // The two bits of x in a cell's six-bit Morton place within its block.
+  static constexpr std::uint32_t axis_bits(std::uint32_t place) { return (place & 1) | (place >> 2 & 2); }
+
+  // Bits of a block's cells whose coordinate along an axis lies in [low, high].
+  static std::uint64_t range_mask(std::uint32_t low, std::uint32_t high, std::uint32_t block, std::uint32_t axis) {
+    static constexpr auto kLayers = [] {
+      std::array<std::array<std::uint64_t, 4>, 3> layers{};
+      for (std::uint32_t a = 0; a < 3; ++a)
+        for (std::uint32_t bit = 0; bit < 64; ++bit) layers[a][axis_bits(bit >> a)] |= std::uint64_t(1) << bit;
+      return layers;
+    }();
+    const std::uint32_t first = low > 4 * block ? low - 4 * block : 0, last = std::min(high - 4 * block, 3u);
+    std::uint64_t mask = 0;
+    for (std::uint32_t i = first; i <= last; ++i) mask |= kLayers[axis][i];
+    return mask;
+  }
 
   // Squared distance along one axis from a place to the cells of this coordinate.
-  float gap2(float place, std::uint32_t coordinate) const {
-    const float low = float(coordinate) * cell_;
-    const float gap = place < low ? low - place : place > low + cell_ && coordinate < kLast ? place - low - cell_ : 0;
+  float gap2_to(float place, std::uint32_t coordinate) const {
+    const float low = float(coordinate) * cell_size_;
+    const float above = coordinate < kLast ? place - low - cell_size_ : 0;
+    const float gap = std::max(0.0f, std::max(low - place, above));
     return gap * gap;
   }
-  static std::uint32_t clamp_coordinate(float c) {
-    return c <= 0 ? 0 : c >= float(kLast) ? kLast : std::uint32_t(c);
+
+  const Block* find_block(std::uint64_t key) const {
+    std::size_t slot = hash(key);
+    while (slots_[slot] != kNone && blocks_[slots_[slot]].key != key) slot = (slot + 1) & (slots_.size() - 1);
+    return slots_[slot] == kNone ? nullptr : &blocks_[slots_[slot]];
   }
+  void grow();
+  void insert_slot(std::uint32_t block);
   std::size_t hash(std::uint64_t key) const {
     return std::size_t((key * 0x9E3779B97F4A7C15ull) >> shift_);  // the top bits depend on all of the key
   }
 
+  static std::uint32_t clamp_coordinate(float c) { return c <= 0 ? 0 : c >= float(kLast) ? kLast : std::uint32_t(c); }
+
   Vec3f low_;
-  float cell_, inverse_cell_;
-  int shift_ = 64 - 10;  // 64 - log2(size)
-  std::size_t used_ = 0;
-  std::vector<std::uint64_t> keys_;  // a power of two of them
-  std::vector<Cell> cells_;          // as many
-  std::vector<Sample> samples_;
+  float cell_size_, inverse_cell_;
+  int shift_ = 64 - 10;               // 64 - log2(size of slots_)
+  std::vector<std::uint32_t> slots_;  // hash table of indices into blocks_, a power of two of them
+  std::vector<Block> blocks_;
+  std::vector<Cell> cells_;
+  std::vector<Vec3f> positions_, normals_;
+  std::vector<Place> places_;
 };
 
 }  // namespace opaline

@@ -3,7 +3,9 @@
 
 #include <tbb/parallel_sort.h>
 
+#include <compare>
 #include <numeric>
+#include <tuple>
 
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
@@ -16,20 +18,13 @@ namespace opaline {
 namespace {
 
 // Radius over sqrt(area / count) for a sampling of 10 rounds; measured (test_poisson_disk checks the count).
-constexpr double kRadiusPerSpacing = 0.755;
+constexpr double kRadiusPerSpacing = 0.748;
 
 // A place on the surface that has no accepted sample within the radius yet.
 struct Candidate {
   Vec3f position;
-  std::uint32_t triangle;  // in the TriangleList
-  float u, v;
-  std::uint64_t order;     // random: the order in which a cell's candidates are tried
-};
-
-// An accepted candidate, in the grid's order.
-struct Accepted {
-  std::uint32_t triangle;
-  float u, v;
+  SampleGrid::Place place;  // its triangle is an index into the TriangleList
+  std::uint64_t order;      // random: the order in which a cell's candidates are tried
 };
 
 class PoissonDisk {
@@ -39,7 +34,7 @@ class PoissonDisk {
 
   // One round: `count` candidates, stratified over the area; those far from all samples are tried for real.
   void throw_darts(std::size_t count, std::uint64_t seed, Monitor* monitor) {
-    run_round(count, monitor, [&](std::size_t begin, std::size_t end, const auto& keep) {
+    run_round(count, radius_, monitor, [&](std::size_t begin, std::size_t end, const auto& keep) {
       const double step = triangles_.area() / double(count);
       std::size_t t = triangles_.find(double(begin) * step);
       for (std::size_t i = begin; i < end; ++i) {
@@ -56,36 +51,33 @@ class PoissonDisk {
     });
   }
 
-  // The last round: every triangle's centroid, so that no part of the surface stays without a sample.
+  // The last round: the centroids of triangles with nothing near, so that no part of the surface, however small,
+  // stays without a sample.
   void cover_centroids(Monitor* monitor) {
-    run_round(triangles_.size(), monitor, [&](std::size_t begin, std::size_t end, const auto& keep) {
+    run_round(triangles_.size(), 2 * radius_, monitor, [&](std::size_t begin, std::size_t end, const auto& keep) {
       for (std::size_t t = begin; t < end; ++t) keep(t, 1.0f / 3, 1.0f / 3, hash_bits(0, t));
     });
   }
 
   const SampleGrid& grid() const { return grid_; }
-  const std::vector<Accepted>& accepted() const { return accepted_; }
 
  private:
-  // A candidate in its cell; sorted by phase, cell and random order.
+  // A candidate in its cell. Sorted by phase (the cell's parities), cell and random order.
   struct Entry {
-    std::uint64_t phase_and_cell, order;
+    std::uint64_t phase, cell, order;
     std::uint32_t candidate;
-    friend bool operator<(const Entry& a, const Entry& b) {
-      if (a.phase_and_cell != b.phase_and_cell) return a.phase_and_cell < b.phase_and_cell;
-      return a.order != b.order ? a.order < b.order : a.candidate < b.candidate;
-    }
+    friend auto operator<=>(const Entry&, const Entry&) = default;
   };
 
   template <class Generate>
-  void run_round(std::size_t count, Monitor* monitor, const Generate& generate) {
+  void run_round(std::size_t count, float clearance, Monitor* monitor, const Generate& generate) {
     constexpr std::size_t kChunk = 4096;
     std::vector<std::vector<Candidate>> chunks(chunk_count(count, kChunk));
     parallel_chunks(count, kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
       generate(begin, end, [&](std::size_t t, float u, float v, std::uint64_t order) {
         const TriangleList::Corners corners = triangles_.corners(triangles_.id(t));
         const Vec3f p = corners.at(u, v);
-        if (!conflicts(p, corners)) chunks[chunk].push_back({p, std::uint32_t(t), u, v, order});
+        if (is_clear(p, corners, clearance)) chunks[chunk].push_back({p, {std::uint32_t(t), u, v}, order});
       });
       advance(monitor, end - begin);
     });
@@ -94,18 +86,20 @@ class PoissonDisk {
     insert(candidates);
   }
 
-  bool conflicts(const Vec3f& p, const TriangleList::Corners& corners) const {
-    bool found = false;
+  // No accepted sample of the triangle's sheet lies within the clearance.
+  bool is_clear(const Vec3f& p, const TriangleList::Corners& corners, float clearance) const {
+    bool clear = true;
     Vec3f normal{};
-    grid_.for_cells_near(p, radius_, [&](const SampleGrid::Cell& cell) {
-      for (std::uint32_t s = cell.first; s != SampleGrid::kNone && !found; s = grid_.samples()[s].next) {
-        const SampleGrid::Sample& sample = grid_.samples()[s];
-        if (dot(sample.position - p, sample.position - p) >= radius_ * radius_) continue;
+    grid_.for_cells_near(p, clearance, [&](const SampleGrid::Cell& cell) {
+      for (std::uint32_t i = cell.first; i < cell.first + cell.count && clear; ++i) {
+        const Vec3f away = grid_.position(i) - p;
+        if (dot(away, away) >= clearance * clearance) continue;
         if (normal == Vec3f{}) normal = corners.geometric_normal();
-        found = same_sheet(normal, sample.geometric_normal);
+        clear = !same_sheet(normal, grid_.geometric_normal(i));
       }
+      return !clear;
     });
-    return found;
+    return clear;
   }
 
   void insert(const std::vector<Candidate>& candidates) {
@@ -113,75 +107,63 @@ class PoissonDisk {
     std::vector<Vec3f> normals(candidates.size());
     parallel_chunks(candidates.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i) {
-        const SampleGrid::Coordinates c = grid_.coordinates(candidates[i].position);
-        const std::uint64_t phase = (c.x & 1) | (c.y & 1) << 1 | (c.z & 1) << 2;
-        entries[i] = {phase << 60 | SampleGrid::key(c), candidates[i].order, std::uint32_t(i)};
-        normals[i] = triangles_.corners(triangles_.id(candidates[i].triangle)).geometric_normal();
+        const std::uint64_t key = grid_.key(candidates[i].position);
+        entries[i] = {key & 7, key, candidates[i].order, std::uint32_t(i)};
+        normals[i] = triangles_.corners(triangles_.id(candidates[i].place.triangle)).geometric_normal();
       }
     });
     tbb::parallel_sort(entries);
-    std::vector<std::size_t> runs;  // where each cell begins
+    std::vector<std::size_t> runs;  // where each cell's entries begin
     for (std::size_t i = 0; i < entries.size(); ++i)
-      if (i == 0 || entries[i].phase_and_cell != entries[i - 1].phase_and_cell) {
-        runs.push_back(i);
-        grid_.reserve_cell(cell_key(candidates, entries[i]));
-      }
+      if (i == 0 || entries[i].cell != entries[i - 1].cell) runs.push_back(i);
+    reserve_cells(entries, runs);
     for (std::size_t begin = 0; begin < runs.size();) {
       std::size_t end = begin;
-      const auto phase = [&](std::size_t run) { return entries[runs[run]].phase_and_cell >> 60; };
-      while (end < runs.size() && phase(end) == phase(begin)) ++end;
+      while (end < runs.size() && entries[runs[end]].phase == entries[runs[begin]].phase) ++end;
       parallel_chunks(end - begin, 64, [&](std::size_t first, std::size_t last, std::size_t) {
         for (std::size_t r = begin + first; r < begin + last; ++r)
           try_cell(candidates, normals, entries, runs[r], r + 1 < runs.size() ? runs[r + 1] : entries.size());
       });
       begin = end;
     }
-    append_accepted(candidates, normals, entries, runs);
+    grid_.end_round([&](std::uint32_t i) {
+      const std::uint32_t c = entries[i].candidate;
+      return SampleGrid::Sample{candidates[c].position, normals[c], candidates[c].place};
+    });
   }
 
-  std::uint64_t cell_key(const std::vector<Candidate>& candidates, const Entry& entry) const {
-    return SampleGrid::key(grid_.coordinates(candidates[entry.candidate].position));
+  // In Morton order, so that neighbours in space are neighbours in memory.
+  void reserve_cells(const std::vector<Entry>& entries, const std::vector<std::size_t>& runs) {
+    std::vector<std::uint64_t> keys;
+    for (const std::size_t run : runs) keys.push_back(entries[run].cell);
+    tbb::parallel_sort(keys);
+    for (const std::uint64_t key : keys) grid_.reserve_cell(key);
   }
 
   // Tries one cell's candidates in order; the accepted ones move to the front of its run. Cells of one phase are
   // two radii apart, so none sees another at work.
   void try_cell(const std::vector<Candidate>& candidates, const std::vector<Vec3f>& normals,
                 std::vector<Entry>& entries, std::size_t begin, std::size_t end) {
-    SampleGrid::Cell& own = *grid_.find(cell_key(candidates, entries[begin]));
-    own.round_begin = std::uint32_t(begin);
-    own.round_count = 0;
+    SampleGrid::Cell& own = grid_.cell(entries[begin].cell);
+    own.round_first = std::uint32_t(begin);
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t mine = entries[i].candidate;
       bool free = true;
       grid_.for_cells_near(candidates[mine].position, radius_, [&](const SampleGrid::Cell& cell) {
         for (std::uint32_t k = 0; k < cell.round_count && free; ++k) {
-          const std::uint32_t other = entries[cell.round_begin + k].candidate;
+          const std::uint32_t other = entries[cell.round_first + k].candidate;
           const Vec3f away = candidates[other].position - candidates[mine].position;
           free = dot(away, away) >= radius_ * radius_ || !same_sheet(normals[mine], normals[other]);
         }
+        return !free;
       });
       if (free) std::swap(entries[i], entries[begin + own.round_count++]);
-    }
-  }
-
-  void append_accepted(const std::vector<Candidate>& candidates, const std::vector<Vec3f>& normals,
-                       const std::vector<Entry>& entries, const std::vector<std::size_t>& runs) {
-    for (const std::size_t run : runs) {
-      const std::uint64_t key = cell_key(candidates, entries[run]);
-      SampleGrid::Cell& cell = *grid_.find(key);
-      for (std::uint32_t k = 0; k < cell.round_count; ++k) {
-        const std::uint32_t i = entries[run + k].candidate;
-        grid_.add(key, candidates[i].position, normals[i]);
-        accepted_.push_back({candidates[i].triangle, candidates[i].u, candidates[i].v});
-      }
-      cell.round_count = 0;
     }
   }
 
   const TriangleList& triangles_;
   float radius_;
   SampleGrid grid_;
-  std::vector<Accepted> accepted_;
 };
 
 Vec3f lowest_corner(const World& world, std::span<const std::uint32_t> meshes) {
@@ -190,10 +172,10 @@ Vec3f lowest_corner(const World& world, std::span<const std::uint32_t> meshes) {
   return Vec3f(low);
 }
 
-SurfaceSample make_sample(const TriangleList& triangles, const Accepted& accepted, double area) {
-  const TriangleId id = triangles.id(accepted.triangle);
-  const SurfacePoint point = surface_point(triangles.mesh(id), id.triangle, accepted.u, accepted.v);
-  return {id.mesh, id.triangle, accepted.u, accepted.v, point.position, point.normal, float(area)};
+SurfaceSample make_sample(const TriangleList& triangles, const SampleGrid::Place& place, double area) {
+  const TriangleId id = triangles.id(place.triangle);
+  const SurfacePoint point = surface_point(triangles.mesh(id), id.triangle, place.u, place.v);
+  return {id.mesh, id.triangle, place.u, place.v, point.position, point.normal, float(area)};
 }
 
 }  // namespace
@@ -207,29 +189,30 @@ SurfaceSamples sample_surface(const SamplingInput& input) {
   SurfaceSamples result;
   result.area = triangles.area();
   if (triangles.size() == 0) return result;
-  require(triangles.size() < SampleGrid::kNone, "fewer than 2^32 triangles in a group");
+  require(triangles.size() < 0xFFFFFFFFu, "fewer than 2^32 triangles in a group");
   require(input.count >= 1, "at least one sample");
   const float radius = float(kRadiusPerSpacing * std::sqrt(result.area / double(input.count)));
   result.radius = double(radius);
   if (input.monitor != nullptr)
-    input.monitor->begin(input.count * std::size_t(input.candidate_rounds) + 2 * triangles.size());
+    input.monitor->begin("sampling", input.count * std::size_t(input.candidate_rounds) + 2 * triangles.size());
 
   PoissonDisk poisson(triangles, lowest_corner(input.world, input.meshes), radius);
   for (int round = 0; round < input.candidate_rounds; ++round)
     poisson.throw_darts(input.count, hash_bits(input.seed, std::uint64_t(round)), input.monitor);
   poisson.cover_centroids(input.monitor);
 
-  const std::vector<double> areas = surface_shares(triangles, poisson.grid(), radius, input.monitor);
-  const std::vector<Accepted>& accepted = poisson.accepted();
-  std::vector<std::uint32_t> order(accepted.size());
+  const SampleGrid& grid = poisson.grid();
+  const std::vector<double> areas = surface_shares(triangles, grid, radius, input.monitor);
+  std::vector<std::uint32_t> order(grid.size());
   std::iota(order.begin(), order.end(), 0u);
   tbb::parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) {
-    return accepted[a].triangle != accepted[b].triangle ? accepted[a].triangle < accepted[b].triangle : a < b;
+    const SampleGrid::Place &p = grid.place(a), &q = grid.place(b);
+    return std::tie(p.triangle, p.u, p.v) < std::tie(q.triangle, q.u, q.v);
   });
   result.samples.resize(order.size());
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i)
-      result.samples[i] = make_sample(triangles, accepted[order[i]], areas[order[i]]);
+      result.samples[i] = make_sample(triangles, grid.place(order[i]), areas[order[i]]);
   });
   return result;
 }

@@ -158,11 +158,10 @@ class TriangleDivider {
       // A sheet without any sample near falls to the other sheets'.
       const bool any_sheet = reach > 64 * (radius_ + piece.extent);
       grid_.for_cells_near(piece.center, reach, [&](const SampleGrid::Cell& cell) {
-        for (std::uint32_t s = cell.first; s != SampleGrid::kNone; s = grid_.samples()[s].next) {
-          const SampleGrid::Sample& sample = grid_.samples()[s];
-          if (any_sheet || same_sheet(sample.geometric_normal, normal_))
-            owners_.push_back({distance2(sample.position, piece.center), s});
-        }
+        for (std::uint32_t s = cell.first; s < cell.first + cell.count; ++s)
+          if (any_sheet || same_sheet(grid_.geometric_normal(s), normal_))
+            owners_.push_back({distance2(grid_.position(s), piece.center), s});
+        return false;
       });
       const float needed = reach_of_owners(piece, 0, owners_.size());
       if (owners_.empty() || needed > reach) continue;
@@ -175,7 +174,7 @@ class TriangleDivider {
   void narrow_owners(const Ball& piece, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const std::uint32_t s = owners_[i].sample;
-      owners_.push_back({distance2(grid_.samples()[s].position, piece.center), s});
+      owners_.push_back({distance2(grid_.position(s), piece.center), s});
     }
     const float needed = reach_of_owners(piece, last, owners_.size());
     const auto far = [&](const Owner& o) { return o.distance2 > needed * needed; };
@@ -199,7 +198,7 @@ class TriangleDivider {
     const auto flat = [&](const Vec3d& p) { return Point2{dot(p - a, x_axis), dot(p - a, y_axis)}; };
     sites_.clear();
     for (std::size_t i = first; i < last; ++i) {
-      const Vec3d p(grid_.samples()[owners_[i].sample].position);
+      const Vec3d p(grid_.position(owners_[i].sample));
       sites_.push_back({owners_[i].sample, flat(p), dot(p - a, p - a)});
     }
     const Point2 fa = flat(a), fb = flat(b), fc = flat(c);
@@ -232,7 +231,7 @@ class TriangleDivider {
 
 std::vector<double> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
                                    Monitor* monitor) {
-  std::vector<double> areas(grid.samples().size());
+  std::vector<double> areas(grid.size());
   // Blocks bound the memory of the pieces; within one, chunks are summed in order, whatever the threads.
   constexpr std::size_t kBlock = 1 << 16, kChunk = 256;
   std::vector<std::vector<Share>> chunks(chunk_count(kBlock, kChunk));

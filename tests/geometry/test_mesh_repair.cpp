@@ -51,6 +51,38 @@ TEST(MeshRepair, MixedWindingGivesTheSameMesh) {
   }
 }
 
+// Claim: where neighbours disagree in an open mesh, which has no outside, the larger part wins. Source:
+// orient.h. Tolerance: none. Fails if: the first triangle of a part always wins.
+TEST(MeshRepair, MajorityDecidesInOpenMeshes) {
+  Soup soup = cube();
+  soup.triangles.pop_back();
+  const CheckedMesh good = load(soup);
+  std::swap(soup.triangles[0][1], soup.triangles[0][2]);
+  const CheckedMesh mended = load(soup);
+  EXPECT_EQ(triangle_set(mended.mesh), triangle_set(good.mesh));
+  EXPECT_EQ(mended.report.flipped, 1u);
+}
+
+// Claim: triangles that share no vertices, only positions, are joined, zeros of either sign being the same.
+// Source: check_mesh.h. Tolerance: none. Fails if: vertices are not welded.
+TEST(MeshRepair, EqualPositionsAreOneVertex) {
+  const Soup whole = cube(1, {1, 1, 1});
+  Soup apart;
+  for (const auto& triangle : whole.triangles) {
+    const auto first = std::uint32_t(apart.positions.size());
+    for (const std::uint32_t v : triangle) {
+      apart.positions.push_back(whole.positions[v]);
+      if (first % 2 == 1)
+        for (std::size_t i = 0; i < 3; ++i)
+          if (apart.positions.back()[i] == 0) apart.positions.back()[i] = -0.0;
+    }
+    apart.triangles.push_back({first, first + 1, first + 2});
+  }
+  const CheckedMesh joined = load(apart);
+  EXPECT_EQ(joined.mesh.positions.size(), 8u);
+  EXPECT_EQ(joined.report.open_edges, 0u);
+}
+
 // Claim: a cavity (a closed part wound inward inside another) stays one; a file that is inside out as a
 // whole, cavity and all, is turned as a whole; parts side by side are judged each for itself. Source: the
 // brief. Tolerance: rounding of volumes. Fails if: every closed part is wound outward, or boxes alone decide
@@ -98,6 +130,15 @@ TEST(MeshRepair, DoublesAndTrianglesWithoutAreaAreDropped) {
   EXPECT_TRUE(warns(mesh.report, "3 triangles given twice were dropped"));
   EXPECT_TRUE(warns(mesh.report, "3 triangles without area were dropped"));
   EXPECT_EQ(mesh.report.open_edges, 0u);
+}
+
+// Claim: a double is one also if it brings normals of its own. Source, tolerance as above. Fails if: doubles
+// are looked for by vertices instead of positions.
+TEST(MeshRepair, DoublesWithOtherNormalsAreDropped) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0.6 0.8\n";
+  const CheckedMesh mesh = load("a.obj", vertices + "f 1//1 2//1 3//1\nf 2//2 3//2 1//2\n");
+  EXPECT_EQ(mesh.mesh.triangles.size(), 1u);
+  EXPECT_EQ(mesh.report.duplicates_dropped, 1u);
 }
 
 // Claim: a triangle of three points in a line is dropped but does not count as a leak. Source:
@@ -169,11 +210,11 @@ TEST(MeshRepair, CapOfASphereIsFilled) {
 // vertices that CGAL doubles are not led back.
 TEST(MeshRepair, HolesBesideNonManifoldPlacesAreFilled) {
   Soup soup = cube();
-  append(soup, cube(1, {2, 2, 2}));              // touches the first at one vertex
-  soup.triangles.pop_back();                     // a hole in the second
-  soup.triangles.erase(soup.triangles.begin());  // one in the first
-  soup.positions.push_back({0, -2, 1});
-  soup.triangles.push_back({4, 5, 16});  // a fin
+  append(soup, cube(1, {2, 2, 2}));                   // touches the first at one vertex
+  soup.triangles.erase(soup.triangles.begin() + 12);  // a hole in the second, at that vertex
+  soup.triangles.erase(soup.triangles.begin() + 2);   // and one in the first
+  soup.positions.push_back({0, -2, -1});
+  soup.triangles.push_back({0, 1, 16});  // a fin
   const CheckedMesh mesh = load(soup, true);
   EXPECT_EQ(mesh.report.holes_filled, 2u);
   EXPECT_EQ(mesh.report.open_edges, 2u);

@@ -40,7 +40,7 @@ std::optional<Error> error_of(Action action) {
   return {};
 }
 
-/// Nothing is left in OpenImageIO that it would print at exit.
+/// Nothing is left in OpenImageIO that its later versions print at exit.
 void expect_nothing_pending() {
   EXPECT_EQ(OIIO::geterror(), "");
 }

@@ -9,11 +9,13 @@ namespace opaline {
 
 /// Work counters of one stage, shared by its threads; polled by whoever shows the progress.
 struct Monitor {
+  std::atomic<const char*> stage{nullptr};  ///< what is under way, a literal; null: the caller knows best
   std::atomic<std::size_t> done{0};
   std::atomic<std::size_t> total{0};
   std::atomic<bool> cancelled{false};
 
-  void begin(std::size_t work) {
+  void begin(const char* name, std::size_t work) {
+    stage = name;
     done = 0;
     total = work;
   }

@@ -53,7 +53,7 @@ class RayScene {
   float offset() const { return offset_; }
   std::size_t bytes() const;
 
-  /// Rays traced so far and the time spent inside Embree for them, summed over threads: the floor of a render pass.
+  /// Rays traced so far and the CPU time spent inside Embree for them, all threads: the floor of a render pass.
   struct Statistics {
     std::uint64_t rays = 0;
     double seconds = 0;

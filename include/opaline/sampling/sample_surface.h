@@ -41,7 +41,7 @@ struct SurfaceSamples {
 inline bool same_sheet(const Vec3f& a, const Vec3f& b) { return dot(a, b) > -0.5f; }
 
 /// Samples whose places depend on the surface and the seed alone: not on the view, the lights, or the threads.
-/// out   every triangle's centroid has a sample of its sheet within radius
+/// out   every triangle's centroid has a sample of its sheet within two radii
 /// from  dart throwing in phase groups (Wei 2008) over a hash grid; shares: surface_shares
 SurfaceSamples sample_surface(const SamplingInput& input);
 

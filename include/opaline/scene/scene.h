@@ -87,7 +87,7 @@ struct TorusShape {  ///< axis along y
 using ShapeSource = std::variant<MeshFile, SphereShape, BoxShape, QuadShape, SlabShape, TorusShape>;
 
 enum class NormalMode {
-  smooth,   ///< area-weighted average at each vertex, or the file's own normals where it has them
+  smooth,   ///< angle-weighted average at each vertex, or the file's own normals where it has them
   faceted,  ///< geometric normals
 };
 

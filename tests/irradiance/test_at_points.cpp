@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Irradiance at points that are not samples.
+#include <gtest/gtest.h>
+
+#include "support/lighting.h"
+
+namespace opaline {
+namespace {
+
+using namespace test;
+
+struct Scene {
+  LitWorld lit{world_of({SphereShape{{}, 10}, BoxShape{{3, 12, 0}, {6, 13, 4}}})};
+  std::vector<std::uint32_t> sphere_only = {0};
+  std::vector<SurfaceSample> samples = sample_surface({lit.world, sphere_only, 500}).samples;
+  std::vector<SurfacePoint> points;
+  std::vector<std::uint64_t> keys;
+  std::vector<Light> lights = {light_of(PointLight{{5, 20, 3}, {100, 200, 300}}),
+                               light_of(DirectionalLight{normalized(Vec3d(.2, -1, .1)), {1, 0, 2}}),
+                               light_of(SphereLight{{-15, 10, 0}, 3, {0, 3, 1}}),
+                               light_of(QuadLight{{-4, 15, -4}, {8, 0, 0}, {0, 0, 8}, {1, 1, 0}}),
+                               light_of(Surroundings{{.1, .2, .3}})};
+
+  Scene() {
+    for (Light& light : lights) light = recentred(light, lit.world.origin);
+    for (const SurfaceSample& s : samples) {
+      points.push_back(point_of(lit.world, s));
+      keys.push_back(points.size());
+    }
+  }
+  std::vector<RgbF> at_points(double eta, int rays = 64) const {
+    return irradiance_at({lit.rays, points, keys, lights, eta, rays});
+  }
+};
+
+// Claim: at the samples' own places it is what compute_irradiance and combine_lights give. Source: one
+// integral. Tolerance: 1e-5 for delta lights; rms within 3 times the summed stated errors for area lights.
+// Fails if: one of the two forgets Ft, shadows or a light.
+TEST(IrradianceAtPoints, AgreesWithTheSamples) {
+  Scene scene;
+  const std::vector<Light> all = scene.lights;
+  for (const std::size_t kept : {2u, 5u}) {
+    scene.lights.assign(all.begin(), all.begin() + std::ptrdiff_t(kept));
+    const auto transfers =
+        compute_irradiance({scene.lit.world, scene.lit.rays, scene.samples, scene.lights, 1.5, 256});
+    const std::vector<RgbF> by_samples = combine_lights(transfers, scene.lights),
+                            at = scene.at_points(1.5, 256);
+    double error = 1e-5;
+    for (const LightTransfer& transfer : transfers) error += 3 * transfer.relative_error;
+    ASSERT_EQ(at.size(), by_samples.size());
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::vector<float> left;
+      std::vector<double> right;
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        left.push_back(at[i][c]);
+        right.push_back(double(by_samples[i][c]));
+      }
+      EXPECT_LE(rms_error(left, right), error) << kept << " lights, channel " << c;
+    }
+  }
+}
+
+// Claim: eta 0 means no boundary: the cosine alone, as for eta 1 exactly; and not a division by 0. Source:
+// irradiance.h. Tolerance: 1e-6 relative. Fails if: eta 0 goes into Fresnel's formula.
+TEST(IrradianceAtPoints, EtaZeroIsNoBoundary) {
+  const Scene scene;
+  const std::vector<RgbF> none = scene.at_points(0), matched = scene.at_points(1);
+  for (std::size_t i = 0; i < none.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(none[i][c], matched[i][c], 1e-6f * matched[i][c]);
+}
+
+// Claim: a point's value hangs on the point and its key, not on its place in the list or the threads: a
+// reversed list gives reversed bytes. Source: irradiance.h. Tolerance: none. Fails if: the index in the list
+// is the key.
+TEST(IrradianceAtPoints, OrderAndThreadsDoNotMatter) {
+  Scene scene;
+  const std::vector<RgbF> forward = with_threads(1, [&] { return scene.at_points(1.5); });
+  EXPECT_TRUE(same_bytes(forward, with_threads(2, [&] { return scene.at_points(1.5); })));
+  std::reverse(scene.points.begin(), scene.points.end());
+  std::reverse(scene.keys.begin(), scene.keys.end());
+  std::vector<RgbF> backward = scene.at_points(1.5);
+  std::reverse(backward.begin(), backward.end());
+  EXPECT_TRUE(same_bytes(forward, backward));
+}
+
+}  // namespace
+}  // namespace opaline
