@@ -117,7 +117,7 @@ void run_render(const RenderArguments& arguments) {
   if (shading.picture.non_finite > 0)
     print_warning(arguments.log,
                   std::to_string(shading.picture.non_finite) +
-                      " values of the picture are not finite and were written as 0; this is a defect");
+                      " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
   image.metadata = make_metadata(arguments, loaded.scene, samples);
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));

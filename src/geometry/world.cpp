@@ -4,6 +4,15 @@
 #include "opaline/geometry/make_mesh.h"
 
 namespace opaline {
+namespace {
+
+// v along its own direction with length 1, or the substitute where it has none.
+Vec3f unit(const Vec3f& v, const Vec3f& substitute) {
+  const float length2 = dot(v, v);
+  return length2 > 0 ? v * (1 / std::sqrt(length2)) : substitute;
+}
+
+}  // namespace
 
 World make_world(const Scene& scene) {
   World world;
@@ -26,19 +35,21 @@ World make_world(const Scene& scene) {
 
 SurfacePoint surface_point(const Mesh& mesh, std::uint32_t triangle, float u, float v) {
   const auto& corner = mesh.triangles[triangle];
-  const Vec3d a = mesh.positions[corner[0]];
+  const Vec3d& a = mesh.positions[corner[0]];
   const Vec3d ab = mesh.positions[corner[1]] - a, ac = mesh.positions[corner[2]] - a;
   SurfacePoint point;
   point.position = Vec3f(a + ab * double(u) + ac * double(v));
-  point.geometric = Vec3f(normalized(cross(ab, ac)));
+  // Scaled first: the cross product of tiny edges must not underflow.
+  const double scale = 1 / (std::abs(ab.x) + std::abs(ab.y) + std::abs(ab.z) + std::abs(ac.x) +
+                            std::abs(ac.y) + std::abs(ac.z));
+  point.geometric = unit(cross(Vec3f(ab * scale), Vec3f(ac * scale)), {});
   if (mesh.normals.empty()) {
     point.normal = point.geometric;
-    return point;
+  } else {
+    const Vec3f blended =
+        mesh.normals[corner[0]] * (1 - u - v) + mesh.normals[corner[1]] * u + mesh.normals[corner[2]] * v;
+    point.normal = unit(blended, point.geometric);
   }
-  const Vec3f blended = mesh.normals[corner[0]] * (1 - u - v) + mesh.normals[corner[1]] * u +
-                        mesh.normals[corner[2]] * v;
-  const float l = length(blended);
-  point.normal = l > 0 ? blended / l : point.geometric;
   return point;
 }
 

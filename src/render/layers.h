@@ -2,8 +2,6 @@
 // The layers of a picture and what one ray adds to them.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -34,18 +32,18 @@ inline const std::vector<std::string>& layer_names() {
 }
 
 /// Writes the mean of `count` samples to one pixel: radiance and coverage over all of them; albedo, normal, position,
-/// depth and irradiance over those that met a surface. sum.coverage counts these. Returns the number of values that
-/// are not finite.
+/// depth and irradiance over those that met a surface. sum.coverage counts these. Returns 1 if the pixel's
+/// radiance is not finite, else 0.
 inline std::size_t store_pixel(const PixelSample& sum, int count, float* out) {
   const float all = 1.0f / float(count), seen = sum.coverage > 0 ? 1.0f / sum.coverage : 0.0f;
-  const float* const begin = out;
   const auto put = [&out](const Vec3f& value, float scale) {
     out[0] = value.x * scale;
     out[1] = value.y * scale;
     out[2] = value.z * scale;
     out += 3;
   };
-  put(sum.diffuse + sum.specular + sum.emitted, all);
+  const RgbF radiance = sum.diffuse + sum.specular + sum.emitted;
+  put(radiance, all);
   *out++ = sum.coverage * all;
   put(sum.diffuse, all);
   put(sum.specular, all);
@@ -54,7 +52,7 @@ inline std::size_t store_pixel(const PixelSample& sum, int count, float* out) {
   put(sum.position, seen);
   *out++ = sum.depth * seen;
   put(sum.irradiance, seen);
-  return std::size_t(std::count_if(begin, begin + PixelSample::kChannels, [](float v) { return !std::isfinite(v); }));
+  return is_finite(radiance) ? 0 : 1;
 }
 
 inline void add_sample(PixelSample& sum, const PixelSample& s) {

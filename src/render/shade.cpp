@@ -47,7 +47,9 @@ Shader::Shader(const RenderInput& input) : input_(input) {
 std::size_t Shader::shade(std::span<const Ray> rays, std::span<const Hit> hits,
                           std::span<const std::uint64_t> keys, std::span<PixelSample> out) const {
   std::vector<Surface> surfaces;
-  surfaces.reserve(rays.size());
+  const auto hit_count = std::ranges::count_if(hits, [](const Hit& h) { return h.mesh != Hit::kMiss; });
+  if (hit_count == 0 && emitters_.empty() && surroundings_ == RgbF{}) return 0;
+  surfaces.reserve(std::size_t(hit_count));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const bool hit = hits[i].mesh != Hit::kMiss;
     const float far = hit ? hits[i].t : rays[i].far;

@@ -116,11 +116,11 @@ TEST(CliFailures, InterruptKeepsTheOldFile) {
 // nobody looks at the monitor. Source: interrupt.h. Fails if: the handler stays after the first.
 TEST(CliFailures, SecondInterruptKills) {
   const SceneFolder folder;
-  Child child({"render", folder.scene, "-o", folder.file("a.exr"), "--log", "json", "--method", "lambert",
-               "--resolution", "16x16", "--spp", "65536"});
+  Child child({"render", folder.scene, "-o", folder.file("a.exr"), "--log", "json", "--evaluator", "brute_force",
+               "--set", "settings.samples=100000", "--resolution", "64x64", "--spp", "64"});
   ASSERT_TRUE(child.prints(kShading));
   child.send(SIGINT);
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));  // a tile takes longer: the first is not heard yet
   child.send(SIGINT);
   const Outcome outcome = child.wait(20);
   EXPECT_EQ(outcome.signal, SIGINT) << "exit code " << outcome.exit_code;

@@ -61,12 +61,13 @@ TEST(IrradianceAtPoints, AgreesWithTheSamples) {
 }
 
 // Claim: eta 0 means no boundary: the cosine alone, as for eta 1 exactly; and not a division by 0. Source:
-// irradiance.h. Tolerance: 1e-6 relative. Fails if: eta 0 goes into Fresnel's formula.
+// irradiance.h. Tolerance: 3e-4 relative: at eta 1 Fresnel's formula in floats still reflects a little at
+// grazing angles, where 1 - cos^2 rounds. Fails if: eta 0 goes into Fresnel's formula.
 TEST(IrradianceAtPoints, EtaZeroIsNoBoundary) {
   const Scene scene;
   const std::vector<RgbF> none = scene.at_points(0), matched = scene.at_points(1);
   for (std::size_t i = 0; i < none.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(none[i][c], matched[i][c], 1e-6f * matched[i][c]);
+    for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(none[i][c], matched[i][c], 3e-4f * matched[i][c]);
 }
 
 // Claim: a point's value hangs on the point and its key, not on its place in the list or the threads: a

@@ -60,13 +60,17 @@ TEST(OddPlaces, OnASampleIsFinite) {
 }
 
 // Claim: within a sphere light that holds the whole scene, E is that of surroundings of its radiance or less:
-// no more light than a hemisphere gives. Source: pi L bounds E. Tolerance: 1 %. Fails if: the cone's solid
-// angle of a point within is taken from r/d > 1.
+// no more light than a hemisphere gives. Source: pi L bounds E. Tolerance: .5 % for the mean of 200 samples
+// of 1024 rays uniform over all directions, 5 % for each. Fails if: the cone's solid angle of a point within
+// is taken from r/d > 1.
 TEST(OddPlaces, ASphereLightAroundAllIsBounded) {
   const LitWorld scene(world_of({SphereShape{{}, 10}}));
   const std::vector<SurfaceSample> samples = samples_on(scene.world, 200).samples;
-  for (const float weight : scene.transfer(samples, unit_sphere_light({0, 3, 0}, 50), 1, 256).weights)
-    ASSERT_TRUE(weight >= 0 && double(weight) <= pi * 1.01) << weight;
+  const LightTransfer transfer = scene.transfer(samples, unit_sphere_light({0, 3, 0}, 50), 1, 1024);
+  for (const float weight : transfer.weights) {
+    ASSERT_TRUE(weight >= 0 && double(weight) <= pi * 1.05) << weight;
+  }
+  EXPECT_LE(mean_of(transfer.weights), pi * 1.005);
 }
 
 // Claim: no samples, and no lights, are no trouble. Source: an empty scene renders black. Tolerance: none.

@@ -20,7 +20,9 @@ TEST(Density, IsAsAskedAndTight) {
       const SurfaceSamples surface = samples_on(world, count);
       const double n = double(surface.samples.size());
       EXPECT_NEAR(n / double(count), 1, 0.05);
-      EXPECT_GE(surface.radius / std::sqrt(2 / std::sqrt(3.) * surface.area / n), 0.65);
+      const double rho = surface.radius / std::sqrt(2 / std::sqrt(3.) * surface.area / n);
+      RecordProperty("rho_" + name + "_" + std::to_string(count), std::to_string(rho));
+      EXPECT_GE(rho, 0.65);
       EXPECT_DOUBLE_EQ(surface.spacing(), std::sqrt(surface.area / n));
     }
 }

@@ -50,6 +50,7 @@ TEST(GaussianSums, AreThreeTimesBetterWithOwnShares) {
     const World world = world_of({source});
     const auto [own, equal] = rms_errors(world, samples_on(world, 5000), 100);
     RecordProperty("rms_error_own_shares_" + name, std::to_string(own));
+    RecordProperty("rms_error_equal_shares_" + name, std::to_string(equal));
     EXPECT_GE(equal / own, 3) << "own shares " << own << ", equal shares " << equal;
   }
 }

@@ -42,6 +42,7 @@ TEST(ShareAccuracy, SharesAreVoronoiCells) {
     const SurfaceSamples surface = samples_on(world, c.count);
     std::vector<double> errors = share_errors(world, surface, 200);
     std::sort(errors.begin(), errors.end());
+    RecordProperty("median_error_" + c.name, std::to_string(errors[errors.size() / 2]));
     EXPECT_LE(errors[errors.size() / 2], 0.05);
     EXPECT_LE(errors[errors.size() * 99 / 100], 0.25);
   }

@@ -22,7 +22,7 @@ struct RenderInput {
 struct RenderResult {
   Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2 sr)
   std::size_t queries = 0;     ///< points at which exitance was evaluated
-  std::size_t non_finite = 0;  ///< pixel values that are not finite; 0 unless something is broken
+  std::size_t non_finite = 0;  ///< pixels whose radiance is not finite; 0 unless something is broken
 };
 
 /// Radiance seen by the camera.
