@@ -90,11 +90,15 @@ LightTransfer transfer_from(const IrradianceInput& input, const Light& light, st
       const SurfaceSample& s = input.samples[i];
       batch.add(surface_point(input.world.meshes[s.mesh], s.triangle, s.u, s.v), i);
     }
-    // Two interleaved halves of the low-discrepancy points estimate the error of their mean.
+    // The first and the second half of the low-discrepancy points, each such a set itself, estimate the error of their
+    // mean: its variance is (difference of the halves' means)^2 times n0 n1 / n^2.
+    const int first_half = batch.samples() / 2;
+    const double n0 = double(first_half), n1 = double(batch.samples() - first_half);
+    const double weight0 = first_half > 0 ? std::sqrt(n1 / n0) : 0, weight1 = std::sqrt(n0 / n1);
     std::vector<std::array<double, 2>> halves(end - begin);
-    batch.trace([&](std::size_t p, int s, float e) { halves[p][std::size_t(s & 1)] += double(e); });
+    batch.trace([&](std::size_t p, int s, float e) { halves[p][s < first_half ? 0 : 1] += double(e); });
     for (std::size_t p = 0; p < halves.size(); ++p) {
-      const double sum = halves[p][0] + halves[p][1], difference = halves[p][0] - halves[p][1];
+      const double sum = halves[p][0] + halves[p][1], difference = weight0 * halves[p][0] - weight1 * halves[p][1];
       transfer.weights[begin + p] = float(sum);
       errors[chunk].variance += difference * difference;
       errors[chunk].sum += sum;

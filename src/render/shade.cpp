@@ -20,6 +20,7 @@ Appearance appearance_of(const RenderInput& input, std::size_t mesh) {
   if (!shape.medium) return appearance;
   const DiffuseProfile profile = make_diffuse_profile(input.scene.media[*shape.medium]);
   appearance = {true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), nullptr};
+  if (input.scene.settings.method == Method::lambert) return appearance;
   for (const TranslucentGroup& group : input.groups)
     if (std::ranges::find(group.plan.meshes, mesh) != group.plan.meshes.end()) appearance.group = &group;
   return appearance;

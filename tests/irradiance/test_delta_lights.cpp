@@ -55,6 +55,26 @@ TEST(DeltaLights, FtIsPerDirection) {
     }
 }
 
+// Claim: where the shading normal leans 55 degrees away from the geometric one, light must be above both
+// planes: the side is the geometric normal's, cosine and Ft the shading normal's. Source: irradiance.h.
+// Tolerance: 1e-4 relative, none for 0. Fails if: the geometric side is not asked (at a triangle's corner no
+// shadow ray meets the triangle itself), or the cosine is geometric.
+TEST(DeltaLights, MustBeAboveBothPlanes) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  mesh.normals.assign(3, normalized(Vec3f(-1, 1, -1)));
+  const LitWorld scene(world_of_mesh(mesh));
+  const std::vector<SurfaceSample> corner = {sample_at(scene.world, 0, 0, 0, 0)};
+  const auto weight = [&](const Vec3d& to) {
+    return double(scene.transfer(corner, unit_directional(-to), 1.5).weights[0]);
+  };
+  EXPECT_EQ(weight({-1, -.1, -1}), 0);  // below the triangle, above the shading normal's plane
+  EXPECT_EQ(weight({2, .1, 2}), 0);     // the other way round
+  const double cosine = dot(normalized(Vec3d(-1, .5, 0)), normalized(Vec3d(-1, 1, -1)));
+  EXPECT_NEAR(weight({-1, .5, 0}), entering(cosine, 1.5), 1e-4 * entering(cosine, 1.5));
+}
+
 // Claim: E falls with 1 / d^2 from 1 mm to a kilometre. Source: geometry. Tolerance: 1e-4 relative. Fails if:
 // distances are clamped, or lost in floats.
 TEST(DeltaLights, InverseSquare) {

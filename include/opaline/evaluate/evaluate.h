@@ -46,7 +46,7 @@ struct EvaluateInput {
   /// Entered irradiance at each query, for the channels that need it; empty: interpolated ones everywhere.
   std::span<const RgbF> irradiance = {};
   EvaluatorKind evaluator = EvaluatorKind::classic;
-  double max_solid_angle = 0.3;
+  double max_solid_angle = 0.1;
   Monitor* monitor = nullptr;
 };
 

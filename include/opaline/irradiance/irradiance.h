@@ -27,7 +27,8 @@ struct IrradianceInput {
 /// channels: one number a sample and light is enough, and recolouring a light traces no ray.
 struct LightTransfer {
   std::vector<float> weights;  ///< one a sample: E per unit emission, >= 0
-  /// RMS over the samples of the estimated standard error, over the mean; 0 for point and directional lights.
+  /// RMS over the samples of the estimated standard error, over the mean; 0 for point and
+  /// directional lights, and for a single light sample, which cannot tell.
   double relative_error = 0;
 };
 

@@ -22,7 +22,9 @@ struct SurfaceSample {
 struct SamplingInput {
   const World& world;
   std::span<const std::uint32_t> meshes;  ///< which meshes of the world to cover as one surface
-  std::size_t count = 0;                  ///< samples wanted, >= 1; about 3 % more or fewer come out
+  /// Samples wanted, >= 1. About 3 % more or fewer come out; more where parts are thinner than the spacing, up to
+  /// candidate_rounds x count + triangles.
+  std::size_t count = 0;
   std::uint64_t seed = 0;
   int candidate_rounds = 10;              ///< candidates tried = rounds x count; more: fuller, slower
   Monitor* monitor = nullptr;

@@ -157,7 +157,7 @@ enum class EvaluatorKind { classic, brute_force };
 struct Settings {
   Method method = Method::hierarchical;
   EvaluatorKind evaluator = EvaluatorKind::classic;
-  double max_solid_angle = 0.3;        ///< classic: open a node when area / distance^2 exceeds it, sr
+  double max_solid_angle = 0.1;        ///< classic: open a node when area / distance^2 exceeds it, sr
   bool near_field = true;              ///< split the kernel near the shading point
   std::optional<double> sample_spacing;  ///< sqrt(area / samples), mm; none: from the mean free path
   std::optional<std::size_t> samples;  ///< per group; none: from the spacing

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Samples with irradiance on one shape, and what `evaluate` makes of them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "opaline/evaluate/evaluate.h"
+#include "opaline/octree/octree.h"
+#include "support/scenes.h"
+#include "support/surfaces.h"
+
+namespace opaline::test {
+
+/// A measured figure, into the log and the test's XML.
+inline void report(const std::string& name, double value) {
+  std::printf("             %s: %.4g\n", name.c_str(), value);
+  std::string key = name;
+  std::replace_if(key.begin(), key.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  testing::Test::RecordProperty(key, std::to_string(value));
+}
+
+/// Samples of one shape, at most `count` or so.
+struct Cloud {
+  World world;
+  SurfaceSamples surface;
+
+  Cloud(const ShapeSource& source, std::size_t count, std::uint64_t seed = 0,
+        NormalMode normals = NormalMode::smooth)
+      : world(world_of({source}, normals)), surface(samples_on(world, count, seed)) {}
+
+  std::vector<Query> queries() const {
+    std::vector<Query> out;
+    for (const SurfaceSample& s : surface.samples) out.push_back({s.position, s.normal});
+    return out;
+  }
+  std::vector<FluxSample> flux(const std::function<RgbF(const SurfaceSample&)>& irradiance) const {
+    std::vector<FluxSample> out;
+    for (const SurfaceSample& s : surface.samples)
+      out.push_back({s.position, s.area, irradiance(s), s.normal});
+    return out;
+  }
+  Octree tree(const RgbF& irradiance) const { return tree_with_irradiance(surface, irradiance); }
+  Octree tree(const std::function<RgbF(const SurfaceSample&)>& irradiance) const {
+    return build_octree(flux(irradiance));
+  }
+  SplitKernel kernel(const DiffuseProfile& profile, bool split = true) const {
+    return make_split_kernel(profile, surface.spacing(), world.diagonal, split);
+  }
+};
+
+/// A coloured irradiance that varies smoothly, and by a hard shadow in green.
+inline RgbF coloured_light(const SurfaceSample& s) {
+  const Vec3f& p = s.position;
+  return {1 + .5f * std::sin(p.x), p.y > 0 ? 1.f : 0.f, .2f + .1f * std::cos(p.z)};
+}
+
+inline std::vector<Exitance> brute_force(const Octree& octree, const SplitKernel& kernel,
+                                         const std::vector<Query>& queries) {
+  EvaluateInput input{octree, kernel, queries};
+  input.evaluator = EvaluatorKind::brute_force;
+  return evaluate(input);
+}
+
+inline std::vector<Exitance> classic(const Octree& octree, const SplitKernel& kernel,
+                                     const std::vector<Query>& queries, double max_solid_angle) {
+  EvaluateInput input{octree, kernel, queries};
+  input.max_solid_angle = max_solid_angle;
+  return evaluate(input);
+}
+
+inline bool finite_and_not_negative(const Exitance& e) {
+  return is_finite(e.exitance) && is_finite(e.irradiance) && min_component(e.exitance) >= 0 &&
+         min_component(e.irradiance) >= 0;
+}
+
+/// Mean of a - b over mean of b, mean and largest |a - b| / b, of one channel.
+struct Difference {
+  double bias = 0, mean = 0, largest = 0;
+};
+
+template <class Reference>
+Difference difference(const std::vector<Exitance>& values, const Reference& reference,
+                      std::size_t channel = 0) {
+  Difference d;
+  double sum = 0, reference_sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double r = double(reference(i)), error = double(values[i].exitance[channel]) - r;
+    sum += error;
+    reference_sum += r;
+    d.mean += std::abs(error) / r / double(values.size());
+    d.largest = std::max(d.largest, std::abs(error) / r);
+  }
+  d.bias = sum / reference_sum;
+  return d;
+}
+
+}  // namespace opaline::test
