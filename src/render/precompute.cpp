@@ -34,7 +34,7 @@ Precompute precompute(const PrecomputeInput& input) {
     const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium]);
     const Stopwatch sampling_watch;
     SurfaceSamples surface = sample_surface(
-        {input.world, plan.meshes, plan.samples, hash_bits(settings.seed, g), 10, input.monitor});
+        {input.world, plan.meshes, plan.samples, hash_bits(settings.seed, g), 6, input.monitor});
     add_cost(sampling, sampling_watch.cost({}));
 
     const Stopwatch irradiance_watch;

@@ -17,8 +17,8 @@
 namespace opaline {
 namespace {
 
-// Radius over sqrt(area / count) for a sampling of 10 rounds; measured (test_poisson_disk checks the count).
-constexpr double kRadiusPerSpacing = 0.748;
+// Radius over sqrt(area / count) for a sampling of 6 rounds; measured (test_poisson_disk checks the count).
+constexpr double kRadiusPerSpacing = 0.7195;
 
 // A place on the surface that has no accepted sample within the radius yet.
 struct Candidate {

@@ -9,9 +9,9 @@ using namespace test;
 
 constexpr double kColours[] = {0, .001, .5, .8, .999, 1};
 
-// Claim: the medium made from a colour has that colour as its total diffuse reflectance, for both profiles, every
-// anisotropy and boundary. Source: definition of subsurface_color. Tolerance: 1e-10 (bisection to 1e-12). Fails if:
-// the colour is taken for the single-scattering albedo.
+// Claim: the medium made from a colour has that colour as its total diffuse reflectance, for both profiles,
+// every anisotropy and boundary. Source: definition of subsurface_color. Tolerance: 1e-10 (bisection to
+// 1e-12). Fails if: the colour is taken for the single-scattering albedo.
 TEST(AlbedoInversion, RoundTrip) {
   for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion})
     for (const double eta : {1.0, 1.5, .75})
@@ -25,8 +25,8 @@ TEST(AlbedoInversion, RoundTrip) {
         }
 }
 
-// Claim: the ends are exact: colour 1 absorbs nothing, colour 0 gives exactly 0. Source: definition. Tolerance: none.
-// Fails if: bisection stops short of its ends.
+// Claim: the ends are exact: colour 1 absorbs nothing, colour 0 gives exactly 0. Source: definition.
+// Tolerance: none. Fails if: bisection stops short of its ends.
 TEST(AlbedoInversion, EndsAreExact) {
   for (const double A : {1.0, 2.6, 5.9}) {
     EXPECT_EQ(invert_dipole_albedo(1, A), 0);
@@ -36,9 +36,9 @@ TEST(AlbedoInversion, EndsAreExact) {
   EXPECT_EQ(make_diffuse_profile(medium_of(Rgb(1), Rgb(.5), 0, 1.3)).total, Rgb(1));
 }
 
-// Claim: 1 - alpha' comes back from its total with its digits. Source: closed form in long double. Tolerance: 1e-12
-// relative, or what one rounding of the total is worth in it (near total 1: a few 1e-16 / (1 - total)), whichever is more.
-// Fails if: bisection runs over alpha'.
+// Claim: 1 - alpha' comes back from its total with its digits. Source: closed form in long double. Tolerance:
+// 1e-12 relative, or what one rounding of the total is worth in it (near total 1: a few 1e-16 / (1 - total)),
+// whichever is more. Fails if: bisection runs over alpha'.
 TEST(AlbedoInversion, KeepsDigitsOfAbsorption) {
   for (const double A : {1.0, 2.6, 5.9})
     for (const double absorbed : {1e-8, 1e-4, .01, .1, .5, .9, .999}) {
@@ -48,9 +48,9 @@ TEST(AlbedoInversion, KeepsDigitsOfAbsorption) {
     }
 }
 
-// Claim: subsurface_radius is 1/sigma_t, so the mean free path is 1/sigma_t' = radius (1 - g + g alpha')/(1 - g) with
-// alpha' = (1 - g) alpha / (1 - g alpha). Source: definitions of the reduced coefficients. Tolerance: 1e-9. Fails if:
-// the radius is taken for the reduced mean free path (same only at g = 0).
+// Claim: subsurface_radius is 1/sigma_t, so the mean free path is 1/sigma_t' = radius (1 - g + g alpha')/(1 -
+// g) with alpha' = (1 - g) alpha / (1 - g alpha). Source: definitions of the reduced coefficients. Tolerance:
+// 1e-9. Fails if: the radius is taken for the reduced mean free path (same only at g = 0).
 TEST(AlbedoInversion, RadiusIsTheUnreducedMeanFreePath) {
   const double A = boundary_mismatch(1.5);
   for (const double g : {-.999, 0., .9, .999})

@@ -7,9 +7,9 @@ namespace {
 
 using namespace test;
 
-// Claim: R_d(r) is equation 4 of Jensen et al. 2001 from r = 0 to 1000 mean free paths. Source: that formula in long
-// double, written apart. Tolerance: 1e-12 relative times the exponent, whose rounding exp magnifies. Fails if: the
-// virtual source's distance is used with the real one's depth.
+// Claim: R_d(r) is equation 4 of Jensen et al. 2001 from r = 0 to 1000 mean free paths. Source: that formula
+// in long double, written apart. Tolerance: 1e-12 relative times the exponent, whose rounding exp magnifies.
+// Fails if: the virtual source's distance is used with the real one's depth.
 TEST(DipoleProfile, IsTheFormula) {
   for (const double absorbed : {0.0, 1e-3, .1, .9})
     for (const double A : {1.0, 2.6}) {
@@ -25,8 +25,9 @@ TEST(DipoleProfile, IsTheFormula) {
     }
 }
 
-// Claim: within(r) is the integral of 2 pi r' R_d(r') to r. Source: quadrature. Tolerance: 1e-10 relative plus 1e-15
-// of the total, rounding of a difference. Fails if: one of the two sources is left out or exp(-sigma_tr z) is.
+// Claim: within(r) is the integral of 2 pi r' R_d(r') to r. Source: quadrature. Tolerance: 1e-10 relative
+// plus 1e-15 of the total, rounding of a difference. Fails if: one of the two sources is left out or
+// exp(-sigma_tr z) is.
 TEST(DipoleProfile, WithinIsItsIntegral) {
   for (const double absorbed : {0.0, 1e-3, .1, .9})
     for (const double A : {1.0, 2.6}) {
@@ -41,8 +42,8 @@ TEST(DipoleProfile, WithinIsItsIntegral) {
     }
 }
 
-// Claim: within rises from exactly 0 to the total. Source: definition. Tolerance: 1e-12 at infinity. Fails if: within
-// and total are written for different boundary terms.
+// Claim: within rises from exactly 0 to the total. Source: definition. Tolerance: 1e-12 at infinity. Fails
+// if: within and total are written for different boundary terms.
 TEST(DipoleProfile, WithinRisesToTheTotal) {
   for (const double absorbed : {0.0, 1e-3, .9}) {
     const Dipole dipole = make_dipole(.38, absorbed, 2.6);
@@ -53,17 +54,19 @@ TEST(DipoleProfile, WithinRisesToTheTotal) {
       EXPECT_GE(now, before * (1 - 1e-12)) << r;
       before = now;
     }
-    EXPECT_NEAR(diffuse_reflectance_within(dipole, 1e14), total_diffuse_reflectance(dipole), 1e-12) << absorbed;
+    EXPECT_NEAR(diffuse_reflectance_within(dipole, 1e14), total_diffuse_reflectance(dipole), 1e-12)
+        << absorbed;
   }
 }
 
-// Claim: without absorption everything is finite, the tail is 1/r^3, and within(50) at mean free path .38, eta 1.5 is
-// .9724: the share of a sphere of radius 25. Source: chord lengths on a sphere. Tolerance: half the last digit. Fails
-// if: sigma_tr = 0 divides.
+// Claim: without absorption everything is finite, the tail is 1/r^3, and within(50) at mean free path .38,
+// eta 1.5 is .9724: the share of a sphere of radius 25. Source: chord lengths on a sphere. Tolerance: half
+// the last digit. Fails if: sigma_tr = 0 divides.
 TEST(DipoleProfile, NothingAbsorbed) {
   const Dipole dipole = make_dipole(.38, 0, boundary_mismatch(1.5));
   EXPECT_NEAR(diffuse_reflectance_within(dipole, 50), .9724, 5e-5);
-  EXPECT_NEAR(diffuse_reflectance_profile(dipole, 2e6) / diffuse_reflectance_profile(dipole, 1e6), .125, 1e-9);
+  EXPECT_NEAR(diffuse_reflectance_profile(dipole, 2e6) / diffuse_reflectance_profile(dipole, 1e6), .125,
+              1e-9);
   for (const double r : {0., 1e-300, 1., 1e100})
     EXPECT_TRUE(std::isfinite(diffuse_reflectance_profile(dipole, r)) &&
                 std::isfinite(diffuse_reflectance_within(dipole, r)))

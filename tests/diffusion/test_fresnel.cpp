@@ -7,8 +7,9 @@ namespace {
 
 using namespace test;
 
-// Claim: at normal incidence F = ((eta - 1)/(eta + 1))^2, the same from either side. Source: Fresnel. Tolerance:
-// 1e-15 in double, 1e-7 in float: rounding. Fails if: eta is used as outside / inside in one polarisation only.
+// Claim: at normal incidence F = ((eta - 1)/(eta + 1))^2, the same from either side. Source: Fresnel.
+// Tolerance: 1e-15 in double, 1e-7 in float: rounding. Fails if: eta is used as outside / inside in one
+// polarisation only.
 TEST(Fresnel, NormalIncidence) {
   for (const double eta : {.75, 1.0, 1.3, 1.5, 3.9}) {
     const double expected = std::pow((eta - 1) / (eta + 1), 2);
@@ -34,9 +35,10 @@ TEST(Fresnel, TotalReflection) {
   EXPECT_LT(fresnel_reflectance(critical + 1e-3, .75), .9);
 }
 
-// Claim: F is in [0, 1], 1 at grazing incidence, 0 in every direction where eta is 1, and both polarisations are
-// averaged: at Brewster's angle tan = eta only the perpendicular one is left, ((eta^2 - 1)/(eta^2 + 1))^2 / 2.
-// Source: Fresnel, Brewster. Tolerance: 1e-14, rounding; at eta 1 its square. Fails if: the halves of the average are lost.
+// Claim: F is in [0, 1], 1 at grazing incidence, 0 in every direction where eta is 1, and both polarisations
+// are averaged: at Brewster's angle tan = eta only the perpendicular one is left, ((eta^2 - 1)/(eta^2 + 1))^2
+// / 2. Source: Fresnel, Brewster. Tolerance: 1e-14, rounding; at eta 1 its square. Fails if: the halves of
+// the average are lost.
 TEST(Fresnel, GrazingMatchedAndBrewster) {
   for (const double eta : {1.05, 1.3, 1.5, 3.9}) {
     EXPECT_EQ(fresnel_reflectance(0.0, eta), 1.0);

@@ -19,8 +19,9 @@ bool all_finite(const DiffuseProfile& profile) {
   return good;
 }
 
-// Claim: where nothing scatters the diffuse part is exactly 0: no profile, total, running or near-field integral.
-// Source: the contract. Tolerance: none. Fails if: alpha' = 0 makes a dipole of strength 0 times infinity.
+// Claim: where nothing scatters the diffuse part is exactly 0: no profile, total, running or near-field
+// integral. Source: the contract. Tolerance: none. Fails if: alpha' = 0 makes a dipole of strength 0 times
+// infinity.
 TEST(MediumExtremes, NothingScatters) {
   for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
     const DiffuseProfile profile = make_diffuse_profile(medium_of(Rgb(.5), Rgb(0), 1.3, kind));
@@ -37,8 +38,8 @@ TEST(MediumExtremes, NothingScatters) {
   }
 }
 
-// Claim: a medium that neither scatters nor absorbs is not translucent; its mean free path reads 0, not infinity.
-// Source: the contract. Tolerance: none. Fails if: 1/sigma_t' is divided out.
+// Claim: a medium that neither scatters nor absorbs is not translucent; its mean free path reads 0, not
+// infinity. Source: the contract. Tolerance: none. Fails if: 1/sigma_t' is divided out.
 TEST(MediumExtremes, Nothing) {
   const DiffuseProfile profile = make_diffuse_profile(medium_of(Rgb(0), Rgb(0), 1.3));
   EXPECT_FALSE(profile.translucent);
@@ -47,8 +48,9 @@ TEST(MediumExtremes, Nothing) {
   EXPECT_TRUE(all_finite(profile));
 }
 
-// Claim: one channel without any coefficient leaves every bit of the others. Source: a peer's one empty channel made
-// every pixel NaN. Tolerance: none. Fails if: anything is shared across channels, a smallest mean free path say.
+// Claim: one channel without any coefficient leaves every bit of the others. Source: a peer's one empty
+// channel made every pixel NaN. Tolerance: none. Fails if: anything is shared across channels, a smallest
+// mean free path say.
 TEST(MediumExtremes, OneEmptyChannel) {
   const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v); };
   for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
@@ -79,8 +81,8 @@ TEST(MediumExtremes, OneEmptyChannel) {
   }
 }
 
-// Claim: a mean free path of 0 is finite and Lambertian: all leaves within any radius, R_d is 0 beyond it, and the
-// near field is the whole. Source: the limit. Tolerance: 1e-12. Fails if: 1/radius is taken.
+// Claim: a mean free path of 0 is finite and Lambertian: all leaves within any radius, R_d is 0 beyond it,
+// and the near field is the whole. Source: the limit. Tolerance: 1e-12. Fails if: 1/radius is taken.
 TEST(MediumExtremes, ZeroMeanFreePath) {
   for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
     const DiffuseProfile profile = make_diffuse_profile(medium_of(Rgb{.2, .8, 1}, Rgb(0), 0, 1.5, kind));
@@ -97,8 +99,9 @@ TEST(MediumExtremes, ZeroMeanFreePath) {
   }
 }
 
-// Claim: huge, tiny and grazing values stay finite: coefficients 1e-12 and 1e12, g = +-.999, eta .3 to 8. Source: the
-// contract. Tolerance: none. Fails if: a square of a coefficient leaves double's range or A turns negative.
+// Claim: huge, tiny and grazing values stay finite: coefficients 1e-12 and 1e12, g = +-.999, eta .3 to 8.
+// Source: the contract. Tolerance: none. Fails if: a square of a coefficient leaves double's range or A turns
+// negative.
 TEST(MediumExtremes, WideRanges) {
   for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion})
     for (const double eta : {.3, .75, 1., 3.9, 8.}) {
@@ -109,12 +112,13 @@ TEST(MediumExtremes, WideRanges) {
           EXPECT_TRUE(min_component(profile.total) >= 0 && max_component(profile.total) <= 1);
         }
       for (const double g : {-.999, .999})
-        EXPECT_TRUE(all_finite(make_diffuse_profile(medium_of(Rgb{0, .5, 1}, Rgb{0, 1e-9, 1e9}, g, eta, kind))));
+        EXPECT_TRUE(
+            all_finite(make_diffuse_profile(medium_of(Rgb{0, .5, 1}, Rgb{0, 1e-9, 1e9}, g, eta, kind))));
     }
 }
 
-// Claim: F_bar of the profile is the average from outside at the medium's eta. Source: section on energy of the
-// conventions (radiance divides by 1 - F_bar). Tolerance: none. Fails if: the internal average is stored.
+// Claim: F_bar of the profile is the average from outside at the medium's eta. Source: section on energy of
+// the conventions (radiance divides by 1 - F_bar). Tolerance: none. Fails if: the internal average is stored.
 TEST(MediumExtremes, AverageReflectance) {
   const DiffuseProfile profile = make_diffuse_profile(medium_of(Rgb(.1), Rgb(1), 1.5));
   EXPECT_EQ(profile.average_reflectance, average_reflectance_outside(1.5));

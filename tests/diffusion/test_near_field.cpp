@@ -14,9 +14,10 @@ std::vector<ChannelProfile> table_of_profiles() {
           make_normalized_diffusion(.38, 1), make_normalized_diffusion(1, .2)};
 }
 
-// Claim: near_field_reflectance(h) is the integral of 2 pi r R_d (1 - w(r/h)) with w = t^3 (10 - 15 t + 6 t^2), from h
-// of a thousandth to a thousand mean free paths. Source: quadrature. Tolerance: 1e-6 relative (floats use it). Fails
-// if: w is cubic (3 t^2 - 2 t^3) in one place, or the quadrature misses the singularity of normalized diffusion.
+// Claim: near_field_reflectance(h) is the integral of 2 pi r R_d (1 - w(r/h)) with w = t^3 (10 - 15 t + 6
+// t^2), from h of a thousandth to a thousand mean free paths. Source: quadrature. Tolerance: 1e-6 relative
+// (floats use it). Fails if: w is cubic (3 t^2 - 2 t^3) in one place, or the quadrature misses the
+// singularity of normalized diffusion.
 TEST(NearField, IsTheIntegral) {
   double largest = 0;
   for (const ChannelProfile& profile : table_of_profiles())
@@ -34,8 +35,8 @@ TEST(NearField, IsTheIntegral) {
   std::printf("             largest relative error %.2g\n", largest);
 }
 
-// Claim: it rises with h from 0 to the total. Source: definition. Tolerance: at h = 1e6 mean free paths the dipole's
-// tail (about 3 z/h without absorption) leaves 2e-5. Fails if: the complement is returned.
+// Claim: it rises with h from 0 to the total. Source: definition. Tolerance: at h = 1e6 mean free paths the
+// dipole's tail (about 3 z/h without absorption) leaves 2e-5. Fails if: the complement is returned.
 TEST(NearField, FromNothingToTheTotal) {
   for (const ChannelProfile& profile : table_of_profiles()) {
     EXPECT_EQ(near_field_reflectance(profile, 0), 0);
@@ -51,8 +52,8 @@ TEST(NearField, FromNothingToTheTotal) {
   }
 }
 
-// Claim: w is 0 and flat to second order at 0, 1 at and beyond 1, 1/2 in the middle, the same in float. Source: the
-// split's definition. Tolerance: rounding. Fails if: the clamp beyond 1 is lost.
+// Claim: w is 0 and flat to second order at 0, 1 at and beyond 1, 1/2 in the middle, the same in float.
+// Source: the split's definition. Tolerance: rounding. Fails if: the clamp beyond 1 is lost.
 TEST(NearField, Weight) {
   EXPECT_EQ(far_weight(0.0), 0);
   EXPECT_NEAR(far_weight(1e-3), 1e-8, 2e-11);

@@ -7,8 +7,9 @@ namespace {
 
 using namespace test;
 
-// Claim: two coloured lights give two centroids: red at the red samples, blue at the blue ones, area between. Source:
-// a peer's one luminance-weighted centroid. Tolerance: 1e-5 of the distance. Fails if: all channels share one.
+// Claim: two coloured lights give two centroids: red at the red samples, blue at the blue ones, area between.
+// Source: a peer's one luminance-weighted centroid. Tolerance: 1e-5 of the distance. Fails if: all channels
+// share one.
 TEST(OctreeCentroids, PerChannel) {
   std::vector<FluxSample> samples;
   for (int i = 0; i < 20; ++i) {
@@ -24,8 +25,8 @@ TEST(OctreeCentroids, PerChannel) {
   EXPECT_NEAR(octree.nodes[0].x[3], 0, 1e-4);
 }
 
-// Claim: without any light every node is valid: flux 0, all centroids the area's. Source: a peer put unlit nodes at
-// (0,0,0). Tolerance: the tree's own (expect_sound). Fails if: 0/0 or 0 stands for the centroid.
+// Claim: without any light every node is valid: flux 0, all centroids the area's. Source: a peer put unlit
+// nodes at (0,0,0). Tolerance: the tree's own (expect_sound). Fails if: 0/0 or 0 stands for the centroid.
 TEST(OctreeCentroids, NoLight) {
   std::vector<FluxSample> samples = random_samples(2000);
   for (FluxSample& s : samples) {
@@ -41,8 +42,8 @@ TEST(OctreeCentroids, NoLight) {
     }
 }
 
-// Claim: areas of 0 throughout (degenerate input) give finite nodes. Source: robustness. Tolerance: none. Fails if:
-// the area's centroid divides by the sum of areas.
+// Claim: areas of 0 throughout (degenerate input) give finite nodes. Source: robustness. Tolerance: none.
+// Fails if: the area's centroid divides by the sum of areas.
 TEST(OctreeCentroids, NoArea) {
   std::vector<FluxSample> samples = random_samples(100);
   for (FluxSample& s : samples) s.area = 0;

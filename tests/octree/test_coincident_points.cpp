@@ -7,8 +7,8 @@ namespace {
 
 using namespace test;
 
-// Claim: N identical points end in one leaf with the right sums. Source: a peer recursed for ever on more than 8.
-// Tolerance: 1e-6. Fails if: subdivision stops at kLeafSamples alone.
+// Claim: N identical points end in one leaf with the right sums. Source: a peer recursed for ever on more
+// than 8. Tolerance: 1e-6. Fails if: subdivision stops at kLeafSamples alone.
 TEST(OctreeCoincident, AllEqual) {
   for (const std::size_t n : {9u, 1000u, 100000u}) {
     std::vector<FluxSample> samples = random_samples(n);
@@ -20,8 +20,9 @@ TEST(OctreeCoincident, AllEqual) {
   }
 }
 
-// Claim: heaps of equal points among others, points one float apart, and points on a line or plane end too. Source:
-// robustness. Tolerance: the tree's own. Fails if: a cell halves without end, or an axis of no extent divides.
+// Claim: heaps of equal points among others, points one float apart, and points on a line or plane end too.
+// Source: robustness. Tolerance: the tree's own. Fails if: a cell halves without end, or an axis of no extent
+// divides.
 TEST(OctreeCoincident, HeapsLinesAndNeighbours) {
   std::vector<FluxSample> heaps = random_samples(3000), line = heaps, plane = heaps, neighbours = heaps;
   for (std::size_t i = 0; i < heaps.size(); ++i) {
@@ -34,8 +35,8 @@ TEST(OctreeCoincident, HeapsLinesAndNeighbours) {
     expect_sound(build_octree(*samples), samples->size());
 }
 
-// Claim: one point far away among many close ones ends, with exact sums. Source: robustness. Tolerance: the tree's own.
-// Fails if: Morton cells of the whole box stop the descent above the leaf size.
+// Claim: one point far away among many close ones ends, with exact sums. Source: robustness. Tolerance: the
+// tree's own. Fails if: Morton cells of the whole box stop the descent above the leaf size.
 TEST(OctreeCoincident, OneFarAway) {
   std::vector<FluxSample> samples = random_samples(2000);
   samples[77].position = Vec3f{1e6f, 0, 0};

@@ -7,10 +7,11 @@ namespace {
 
 using namespace test;
 
-// Claim: every node's flux and area equal the sums over its samples and over its children (found by skip pointers),
-// its centroids are weighted by each channel's flux, its box is tight, its children follow each other; the root holds
-// the whole. Source: the contract; a published tree was off by -32..+88 %. Tolerance: 1e-6 of the sums, 1e-5 of the
-// node's size: float rounding. Fails if: irradiance is averaged over children, or one centroid serves all channels.
+// Claim: every node's flux and area equal the sums over its samples and over its children (found by skip
+// pointers), its centroids are weighted by each channel's flux, its box is tight, its children follow each
+// other; the root holds the whole. Source: the contract; a published tree was off by -32..+88 %. Tolerance:
+// 1e-6 of the sums, 1e-5 of the node's size: float rounding. Fails if: irradiance is averaged over children,
+// or one centroid serves all channels.
 TEST(OctreeConservation, EveryNode) {
   for (const std::size_t n : {0u, 1u, 2u, 7u, 8u, 9u, 10u, 64u, 1000u, 30000u}) {
     SCOPED_TRACE(n);
@@ -25,8 +26,8 @@ TEST(OctreeConservation, EveryNode) {
   }
 }
 
-// Claim: leaves hold up to 8 samples: 8 make one leaf, 9 do not. Source: kLeafSamples. Tolerance: none. Fails if: the
-// comparison is < for <=.
+// Claim: leaves hold up to 8 samples: 8 make one leaf, 9 do not. Source: kLeafSamples. Tolerance: none. Fails
+// if: the comparison is < for <=.
 TEST(OctreeConservation, LeafSize) {
   for (const std::size_t n : {1u, 8u}) {
     const Octree octree = build_octree(random_samples(n));
@@ -39,9 +40,9 @@ TEST(OctreeConservation, LeafSize) {
   EXPECT_FALSE(nine.nodes[0].leaf);
 }
 
-// Claim: unbalanced siblings keep the flux: one bright sample beside 1000 dim ones in the next octant. Source: a
-// published tree averaged siblings without weights: -32..+88 %. Tolerance: 1e-6. Fails if: a node's irradiance is the
-// mean of its children's (here 500 times too bright).
+// Claim: unbalanced siblings keep the flux: one bright sample beside 1000 dim ones in the next octant.
+// Source: a published tree averaged siblings without weights: -32..+88 %. Tolerance: 1e-6. Fails if: a node's
+// irradiance is the mean of its children's (here 500 times too bright).
 TEST(OctreeConservation, UnbalancedSiblings) {
   std::vector<FluxSample> samples = random_samples(1001);
   for (FluxSample& s : samples) {

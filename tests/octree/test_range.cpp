@@ -7,9 +7,9 @@ namespace {
 
 using namespace test;
 
-// Claim: irradiance of 1e-30, 1e12 and 1e30 W/mm^2 keeps flux conserved to 1e-6: flux_unit brings the largest to
-// [1/2, 1). Source: the header. Tolerance: 1e-6, none for the unit. Fails if: fluxes are summed in W (1e-30 x area
-// 1e-9 is a denormal).
+// Claim: irradiance of 1e-30, 1e12 and 1e30 W/mm^2 keeps flux conserved to 1e-6: flux_unit brings the largest
+// to [1/2, 1). Source: the header. Tolerance: 1e-6, none for the unit. Fails if: fluxes are summed in W
+// (1e-30 x area 1e-9 is a denormal).
 TEST(OctreeRange, HugeAndTiny) {
   for (const float k : {1e-30f, 1e-12f, 1.f, 1e12f, 1e30f}) {
     SCOPED_TRACE(k);
@@ -29,9 +29,9 @@ TEST(OctreeRange, HugeAndTiny) {
   }
 }
 
-// Claim: irradiance times a power of two moves the unit alone, not a bit of any node; positions times one move the
-// positions alone. Source: the scale test of the project. Tolerance: none. Fails if: a length or a power is compared
-// with a constant.
+// Claim: irradiance times a power of two moves the unit alone, not a bit of any node; positions times one
+// move the positions alone. Source: the scale test of the project. Tolerance: none. Fails if: a length or a
+// power is compared with a constant.
 TEST(OctreeRange, PowersOfTwo) {
   const std::vector<FluxSample> samples = random_samples(5000);
   const Octree octree = build_octree(samples);

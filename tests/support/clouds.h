@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "opaline/core/random.h"
 #include "opaline/evaluate/evaluate.h"
 #include "opaline/octree/octree.h"
 #include "support/scenes.h"
@@ -20,7 +21,8 @@ namespace opaline::test {
 inline void report(const std::string& name, double value) {
   std::printf("             %s: %.4g\n", name.c_str(), value);
   std::string key = name;
-  std::replace_if(key.begin(), key.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  std::replace_if(
+      key.begin(), key.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
   testing::Test::RecordProperty(key, std::to_string(value));
 }
 

@@ -59,9 +59,10 @@ double plane_integral(const F& f, double length, double end) {
   return sum;
 }
 
-/// Integral of R_d over a rectangle seen from a point `height` off its plane and above or on it: the rectangle
-/// reaches the four distances from the point's foot (>= 0, in turn around it). within(r) is the integral of
-/// 2 pi r R_d up to r; in polar coordinates around the foot only the distance to the border is left.
+/// Integral of R_d over a rectangle seen from a point `height` off its plane and above or on it: the
+/// rectangle reaches the four distances from the point's foot (>= 0, in turn around it). within(r) is the
+/// integral of 2 pi r R_d up to r; in polar coordinates around the foot only the distance to the border is
+/// left.
 template <class Within>
 double rectangle_integral(const Within& within, const std::array<double, 4>& reach, double height = 0) {
   double sum = 0;

@@ -26,7 +26,7 @@ struct SamplingInput {
   /// candidate_rounds x count + triangles.
   std::size_t count = 0;
   std::uint64_t seed = 0;
-  int candidate_rounds = 10;              ///< candidates tried = rounds x count; more: fuller, slower
+  int candidate_rounds = 6;               ///< candidates tried = rounds x count; more: fuller, slower
   Monitor* monitor = nullptr;
 };
 
