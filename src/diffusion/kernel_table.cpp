@@ -56,6 +56,7 @@ KernelTable::KernelTable(const DiffuseProfile& profile, double r_min, double r_m
       for (int c = 0; c < 3; ++c) {
         std::array<double, 4> values{};
         for (int i = 0; i < 4; ++i) values[i] = reflectance(std::size_t(c), start + width * nodes[i]);
+        if (*std::ranges::min_element(values) * scale * scale < 1e-30) continue;  // one channel may end before others
         const std::array<double, 4> cubic = interpolating_cubic(nodes, values);
         segment.c0[c] = float(cubic[0]);
         segment.c1[c] = float(cubic[1]);

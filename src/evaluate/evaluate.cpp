@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "evaluate/border_share.h"
 #include "evaluate/gather.h"
 #include "opaline/core/parallel.h"
 
@@ -31,7 +31,8 @@ void walk(const EvaluateInput& input, const Query& query, Gather& gather, Count&
   for (std::uint32_t i = 0; i < nodes.size();) {
     const OctreeNode& node = nodes[i];
     count.node();
-    const __m128 dx = _mm_sub_ps(_mm_load_ps(node.x.data()), px), dy = _mm_sub_ps(_mm_load_ps(node.y.data()), py),
+    const __m128 dx = _mm_sub_ps(_mm_load_ps(node.x.data()), px),
+                 dy = _mm_sub_ps(_mm_load_ps(node.y.data()), py),
                  dz = _mm_sub_ps(_mm_load_ps(node.z.data()), pz);
     const __m128 r2 = _mm_add_ps(_mm_mul_ps(dx, dx), _mm_add_ps(_mm_mul_ps(dy, dy), _mm_mul_ps(dz, dz)));
     if (is_far(node, query.position, r2, max_solid_angle, near2)) {
@@ -68,7 +69,9 @@ Exitance evaluate_one(const EvaluateInput& input, std::size_t q) {
 SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, double extent, bool split) {
   // Closer than a quarter of the spacing, R_d w is negligible; without the split R_d is held there.
   const double r_min = spacing / 4, radius = 2.5 * spacing;
-  SplitKernel kernel{KernelTable(profile, r_min, std::max(extent, 2 * radius)), split, float(radius), {}, {}};
+  SplitKernel kernel{
+      KernelTable(profile, r_min, std::max(extent, 2 * radius)), split, float(radius), {}, {}, {}};
+  if (split) kernel.border = border_shares(profile, radius);
   for (std::size_t c = 0; split && c < 3; ++c) {
     kernel.near[c] = float(near_field_reflectance(profile.channels[c], radius));
     kernel.needs_irradiance[c] = kernel.near[c] > 0 && profile.mean_free_path[c] < spacing;

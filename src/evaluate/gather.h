@@ -4,6 +4,11 @@
 
 #include <emmintrin.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
 #include "opaline/evaluate/evaluate.h"
 #include "opaline/sampling/sample_surface.h"
 
@@ -24,17 +29,10 @@ class Gather {
   }
 
   void add_samples(std::uint32_t begin, std::uint32_t end) {
-    __m128 sum = _mm_setzero_ps();
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const TreeSample& s = octree_.samples[i];
-      const float dx = s.x - query_.position.x, dy = s.y - query_.position.y, dz = s.z - query_.position.z;
-      const float r2 = dx * dx + (dy * dy + dz * dz);
-      const __m128 flux = _mm_load_ps(s.flux.data());
-      __m128 k = kernel_.table(r2);
-      if (r2 < near2_) k = _mm_mul_ps(k, _mm_set1_ps(add_near(i, r2, flux)));
-      sum = _mm_add_ps(sum, _mm_mul_ps(k, flux));
-    }
-    accumulate(sum);
+    // Float sums of a few terms, taken over to double: a sum over all samples must not drown its own tail.
+    constexpr std::uint32_t kTerms = 16;
+    for (std::uint32_t first = begin; first < end; first += kTerms)
+      accumulate(sum_samples(first, std::min(end, first + kTerms)));
   }
 
   /// given: entered irradiance at the query, or null to interpolate every channel.
@@ -45,18 +43,33 @@ class Gather {
     alignas(16) float flux[4];
     _mm_store_ps(flux, near_flux_);
     Exitance out;
-    const float unit = octree_.flux_unit, share = surface_share();
+    const float unit = octree_.flux_unit;
+    const std::array<float, 3> share = surface_share();
     for (std::size_t c = 0; c < 3; ++c) {
       out.irradiance[c] = near_weight_ > 0 ? flux[c] / near_weight_ * unit : 0;
       const float e = given != nullptr && kernel_.needs_irradiance[c] ? (*given)[c] : out.irradiance[c];
-      out.exitance[c] = float(sum[c]) * unit + kernel_.near[c] * e * share;
+      out.exitance[c] = float(sum[c]) * unit + kernel_.near[c] * e * share[c];
     }
     return out;
   }
 
  private:
-  // Notes a sample within h for the irradiance around the point and returns the far weight of its kernel. Samples
-  // of another sheet are no neighbours on the surface: their kernel stays whole.
+  __m128 sum_samples(std::uint32_t begin, std::uint32_t end) {
+    __m128 sum = _mm_setzero_ps();
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const TreeSample& s = octree_.samples[i];
+      const float dx = s.x - query_.position.x, dy = s.y - query_.position.y, dz = s.z - query_.position.z;
+      const float r2 = dx * dx + (dy * dy + dz * dz);
+      const __m128 flux = _mm_load_ps(s.flux.data());
+      __m128 k = kernel_.table(r2);
+      if (r2 < near2_) k = _mm_mul_ps(k, _mm_set1_ps(add_near(i, r2, flux)));
+      sum = _mm_add_ps(sum, _mm_mul_ps(k, flux));
+    }
+    return sum;
+  }
+
+  // Notes a sample within h for the irradiance around the point and returns the far weight of its kernel.
+  // Samples of another sheet are no neighbours on the surface: their kernel stays whole.
   float add_near(std::uint32_t i, float r2, __m128 flux) {
     if (!same_sheet(octree_.normals[i], query_.normal)) return 1;
     const float t2 = r2 / near2_, w = (1 - t2) * (1 - t2);
@@ -65,14 +78,21 @@ class Gather {
     return kernel_.split ? far_weight(std::sqrt(t2)) : 1;
   }
 
-  // How much surface there is within h, over a plane's: less at an open border, more along a crease. Deviations of
-  // a few per cent are the noise of the sum itself and count as none.
-  float surface_share() const {
+  // The part of the near field that is there. Half of a plane's area or less: a border, a corner; more than
+  // all of it: a crease, whose excess the near field of steep profiles does not see.
+  std::array<float, 3> surface_share() const {
     const float plane = float(std::numbers::pi) * near2_ / 3;  // integral of the weight (1 - r^2/h^2)^2
-    const float deviation = near_weight_ / plane - 1, size = std::abs(deviation);
-    constexpr float kNoise = 0.03f, kReal = 0.10f;
-    const float t = std::clamp((size - kNoise) / (kReal - kNoise), 0.0f, 1.0f);
-    return 1 + deviation * t * t * (3 - 2 * t);
+    const float area = near_weight_ / plane;
+    // A few per cent short of a whole plane is the noise of the samples' sum.
+    constexpr float kNoise = 1.03f;
+    const float place =
+        std::clamp((area - 0.5f) * 2 * kNoise, 0.0f, 1.0f) * float(SplitKernel::kBorderRows - 1);
+    const std::size_t row = std::min(std::size_t(place), SplitKernel::kBorderRows - 2);
+    const float t = place - float(row), corner = std::min(1.0f, 2 * area);
+    std::array<float, 3> share;
+    for (std::size_t c = 0; c < 3; ++c)
+      share[c] = corner * ((1 - t) * kernel_.border[row][c] + t * kernel_.border[row + 1][c]);
+    return share;
   }
 
   void accumulate(__m128 sum) {

@@ -166,11 +166,11 @@ TEST(CliRender, ExposureIsForThePng) {
     ASSERT_EQ(run_program(line).exit_code, 0);
   };
   render("-1");
-  const std::vector<float> exr = read_image(folder.file("a.exr")).pixels,
+  const ZeroedArray<float> exr = read_image(folder.file("a.exr")).pixels,
                            dark = read_image(folder.file("a.png")).pixels;
   render("1");
   EXPECT_EQ(read_image(folder.file("a.exr")).pixels, exr);
-  const std::vector<float> bright = read_image(folder.file("a.png")).pixels;
+  const ZeroedArray<float> bright = read_image(folder.file("a.png")).pixels;
   double sums[2] = {};
   for (std::size_t i = 0; i < dark.size(); ++i) {
     sums[0] += double(dark[i]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tabulated kernel.
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -51,23 +52,24 @@ double largest_error(const KernelTable& table, const ChannelProfile& channel, st
   return largest;
 }
 
-// Claim: between r_min and r_max the table is R_d within 2e-6 wherever R_d is above 1e-9 of its largest.
-// Source: the header's promise. Tolerance: that. Fails if: 8 segments an octave stand for 16, or a cubic's
-// coefficient is off.
+// Claim: between r_min and r_max the table is R_d within 4e-6 wherever R_d is above 1e-9 of its largest.
+// Source: the header's promise. Tolerance: that. Fails if: 16 segments an octave stand for 32 (4.3e-5), or a
+// cubic's coefficient is off.
 TEST(KernelTable, IsTheProfile) {
   double largest = 0;
   for (const auto& [name, profile] : table_of_media())
     for (std::size_t c = 0; c < 3; ++c) {
       const double error = largest_error(KernelTable(profile, 2e-3, 400), profile.channels[c], c, 2e-3, 400);
       largest = std::max(largest, error);
-      EXPECT_LT(error, 2e-6) << name << " " << c;
+      EXPECT_LT(error, 4e-6) << name << " " << c;
     }
   std::printf("             largest relative error %.3g\n", largest);
 }
 
 // Claim: the whole way, down to float's smallest normal number, the table is finite, not negative, and close
 // to R_d. Source: the contract of evaluate, exitance >= 0. Tolerance: 1e-4 of R_d plus 1e-13 of its largest:
-// what is lost below adds nothing to a sum. Fails if: a cubic overshoots below zero in the tail.
+// what is lost below adds nothing to a sum; denormals, which evaluation flushes, may have either sign. Fails
+// if: a cubic overshoots below zero in the tail.
 TEST(KernelTable, TailIsSmallAndNotNegative) {
   for (const auto& [name, profile] : table_of_media()) {
     const KernelTable table(profile, 2e-3, 400);
@@ -77,26 +79,32 @@ TEST(KernelTable, TailIsSmallAndNotNegative) {
         const float got = lanes(table(r2))[c];
         const double largest = diffuse_reflectance_profile(profile.channels[c], 2e-3);
         const double expected = diffuse_reflectance_profile(profile.channels[c], std::sqrt(double(r2)));
-        ASSERT_TRUE(std::isfinite(got) && got >= 0) << name << " " << c << " r " << r << ": " << got;
+        ASSERT_TRUE(std::isfinite(got) && got > -std::numeric_limits<float>::min())
+            << name << " " << c << " r " << r << ": " << got;
         ASSERT_NEAR(got, expected, 1e-4 * expected + 1e-13 * largest) << name << " " << c << " r " << r;
       }
     }
   }
 }
 
-// Claim: below r_min it stays at R_d(r_min), r = 0 included, beyond r_max it is exactly 0, the fourth lane is
-// always 0. Source: the header. Tolerance: 1e-5 for "stays at" (the segment may begin a little before r_min);
-// none beyond. Fails if: the last segment is not zero, or the bits of r2 = 0 index before the table.
+// Claim: below its range, which begins at r_min or up to an octave of r^2 before, the table is constant, r =
+// 0 included; beyond it, at latest an octave of r^2 after r_max, it is exactly 0; the fourth lane is always
+// 0. Source: the header. Tolerance: 1e-5 of R_d at either end of that octave; none beyond. Fails if: the last
+// segment is not zero, or the bits of r2 = 0 index before the table.
 TEST(KernelTable, BeyondItsRange) {
   for (const auto& [name, profile] : table_of_media()) {
     const double r_min = .01, r_max = 30;
     const KernelTable table(profile, r_min, r_max);
     for (std::size_t c = 0; c < 3; ++c) {
-      const double expected = diffuse_reflectance_profile(profile.channels[c], r_min);
-      for (const float r2 : {0.f, 1e-40f, 1e-12f, float(r_min * r_min * .9)})
-        EXPECT_NEAR(double(lanes(table(r2))[c]) / expected, 1, .02) << name << " " << c << " r2 " << r2;
-      EXPECT_EQ(lanes(table(0.f))[c], lanes(table(1e-12f))[c]);
-      for (const float r2 : {float(r_max * r_max * 1.0001), 1e4f, 1e30f, 3e38f, INFINITY})
+      const double low = diffuse_reflectance_profile(profile.channels[c], r_min) * (1 - 1e-5);
+      const double high =
+          diffuse_reflectance_profile(profile.channels[c], r_min / std::sqrt(2.)) * (1 + 1e-5);
+      for (const float r2 : {0.f, 1e-40f, 1e-12f, float(r_min * r_min * .49)}) {
+        EXPECT_GE(double(lanes(table(r2))[c]), low) << name << " " << c << " r2 " << r2;
+        EXPECT_LE(double(lanes(table(r2))[c]), high) << name << " " << c << " r2 " << r2;
+        EXPECT_EQ(lanes(table(r2))[c], lanes(table(0.f))[c]);
+      }
+      for (const float r2 : {float(r_max * r_max * 2.0001), 1e4f, 1e30f, 3e38f, INFINITY})
         EXPECT_EQ(lanes(table(r2))[c], 0) << name << " " << c << " r2 " << r2;
       EXPECT_EQ(lanes(table(1.f))[3], 0);
     }

@@ -42,11 +42,11 @@ Line line(double reach) {
 }
 
 // Claim: along a line across a cube's edge under E = 1, brute force with 20,000 samples (spacing .35) agrees
-// with the exact sum over the six faces within 1 % beyond 2 h of the edge, and within the bars below nearer:
-// the near part takes the tangent plane for a surface that folds away below it, so M is too small where
-// folding brings flux nearer. Source: polar quadrature of all six faces. Tolerance: 1 % mean beyond 2 h;
-// within h at most 15 % anywhere, of which the figures printed are used. Fails if: samples beyond the edge
-// are left out (up to 50 % at the edge).
+// with the exact sum over the six faces within 1 % (mean) beyond 2 h of the edge, and 10 % nearer. The exact
+// sum itself reaches 1.10 to 1.12 of E x total there, since chords across a fold are shorter than the way
+// round it; exitance stays within 5 % of that, and below E where the medium absorbs 1 % a mean free path.
+// Source: polar quadrature of all six faces. Tolerance: as said; the figures measured are printed. Fails if:
+// samples beyond the edge are left out (up to 50 % at the edge).
 TEST(Crease, AgainstTheExactSum) {
   const Cloud cloud(BoxShape{Vec3d(-10), Vec3d(10)}, 20000, 0, NormalMode::faceted);
   const Octree octree = cloud.tree(RgbF(1));
@@ -78,15 +78,14 @@ TEST(Crease, AgainstTheExactSum) {
     report(name + "largest M / (E total)", over);
     report(name + "largest exact M / (E total)", exact_over);
     EXPECT_LT(away / n, .01) << ratio;
-    EXPECT_LT(near_largest, .15) << ratio;
-    // Energy: what leaves is at most what enters, and no more than the exact sum's excess plus 5 %.
+    EXPECT_LT(near_largest, .1) << ratio;
     EXPECT_LE(over, exact_over * 1.05);
-    EXPECT_LE(over * profile.total.x, 1.05);
+    EXPECT_LE(over * profile.total.x, 1);
   }
 }
 
 // Claim: 20,000 samples agree with 400,000 along the line across the edge. Source: convergence: h shrinks 4.5
-// times. Tolerance: 15 % near the edge, 1 % mean beyond 2 h. Fails if: as above.
+// times. Tolerance: 10 % near the edge, 1 % mean beyond 2 h. Fails if: as above.
 TEST(Crease, AgainstManySamples) {
   const auto run = [&](std::size_t count, const std::vector<Query>& queries, double mean_free_path) {
     const Cloud cloud(BoxShape{Vec3d(-10), Vec3d(10)}, count, 0, NormalMode::faceted);
@@ -107,7 +106,7 @@ TEST(Crease, AgainstManySamples) {
   }
   report("20k against 400k samples, nearer, largest %", 100 * near_largest);
   report("20k against 400k samples, beyond 2 h, mean %", 100 * away / n);
-  EXPECT_LT(near_largest, .15);
+  EXPECT_LT(near_largest, .1);
   EXPECT_LT(away / n, .01);
 }
 

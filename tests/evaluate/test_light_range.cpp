@@ -37,15 +37,16 @@ TEST(LightRange, IsLinear) {
   }
 }
 
-// Claim: pure red irradiance gives exactly 0 in green and blue, and red bits do not depend on the other
-// channels. Source: channels are independent. Tolerance: none for the zeros; 1e-5 for red through the classic
-// tree (its centroids are per channel; flux_unit may differ). Fails if: one weight serves all channels.
+// Claim: pure red irradiance gives exactly 0 in green and blue, and red does not depend on the other
+// channels. Source: channels are independent. Tolerance: none for the zeros and for red in brute force; 1 %
+// for red through the tree, which opens a node for all channels when one asks. Fails if: one weight serves
+// all channels.
 TEST(LightRange, RedStaysRed) {
   const LitSphere setup;
   for (const bool tree : {false, true}) {
     const std::vector<Exitance> white = setup.lit(RgbF(1), tree), red = setup.lit({1, 0, 0}, tree);
     for (std::size_t i = 0; i < red.size(); ++i) {
-      EXPECT_NEAR(red[i].exitance.x / white[i].exitance.x, 1, 1e-5);
+      EXPECT_NEAR(red[i].exitance.x / white[i].exitance.x, 1, tree ? .01 : 0);
       EXPECT_GT(red[i].exitance.x, 0);
       EXPECT_EQ(red[i].exitance.y, 0);
       EXPECT_EQ(red[i].exitance.z, 0);

@@ -33,26 +33,30 @@ std::vector<Query> places(double x0, double x1, double z0, double z1) {
 struct Region {
   std::string name;
   std::vector<Query> queries;
-  double mean, any;  ///< bars
+  double mean, any;     ///< bars
+  bool border = false;  ///< the bars are for mean free paths below the spacing
 };
 
 // Claim: the exitance of a square of side 20 under E = 1 is 1/(2 pi) times the integral over all directions
-// of within(distance to the border): at least 1 % accurate (mean) inside, for both profiles and mean free
-// paths of a quarter to 8 spacings. At the border the near part still takes a whole plane, so within h = 2.5
-// spacings of it M is too large, by half of the near part at the very edge and three quarters of it at a
-// corner. Source: quadrature in polar coordinates. Tolerance: inside, 1 % mean and 4 % anywhere; near the
-// border (half a spacing to h), as measured plus a quarter; on the border itself, what a whole plane for a
-// half or a quarter of one gives at most, 100 % and 300 %. Fails if: h is not in the units of the spacing, w
-// and 1 - w are swapped, or areas miss.
+// of within(distance to the border): 1 % accurate (mean) for both profiles and mean free paths of a quarter
+// to 8 spacings, up to half a spacing from the border. On the border M falls from the whole to half within a
+// mean free path, and where that is below the spacing the samples do not know on which side the point is.
+// Source: quadrature in polar coordinates. Tolerance: 1 % mean (published figures for this split are .4 to .7
+// %), 4 % anywhere inside, 5 % within h = 2.5 spacings of an edge; on an edge and at a corner as measured for
+// the worst, normalized diffusion of mean free path a quarter of the spacing, and about a fifth more: 13 %
+// mean and 50 % anywhere on an edge, 50 % and 55 % half a spacing or less from a corner, 12 % on it; for mean
+// free paths of 2 spacings and more a fifth of that. Fails if: h is not in the units of the spacing, w and 1
+// - w are swapped, areas miss, or the near part is a whole plane's at the border.
 TEST(Patch, IsItsQuadrature) {
   ASSERT_NEAR(square().surface.spacing(), .1, 1e-3);
   const double h = .25;
   const std::vector<Region> regions = {
       {"middle", places(-5, 5, -5, 5), .01, .04},
       {"h to 2h from an edge", places(kHalf - 2 * h, kHalf - h, -5, 5), .01, .04},
-      {"up to h from an edge", places(kHalf - h, kHalf - .05, -5, 5), .25, .6},
-      {"on an edge", places(kHalf, kHalf, -5, 5), 1.05, 1.1},
-      {"at a corner", places(kHalf - .05, kHalf, kHalf - .05, kHalf), 3.1, 3.2}};
+      {"up to h from an edge", places(kHalf - h, kHalf - .05, -5, 5), .01, .05},
+      {"on an edge", places(kHalf, kHalf, -5, 5), .13, .5, true},
+      {"half a spacing from a corner", places(kHalf - .05, kHalf, kHalf - .05, kHalf), .5, .55, true},
+      {"on a corner", places(kHalf, kHalf, kHalf, kHalf), .12, .12, true}};
   for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion})
     for (const double ratio : {.25, 1., 2., 8.}) {
       const DiffuseProfile profile =
@@ -69,8 +73,9 @@ TEST(Patch, IsItsQuadrature) {
             "%%\n",
             kind == ProfileKind::dipole ? "dipole" : "normalized diffusion", ratio, region.name.c_str(),
             100 * d.bias, 100 * d.mean, 100 * d.largest);
-        EXPECT_LT(d.mean, region.mean) << region.name << ", ratio " << ratio;
-        EXPECT_LT(d.largest, region.any) << region.name << ", ratio " << ratio;
+        const double wide = region.border && ratio >= 2 ? .4 : 1;
+        EXPECT_LT(d.mean, wide * region.mean) << region.name << ", ratio " << ratio;
+        EXPECT_LT(d.largest, wide * region.any) << region.name << ", ratio " << ratio;
       }
     }
 }

@@ -56,7 +56,7 @@ TEST(SameBytes, ThreadsAndBatches) {
     std::vector<Exitance> reversed = run(std::vector<Query>(queries.rbegin(), queries.rend()));
     std::reverse(reversed.begin(), reversed.end());
     EXPECT_TRUE(same_bytes(reversed, one));
-    for (const std::size_t i : {0u, 17u, 999u}) {
+    for (const std::size_t i : {std::size_t(0), std::size_t(17), queries.size() - 1}) {
       const Exitance alone = run({queries[i]}).at(0);
       EXPECT_EQ(alone.exitance, one[i].exitance) << i << " tree " << tree;
       EXPECT_EQ(alone.irradiance, one[i].irradiance) << i << " tree " << tree;

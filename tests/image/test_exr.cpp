@@ -130,11 +130,11 @@ TEST(Exr, CountsWhatCannotBeStored) {
   const WriteReport as_half = write_exr(folder.file("half.exr"), image, true);
   EXPECT_EQ(as_half.non_finite, 3u);
   EXPECT_EQ(as_half.half_overflow, 1u);
-  EXPECT_EQ(read_image(folder.file("half.exr")).pixels, (std::vector<float>{0, 1e6f, 0, 0, -65504, 65504}));
+  EXPECT_EQ(read_image(folder.file("half.exr")).pixels, (ZeroedArray<float>{0, 1e6f, 0, 0, -65504, 65504}));
   const WriteReport as_float = write_exr(folder.file("float.exr"), image, false);
   EXPECT_EQ(as_float.non_finite, 3u);
   EXPECT_EQ(as_float.half_overflow, 0u);
-  EXPECT_EQ(read_image(folder.file("float.exr")).pixels, (std::vector<float>{0, 1e6f, 0, 0, -1e9f, 65504}));
+  EXPECT_EQ(read_image(folder.file("float.exr")).pixels, (ZeroedArray<float>{0, 1e6f, 0, 0, -1e9f, 65504}));
 }
 
 }  // namespace

@@ -27,12 +27,13 @@ TEST(Density, IsAsAskedAndTight) {
     }
 }
 
-// Claim: no hole: every triangle's centroid has a sample of its sheet within two radii, and at most 2 % of
+// Claim: no hole: every triangle's centroid has a sample of its sheet within two radii, and at most 3.5 % of
 // the surface is farther than one radius from any. Source: the last round of dart throwing covers what has
 // nothing within two radii; to cover at one would set samples at every centroid of a fine mesh that is barely
-// free, 16 % too many. Share of the surface: 1.0 to 1.3 % measured with 10 candidates a sample. Tolerance:
-// 1e-5 of the radius for float positions. Fails if: the throwing stops early (5 rounds leave over 2 %), or
-// triangles far from any sample are forgotten.
+// free, 16 % too many. Share of the surface: 1.0 to 1.3 % measured with 10 candidates a sample, 2.5 to 2.9 %
+// with the 6 that sampling takes for its speed (error of sums on the bunny at 100k samples: .34 and .36 %).
+// Tolerance: 1e-5 of the radius for float positions. Fails if: the throwing stops earlier, or triangles far
+// from any sample are forgotten.
 TEST(Density, LeavesNoHole) {
   for (const auto& [name, world] : table_of_worlds()) {
     SCOPED_TRACE(name);
@@ -48,7 +49,7 @@ TEST(Density, LeavesNoHole) {
       if (grid.nearest(piece.position, piece.geometric).second > surface.radius) far += piece.area;
     }
     RecordProperty("uncovered_" + name, std::to_string(far / surface.area));
-    EXPECT_LE(far / surface.area, 0.02);
+    EXPECT_LE(far / surface.area, 0.035);
   }
 }
 

@@ -13,8 +13,8 @@
 
 namespace opaline {
 
-/// R_d as piecewise cubics in s = (r / length_scale)^2, 16 segments an octave of s, found from the bits of s.
-/// Between r_min and r_max the error is below 2e-6 of R_d wherever R_d is above 1e-9 of its largest value; below
+/// R_d as piecewise cubics in s = (r / length_scale)^2, 32 segments an octave of s, found from the bits of s.
+/// Between r_min and r_max the error is below 4e-6 of R_d wherever R_d is above 1e-9 of its largest value; below
 /// r_min it stays at R_d(r_min), beyond r_max it is 0. Powers of two scale through it exactly.
 class KernelTable {
  public:
@@ -43,7 +43,7 @@ class KernelTable {
   struct alignas(64) Segment {
     __m128 c0, c1, c2, c3;  // lanes R, G, B, 0
   };
-  static constexpr int kSegmentBits = 4;
+  static constexpr int kSegmentBits = 5;
   static constexpr std::uint32_t kFractionBits = 23 - kSegmentBits;
 
   float clamped(float r2) const {

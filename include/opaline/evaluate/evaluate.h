@@ -21,6 +21,11 @@ struct SplitKernel {
   bool split = true;
   float radius = 0;                    ///< h, 2.5 sample spacings, mm
   std::array<float, 3> near{};         ///< integral of R_near over the plane
+  /// Near a border of the surface only part of the near field is there. Rows: how much of a plane's area lies around
+  /// the point, from 1/2 (on the border) to 1, weighted by (1 - r^2/h^2)^2; values: the share of `near` that a half
+  /// plane with that much area gives, per channel.
+  static constexpr std::size_t kBorderRows = 65;
+  std::array<std::array<float, 3>, kBorderRows> border{};
   /// Channels whose mean free path is below the sample spacing: the irradiance at the point itself is needed
   /// there, the samples' would blur it.
   std::array<bool, 3> needs_irradiance{};

@@ -6,13 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "opaline/core/zeroed_array.h"
+
 namespace opaline {
 
 /// width x height pixels, row by row from the top left, channels interleaved.
 struct Image {
   int width = 0, height = 0;
   std::vector<std::string> channels;  ///< "R", "G", "B", "diffuse.R", "N.X", "Z", ...
-  std::vector<float> pixels;          ///< width * height * channels.size() values
+  ZeroedArray<float> pixels;          ///< width * height * channels.size() values
   /// Text for the file's header, such as {"opaline:seed", "0"}.
   std::vector<std::pair<std::string, std::string>> metadata;
   /// Where the pixels lie in the whole picture, for a crop: x0, y0 and the whole's width and height.
