@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-constexpr int kRings = 512;
+constexpr int kRings = 192;
 
 // Radii over h of the rings' borders, dense towards the point, where steep profiles have all of their light.
 double ring_radius(int i) {
@@ -68,7 +68,7 @@ std::array<std::array<float, 3>, SplitKernel::kBorderRows> border_shares(const D
   for (std::size_t row = 0; row < SplitKernel::kBorderRows; ++row) {
     const double wanted = 0.5 + 0.5 * double(row) / (SplitKernel::kBorderRows - 1);
     double low = 0, high = 1;  // the area grows with the distance of the border
-    for (int i = 0; i < 40; ++i)
+    for (int i = 0; i < 20; ++i)
       (inside_border(area, 0.5 * (low + high)) < wanted ? low : high) = 0.5 * (low + high);
     for (std::size_t c = 0; c < 3; ++c) rows[row][c] = float(inside_border(near[c], 0.5 * (low + high)));
   }

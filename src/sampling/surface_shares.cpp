@@ -216,7 +216,7 @@ class TriangleDivider {
     }
   }
 
-  static constexpr std::size_t kClippedOwners = 12;
+  static constexpr std::size_t kClippedOwners = 28;
 
   const SampleGrid& grid_;
   float radius_;

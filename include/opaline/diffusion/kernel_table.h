@@ -15,7 +15,7 @@ namespace opaline {
 
 /// R_d as piecewise cubics in s = (r / length_scale)^2, 32 segments an octave of s, found from the bits of s.
 /// Between r_min and r_max the error is below 4e-6 of R_d wherever R_d is above 1e-9 of its largest value; below
-/// r_min it stays at R_d(r_min), beyond r_max it is 0. Powers of two scale through it exactly.
+/// it the table is constant, beyond it 0; the range is widened outward to whole octaves of s. Powers of two scale through it exactly.
 class KernelTable {
  public:
   /// r_min, r_max in mm: the distances that will be asked for; the table ends earlier where R_d underflows.

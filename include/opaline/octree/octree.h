@@ -45,7 +45,7 @@ struct Octree {
   std::size_t bytes() const;
 };
 
-/// Leaves hold at most this many samples, unless they coincide.
+/// Leaves hold at most this many samples, unless more coincide to 2^-21 of the box.
 inline constexpr std::uint32_t kLeafSamples = 8;
 
 /// Builds the tree. The result depends on the samples, not on their order; equal points end in one leaf.
