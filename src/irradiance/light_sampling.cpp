@@ -14,6 +14,8 @@ template <class... Ts>
 struct Overloaded : Ts... {
   using Ts::operator()...;
 };
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;  // clang 14 does not deduce aggregates
 
 LightSample sample(const PointLight& light, const Vec3f& point) {
   const Vec3f to_light = Vec3f(light.position) - point;
