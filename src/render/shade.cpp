@@ -179,8 +179,9 @@ std::vector<RgbF> Shader::irradiance(const std::vector<const Surface*>& surfaces
     point_keys.push_back(keys[s->ray]);
   }
   const Settings& settings = input_.scene.settings;
-  return irradiance_at(
-      {input_.rays, points, point_keys, lights_, eta, settings.light_samples, hash_bits(settings.seed, 2000)});
+  // The samples of a pixel share the rays: their average has as many.
+  const int spp = input_.scene.film.samples_per_pixel, light_samples = (settings.light_samples + spp - 1) / spp;
+  return irradiance_at({input_.rays, points, point_keys, lights_, eta, light_samples, hash_bits(settings.seed, 2000)});
 }
 
 }  // namespace opaline

@@ -27,7 +27,7 @@ struct Plan {
   std::vector<GroupPlan> groups;      ///< empty: nothing translucent, no precompute
   std::vector<std::string> stages;    ///< that will run, each with its reason
   std::vector<std::string> warnings;  ///< one line each, with the likely fix
-  std::size_t bytes = 0;              ///< expected peak of meshes, rays, samples, trees and picture
+  std::size_t bytes = 0;              ///< expected peak: program, meshes, rays, samples, trees and a picture without empty pixels
   std::size_t triangles = 0;
 };
 

@@ -162,7 +162,7 @@ struct Settings {
   std::optional<double> sample_spacing;  ///< sqrt(area / samples), mm; none: from the mean free path
   std::optional<std::size_t> samples;  ///< per group; none: from the spacing
   std::size_t max_samples = 2000000;   ///< per group
-  int light_samples = 64;              ///< shadow rays per sample and area light, or surroundings
+  int light_samples = 64;              ///< shadow rays per sample (opaque: pixel) and light with an area
   std::uint64_t seed = 0;
 };
 
