@@ -117,10 +117,12 @@ TEST(CliFailures, InterruptKeepsTheOldFile) {
 TEST(CliFailures, SecondInterruptKills) {
   const SceneFolder folder;
   Child child({"render", folder.scene, "-o", folder.file("a.exr"), "--log", "json", "--evaluator", "brute_force",
-               "--set", "settings.samples=100000", "--resolution", "64x64", "--spp", "64"});
+               "--set", "settings.samples=400000", "--resolution", "16x16"});
   ASSERT_TRUE(child.prints(kShading));
+  // The only tile takes some 200 ms and hears nothing meanwhile: both signals fall into it.
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
   child.send(SIGINT);
-  std::this_thread::sleep_for(std::chrono::milliseconds(5));  // a tile takes longer: the first is not heard yet
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
   child.send(SIGINT);
   const Outcome outcome = child.wait(20);
   EXPECT_EQ(outcome.signal, SIGINT) << "exit code " << outcome.exit_code;
