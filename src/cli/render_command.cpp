@@ -108,7 +108,7 @@ void run_render(const RenderArguments& arguments) {
   const RayScene rays = stages.run("rays", [&] { return RayScene(loaded.world); });
   Precompute samples;
   if (translucent) {
-    samples = stages.run_unmeasured("samples", [&] {
+    samples = stages.run_unmeasured("sampling", [&] {
       return precompute({loaded.scene, loaded.world, rays, plan, &stages.monitor()});
     });
     for (const StageCost& cost : samples.costs) stages.note(cost);

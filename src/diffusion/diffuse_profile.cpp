@@ -16,7 +16,7 @@ struct ReducedMedium {
 
 ReducedMedium reduce(const PhysicalMedium& medium, std::size_t channel, double) {
   const double sigma_a = medium.sigma_a[channel], sigma_t_prime = sigma_a + medium.sigma_s_prime[channel];
-  if (sigma_t_prime == 0) return {};
+  if (sigma_t_prime < 1e-30) return {};  // a mean free path no scene is as large as
   return {1 / sigma_t_prime, sigma_a / sigma_t_prime};
 }
 

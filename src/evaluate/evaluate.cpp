@@ -74,7 +74,11 @@ SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, dou
   if (split) kernel.border = border_shares(profile, radius);
   for (std::size_t c = 0; split && c < 3; ++c) {
     kernel.near[c] = float(near_field_reflectance(profile.channels[c], radius));
-    kernel.needs_irradiance[c] = kernel.near[c] > 0 && profile.mean_free_path[c] < spacing;
+    const double t = std::clamp(2 * (1 - profile.mean_free_path[c] / spacing), 0.0, 1.0),
+                 share = t * t * (3 - 2 * t);
+    // Less than a few per cent is not worth the shadow rays: the default spacing is the mean free path, give
+    // or take.
+    kernel.own_irradiance[c] = kernel.near[c] > 0 && share > 0.03 ? float(share) : 0;
   }
   return kernel;
 }

@@ -47,7 +47,8 @@ class Gather {
     const std::array<float, 3> share = surface_share();
     for (std::size_t c = 0; c < 3; ++c) {
       out.irradiance[c] = near_weight_ > 0 ? flux[c] / near_weight_ * unit : 0;
-      const float e = given != nullptr && kernel_.needs_irradiance[c] ? (*given)[c] : out.irradiance[c];
+      const float own = given != nullptr ? kernel_.own_irradiance[c] : 0;
+      const float e = own > 0 ? own * (*given)[c] + (1 - own) * out.irradiance[c] : out.irradiance[c];
       out.exitance[c] = float(sum[c]) * unit + kernel_.near[c] * e * share[c];
     }
     return out;

@@ -110,7 +110,11 @@ RayScene::RayScene(const World& world) : handles_(std::make_unique<Handles>()) {
     attach_mesh(handles_->device, handles_->scene, world.meshes[i], unsigned(i));
   rtcCommitScene(handles_->scene);
   check(handles_->device);
-  offset_ = float(world.diagonal * 0x1p-18);
+  for (const Mesh& mesh : world.meshes) {
+    const Bounds box = bounds(mesh);
+    offsets_.push_back(float(length(box.high - box.low) * 0x1p-18));
+    largest_offset_ = std::max(largest_offset_, offsets_.back());
+  }
 }
 
 RayScene::~RayScene() = default;

@@ -31,18 +31,20 @@ class ShadowBatch {
   // Adds all rays of one point; `index` chooses its rotation of the low-discrepancy points.
   void add(const SurfacePoint& point, std::uint64_t index) {
     std::array<double, 2> shift{};
-    if (!is_delta(light_)) shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
+    if (!is_delta(light_))
+      shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
     for (int s = 0; s < samples_; ++s) {
-      const LightSample sample = sample_light(light_, point.position, point.normal,
-                                              r2_point(std::uint64_t(s), shift), samples_);
+      const LightSample sample =
+          sample_light(light_, point.position, point.normal, r2_point(std::uint64_t(s), shift), samples_);
       const float cosine = dot(point.normal, sample.direction);
       float carried = 0;
       if (sample.weight > 0 && cosine > 0 && dot(point.geometric, sample.direction) > 0) {
-        carried = sample.weight * cosine * (eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f);
+        carried =
+            sample.weight * cosine * (eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f);
       }
       carried_.push_back(carried);
       if (carried > 0) {
-        const Vec3f origin = point.position + point.geometric * rays_.offset();
+        const Vec3f origin = point.position + point.geometric * rays_.offset(point);
         shadow_.push_back({origin, sample.direction, 0, sample.distance * 0.9999f});
       }
     }
@@ -73,7 +75,10 @@ class ShadowBatch {
   std::vector<std::uint8_t> blocked_;
 };
 
-constexpr std::size_t kBatchPoints = 256;
+// Points whose rays are traced at once: enough for coherent batches, few enough to bound their memory.
+std::size_t batch_points(int light_samples) {
+  return std::clamp<std::size_t>(16384 / std::size_t(light_samples), 1, 256);
+}
 
 struct ErrorSums {
   double variance = 0, sum = 0;
@@ -82,29 +87,34 @@ struct ErrorSums {
 LightTransfer transfer_from(const IrradianceInput& input, const Light& light, std::uint64_t seed) {
   LightTransfer transfer;
   transfer.weights.resize(input.samples.size());
-  std::vector<ErrorSums> errors(chunk_count(input.samples.size(), kBatchPoints));
-  parallel_chunks(input.samples.size(), kBatchPoints, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-    ShadowBatch batch(input.rays, light, input.eta, input.light_samples, seed);
-    batch.reserve(end - begin);
-    for (std::size_t i = begin; i < end; ++i) {
-      const SurfaceSample& s = input.samples[i];
-      batch.add(surface_point(input.world.meshes[s.mesh], s.triangle, s.u, s.v), i);
-    }
-    // The first and the second half of the low-discrepancy points, each such a set itself, estimate the error of their
-    // mean: its variance is (difference of the halves' means)^2 times n0 n1 / n^2.
-    const int first_half = batch.samples() / 2;
-    const double n0 = double(first_half), n1 = double(batch.samples() - first_half);
-    const double weight0 = first_half > 0 ? std::sqrt(n1 / n0) : 0, weight1 = std::sqrt(n0 / n1);
-    std::vector<std::array<double, 2>> halves(end - begin);
-    batch.trace([&](std::size_t p, int s, float e) { halves[p][s < first_half ? 0 : 1] += double(e); });
-    for (std::size_t p = 0; p < halves.size(); ++p) {
-      const double sum = halves[p][0] + halves[p][1], difference = weight0 * halves[p][0] - weight1 * halves[p][1];
-      transfer.weights[begin + p] = float(sum);
-      errors[chunk].variance += difference * difference;
-      errors[chunk].sum += sum;
-    }
-    advance(input.monitor, end - begin);
-  });
+  const std::size_t batch_size = batch_points(input.light_samples);
+  std::vector<ErrorSums> errors(chunk_count(input.samples.size(), batch_size));
+  parallel_chunks(
+      input.samples.size(), batch_size, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        ShadowBatch batch(input.rays, light, input.eta, input.light_samples, seed);
+        batch.reserve(end - begin);
+        for (std::size_t i = begin; i < end; ++i) {
+          const SurfaceSample& s = input.samples[i];
+          SurfacePoint point = surface_point(input.world.meshes[s.mesh], s.triangle, s.u, s.v);
+          point.offset = input.rays.offset(s.mesh, point.position);
+          batch.add(point, i);
+        }
+        // The first and the second half of the low-discrepancy points, each such a set itself, estimate the
+        // error of their mean: its variance is (difference of the halves' means)^2 times n0 n1 / n^2.
+        const int first_half = batch.samples() / 2;
+        const double n0 = double(first_half), n1 = double(batch.samples() - first_half);
+        const double weight0 = first_half > 0 ? std::sqrt(n1 / n0) : 0, weight1 = std::sqrt(n0 / n1);
+        std::vector<std::array<double, 2>> halves(end - begin);
+        batch.trace([&](std::size_t p, int s, float e) { halves[p][s < first_half ? 0 : 1] += double(e); });
+        for (std::size_t p = 0; p < halves.size(); ++p) {
+          const double sum = halves[p][0] + halves[p][1],
+                       difference = weight0 * halves[p][0] - weight1 * halves[p][1];
+          transfer.weights[begin + p] = float(sum);
+          errors[chunk].variance += difference * difference;
+          errors[chunk].sum += sum;
+        }
+        advance(input.monitor, end - begin);
+      });
   if (is_delta(light) || input.light_samples < 2) return transfer;
   ErrorSums all;
   for (const ErrorSums& e : errors) {
@@ -119,7 +129,8 @@ LightTransfer transfer_from(const IrradianceInput& input, const Light& light, st
 }  // namespace
 
 std::vector<LightTransfer> compute_irradiance(const IrradianceInput& input) {
-  if (input.monitor != nullptr) input.monitor->begin("irradiance", input.samples.size() * input.lights.size());
+  if (input.monitor != nullptr)
+    input.monitor->begin("irradiance", input.samples.size() * input.lights.size());
   std::vector<LightTransfer> transfers;
   for (std::size_t l = 0; l < input.lights.size(); ++l)
     transfers.push_back(transfer_from(input, input.lights[l], hash_bits(input.seed, l)));
@@ -140,9 +151,10 @@ std::vector<RgbF> irradiance_at(const PointIrradianceInput& input) {
   for (std::size_t l = 0; l < input.lights.size(); ++l) {
     const RgbF colour(emission(input.lights[l]));
     ShadowBatch batch(input.rays, input.lights[l], input.eta, input.light_samples, hash_bits(input.seed, l));
-    batch.reserve(std::min(kBatchPoints, input.points.size()));
-    for (std::size_t begin = 0; begin < input.points.size(); begin += kBatchPoints) {
-      const std::size_t end = std::min(input.points.size(), begin + kBatchPoints);
+    const std::size_t batch_size = batch_points(input.light_samples);
+    batch.reserve(std::min(batch_size, input.points.size()));
+    for (std::size_t begin = 0; begin < input.points.size(); begin += batch_size) {
+      const std::size_t end = std::min(input.points.size(), begin + batch_size);
       for (std::size_t i = begin; i < end; ++i) batch.add(input.points[i], input.keys[i]);
       batch.trace([&](std::size_t p, int, float e) { irradiance[begin + p] += colour * e; });
     }

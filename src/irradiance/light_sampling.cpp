@@ -25,7 +25,9 @@ LightSample sample(const PointLight& light, const Vec3f& point) {
   return {to_light / d, d, 1 / d2};
 }
 
-LightSample sample(const DirectionalLight& light) { return {Vec3f(-light.direction), kInfinity, 1}; }
+LightSample sample(const DirectionalLight& light) {
+  return {Vec3f(-light.direction), kInfinity, 1};
+}
 
 // Uniform over the cone that the sphere fills; from inside it, over all directions.
 LightSample sample(const SphereLight& light, const Vec3f& point, std::array<double, 2> xi, int samples) {
@@ -36,7 +38,8 @@ LightSample sample(const SphereLight& light, const Vec3f& point, std::array<doub
   // 1 - cos of the cone's half angle, without cancellation for a small, far sphere.
   const double sin2 = inside ? 1 : r2 / d2;
   const double one_minus_cos = inside ? 2 : sin2 / (1 + std::sqrt(1 - sin2));
-  const double drop = one_minus_cos * xi[0], cosine = 1 - drop, sine = std::sqrt(std::max(0.0, drop * (2 - drop)));
+  const double drop = one_minus_cos * xi[0], cosine = 1 - drop,
+               sine = std::sqrt(std::max(0.0, drop * (2 - drop)));
   const Vec3d axis = inside ? Vec3d{0, 0, 1} : to_center / std::sqrt(d2);
   Vec3d x, y;
   tangent_frame(axis, x, y);
@@ -78,14 +81,16 @@ Rgb emission(const Light& light) {
 }
 
 bool is_delta(const Light& light) {
-  return std::holds_alternative<PointLight>(light.source) || std::holds_alternative<DirectionalLight>(light.source);
+  return std::holds_alternative<PointLight>(light.source) ||
+         std::holds_alternative<DirectionalLight>(light.source);
 }
 
 Light recentred(const Light& light, const Vec3d& origin) {
   Light moved = light;
-  std::visit(Overloaded{[&](PointLight& l) { l.position -= origin; }, [&](SphereLight& l) { l.center -= origin; },
-                        [&](QuadLight& l) { l.corner -= origin; }, [](auto&) {}},
-             moved.source);
+  std::visit(
+      Overloaded{[&](PointLight& l) { l.position -= origin; }, [&](SphereLight& l) { l.center -= origin; },
+                 [&](QuadLight& l) { l.corner -= origin; }, [](auto&) {}},
+      moved.source);
   return moved;
 }
 

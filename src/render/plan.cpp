@@ -13,21 +13,25 @@
 namespace opaline {
 namespace {
 
-// Fewer leave the irradiance itself unresolved, however far light travels inside; more than enough for any preview.
+// Fewer leave the irradiance itself unresolved, however far light travels inside; more than enough for any
+// preview.
 constexpr double kFewestSamples = 10000;
 constexpr double kSuspiciouslyFew = 100;
 
 double smallest_mean_free_path(const DiffuseProfile& profile) {
   double smallest = INFINITY;
   for (std::size_t c = 0; c < 3; ++c)
-    if (profile.total[c] > 0) smallest = std::min(smallest, profile.mean_free_path[c]);
+    if (profile.total[c] > 0 && profile.mean_free_path[c] > 0)
+      smallest = std::min(smallest, profile.mean_free_path[c]);
   return smallest;
 }
 
 void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
   const Settings& settings = scene.settings;
   const double mean_free_path = group.smallest_mean_free_path;
-  const double wanted = group.area / (mean_free_path * mean_free_path);
+  // Without any mean free path light leaves where it enters, and no number of samples is asked for.
+  const double wanted =
+      std::isfinite(mean_free_path) ? group.area / (mean_free_path * mean_free_path) : kFewestSamples;
   double count = wanted;
   group.reason = fmt::format("one a squared mean free path of {:.4g} mm", mean_free_path);
   if (settings.samples) {
@@ -38,42 +42,47 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
     group.reason = fmt::format("settings.sample_spacing of {:.4g} mm", *settings.sample_spacing);
   } else if (wanted < kFewestSamples) {
     count = kFewestSamples;
-    group.reason = fmt::format("the least; the mean free path of {:.4g} mm asks for {:.0f}", mean_free_path, wanted);
+    group.reason =
+        fmt::format("the least; the mean free path of {:.4g} mm asks for {:.0f}", mean_free_path, wanted);
   }
   if (count > double(settings.max_samples)) {
-    warnings.push_back(fmt::format(
-        "{}: {:.3g} samples wanted ({}), {} taken (settings.max_samples); is mm_per_unit right? The object measures "
-        "{:.4g} mm^2, the mean free path {:.4g} mm",
-        group.name, count, group.reason, settings.max_samples, group.area, mean_free_path));
+    warnings.push_back(
+        fmt::format("{}: {:.3g} samples wanted ({}), {} taken (settings.max_samples); is mm_per_unit right? "
+                    "The object measures "
+                    "{:.4g} mm^2, the mean free path {:.4g} mm",
+                    group.name, count, group.reason, settings.max_samples, group.area, mean_free_path));
     count = double(settings.max_samples);
     group.reason = "settings.max_samples";
   }
   if (wanted < kSuspiciouslyFew)
-    warnings.push_back(
-        fmt::format("{}: the mean free path of {:.4g} mm asks for only {:.1f} samples on {:.4g} mm^2; light crosses the "
-                    "whole object and diffusion is a poor model of it; is mm_per_unit right?",
-                    group.name, mean_free_path, wanted, group.area));
+    warnings.push_back(fmt::format(
+        "{}: the mean free path of {:.4g} mm asks for only {:.1f} samples on {:.4g} mm^2; light crosses the "
+        "whole object and diffusion is a poor model of it; is mm_per_unit right?",
+        group.name, mean_free_path, wanted, group.area));
   group.samples = std::max<std::size_t>(1, std::size_t(std::ceil(count)));
   group.spacing = std::sqrt(group.area / double(group.samples));
 }
 
-std::vector<GroupPlan> find_groups(const Scene& scene, const World& world, std::vector<std::string>& warnings) {
+std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
+                                   std::vector<std::string>& warnings) {
   std::vector<GroupPlan> groups;
   for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
     const Shape& shape = scene.shapes[i];
     if (!shape.medium) continue;
     const DiffuseProfile profile = make_diffuse_profile(scene.media[*shape.medium]);
     if (!profile.translucent) {
-      warnings.push_back(fmt::format("{}: medium {} does not scatter and is not translucent; its diffuse part is black",
-                                     shape.name, scene.media[*shape.medium].name));
+      warnings.push_back(
+          fmt::format("{}: medium {} does not scatter and is not translucent; its diffuse part is black",
+                      shape.name, scene.media[*shape.medium].name));
       continue;
     }
     const std::string& name = shape.group.empty() ? shape.name : shape.group;
     auto it = groups.end();
     if (!shape.group.empty())
-      it = std::ranges::find_if(groups, [&](const GroupPlan& g) { return g.name == name; });
+      it = std::ranges::find_if(groups, [&](const GroupPlan& g) { return g.shared && g.name == name; });
     if (it == groups.end()) {
-      groups.push_back({name, {}, *shape.medium, 0, smallest_mean_free_path(profile), 0, 0, {}});
+      groups.push_back(
+          {name, !shape.group.empty(), {}, *shape.medium, 0, smallest_mean_free_path(profile), 0, 0, {}});
       it = groups.end() - 1;
     }
     it->meshes.push_back(std::uint32_t(i));
@@ -86,15 +95,18 @@ void list_stages(const Scene& scene, Plan& plan) {
   if (scene.settings.method == Method::hierarchical && !plan.groups.empty()) {
     plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
     std::size_t rays = 0;
-    for (const Light& light : scene.lights) rays += is_delta(light) ? 1 : std::size_t(scene.settings.light_samples);
+    for (const Light& light : scene.lights)
+      rays += is_delta(light) ? 1 : std::size_t(scene.settings.light_samples);
     plan.stages.push_back(
         fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample", scene.lights.size(), rays));
     plan.stages.push_back("octree");
-    plan.stages.push_back(scene.settings.evaluator == EvaluatorKind::classic
-                              ? fmt::format("evaluation: classic traversal, {} sr", scene.settings.max_solid_angle)
-                              : "evaluation: brute force");
+    plan.stages.push_back(
+        scene.settings.evaluator == EvaluatorKind::classic
+            ? fmt::format("evaluation: classic traversal, {} sr", scene.settings.max_solid_angle)
+            : "evaluation: brute force");
   }
-  plan.stages.push_back(scene.settings.method == Method::hierarchical ? "shading: hierarchical" : "shading: lambert");
+  plan.stages.push_back(scene.settings.method == Method::hierarchical ? "shading: hierarchical"
+                                                                      : "shading: lambert");
 }
 
 }  // namespace
@@ -104,7 +116,8 @@ Plan make_plan(const Scene& scene, const World& world) {
   plan.groups = find_groups(scene, world, plan.warnings);
   for (const MeshReport& report : world.reports)
     plan.warnings.insert(plan.warnings.end(), report.warnings.begin(), report.warnings.end());
-  if (scene.shapes.empty()) plan.warnings.push_back("the scene has no shapes: the picture shows its surroundings");
+  if (scene.shapes.empty())
+    plan.warnings.push_back("the scene has no shapes: the picture shows its surroundings");
   if (scene.lights.empty()) plan.warnings.push_back("the scene has no lights: the picture is black");
   const std::size_t pixels = std::size_t(scene.film.resolution[0]) * std::size_t(scene.film.resolution[1]);
   plan.bytes = 135'000'000 + pixels * 23 * sizeof(float);  // the libraries (measured); all layers

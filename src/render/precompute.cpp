@@ -39,15 +39,16 @@ Precompute precompute(const PrecomputeInput& input) {
 
     const Stopwatch irradiance_watch;
     std::vector<LightTransfer> transfers =
-        compute_irradiance({input.world, input.rays, surface.samples, lights, profile.eta, settings.light_samples,
-                            hash_bits(settings.seed, g + 1000), input.monitor});
+        compute_irradiance({input.world, input.rays, surface.samples, lights, profile.eta,
+                            settings.light_samples, hash_bits(settings.seed, g + 1000), input.monitor});
     std::vector<RgbF> entered = combine_lights(transfers, lights);
     add_cost(irradiance, irradiance_watch.cost({}));
 
     const Stopwatch octree_watch;
-    SplitKernel kernel = make_split_kernel(profile, surface.spacing(), input.world.diagonal, settings.near_field);
-    TranslucentGroup group{plan, profile, std::move(surface), std::move(transfers), std::move(entered), {},
-                           std::move(kernel)};
+    SplitKernel kernel =
+        make_split_kernel(profile, surface.spacing(), input.world.diagonal, settings.near_field);
+    TranslucentGroup group{
+        plan, profile, std::move(surface), std::move(transfers), std::move(entered), {}, std::move(kernel)};
     group.octree = build_octree(flux_samples(group));
     add_cost(octree, octree_watch.cost({}));
     result.groups.push_back(std::move(group));

@@ -45,7 +45,8 @@ class TileRenderer {
       for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x, ++i) {
           rays[i] = camera_.ray(x, y, s);
-          keys[i] = (std::uint64_t(y) * std::uint64_t(image_.full_width) + std::uint64_t(x)) * std::uint64_t(samples) +
+          keys[i] = (std::uint64_t(y) * std::uint64_t(image_.full_width) + std::uint64_t(x)) *
+                        std::uint64_t(samples) +
                     std::uint64_t(s);
         }
       advance(input_.monitor, 1);
@@ -112,7 +113,8 @@ RenderResult render(const RenderInput& input) {
   const Shader shader(input);
   const TileRenderer renderer(input, camera, shader, image);
   const std::vector<Rectangle> tiles = tiles_of(part);
-  if (input.monitor != nullptr) input.monitor->begin("shading", tiles.size() * std::size_t(film.samples_per_pixel));
+  if (input.monitor != nullptr)
+    input.monitor->begin("shading", tiles.size() * std::size_t(film.samples_per_pixel));
   std::atomic<std::size_t> queries{0}, non_finite{0};
   parallel_chunks(tiles.size(), 1, [&](std::size_t begin, std::size_t, std::size_t) {
     const TileRenderer::Counts counts = renderer.render(tiles[begin]);

@@ -79,7 +79,9 @@ std::size_t Shader::shade(std::span<const Ray> rays, std::span<const Hit> hits,
 
 Shader::Surface Shader::surface_at(std::size_t ray, const Ray& camera_ray, const Hit& hit) const {
   const Appearance& appearance = appearances_[hit.mesh];
-  Surface s{ray, surface_point(input_.world.meshes[hit.mesh], hit.triangle, hit.u, hit.v), &appearance, 0, {}};
+  Surface s{
+      ray, surface_point(input_.world.meshes[hit.mesh], hit.triangle, hit.u, hit.v), &appearance, 0, {}};
+  s.point.offset = input_.rays.offset(hit.mesh, s.point.position);
   const Vec3f view = normalized(-camera_ray.direction);
   // An opaque sheet has two equal sides; a translucent one is lit and seen from outside.
   if (!appearance.translucent && dot(s.point.geometric, view) < 0) {
@@ -99,7 +101,9 @@ void Shader::add_lambert(std::vector<Surface>& surfaces, std::span<const std::ui
   // One batch of shadow rays for each kind of boundary.
   while (!rest.empty()) {
     const float eta = rest.front()->appearance->translucent ? rest.front()->appearance->eta : 0;
-    const auto same = [eta](const Surface* s) { return (s->appearance->translucent ? s->appearance->eta : 0) == eta; };
+    const auto same = [eta](const Surface* s) {
+      return (s->appearance->translucent ? s->appearance->eta : 0) == eta;
+    };
     const auto end = std::stable_partition(rest.begin(), rest.end(), same);
     const std::vector<const Surface*> batch(rest.begin(), end);
     const std::vector<RgbF> entered = irradiance(batch, keys, double(eta));
@@ -122,11 +126,11 @@ std::size_t Shader::add_translucent(std::vector<Surface>& surfaces, std::span<co
     std::vector<Query> points;
     for (const Surface* s : own) points.push_back({s->point.position, s->point.normal});
     std::vector<RgbF> at_point;
-    if (std::ranges::any_of(group.kernel.needs_irradiance, [](bool needed) { return needed; }))
+    if (group.kernel.needs_irradiance())
       at_point = irradiance({own.begin(), own.end()}, keys, group.profile.eta);
     const Settings& settings = input_.scene.settings;
-    const std::vector<Exitance> exitance =
-        evaluate({group.octree, group.kernel, points, at_point, settings.evaluator, settings.max_solid_angle});
+    const std::vector<Exitance> exitance = evaluate(
+        {group.octree, group.kernel, points, at_point, settings.evaluator, settings.max_solid_angle});
     for (std::size_t i = 0; i < own.size(); ++i) {
       own[i]->exitance = exitance[i].exitance;
       out[own[i]->ray].irradiance = at_point.empty() ? exitance[i].irradiance : at_point[i];
@@ -147,7 +151,7 @@ void Shader::add_mirrored_lights(const std::vector<Surface>& surfaces, std::span
     const Vec3f d = normalized(rays[s.ray].direction);
     const Vec3f r = d - s.point.normal * (2 * dot(d, s.point.normal));
     const float side = dot(r, s.point.geometric) >= 0 ? 1.0f : -1.0f;
-    mirrored.push_back({s.point.position + s.point.geometric * (side * input_.rays.offset()), r});
+    mirrored.push_back({s.point.position + s.point.geometric * (side * s.point.offset), r});
     owners.push_back(&s);
   }
   std::vector<Hit> hits(mirrored.size());
@@ -157,7 +161,8 @@ void Shader::add_mirrored_lights(const std::vector<Surface>& surfaces, std::span
     const EmitterHit emitter =
         nearest_emitter(mirrored[i].origin, mirrored[i].direction, blocked ? hits[i].t : mirrored[i].far);
     const RgbF seen = emitter.hit ? emitter.radiance : blocked ? RgbF{} : surroundings_;
-    out[owners[i]->ray].specular = seen * fresnel_reflectance(owners[i]->cos_view, owners[i]->appearance->eta);
+    out[owners[i]->ray].specular =
+        seen * fresnel_reflectance(owners[i]->cos_view, owners[i]->appearance->eta);
   }
 }
 
@@ -180,8 +185,10 @@ std::vector<RgbF> Shader::irradiance(const std::vector<const Surface*>& surfaces
   }
   const Settings& settings = input_.scene.settings;
   // The samples of a pixel share the rays: their average has as many.
-  const int spp = input_.scene.film.samples_per_pixel, light_samples = (settings.light_samples + spp - 1) / spp;
-  return irradiance_at({input_.rays, points, point_keys, lights_, eta, light_samples, hash_bits(settings.seed, 2000)});
+  const int spp = input_.scene.film.samples_per_pixel,
+            light_samples = (settings.light_samples + spp - 1) / spp;
+  return irradiance_at(
+      {input_.rays, points, point_keys, lights_, eta, light_samples, hash_bits(settings.seed, 2000)});
 }
 
 }  // namespace opaline

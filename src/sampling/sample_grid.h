@@ -13,9 +13,9 @@
 
 namespace opaline {
 
-/// Cells are twice the Poisson radius wide: a ball of one radius meets at most eight. Blocks of 4 x 4 x 4 cells are
-/// found by a hash and hold a bit for each cell that exists: space around a surface is mostly empty. Samples lie
-/// cell by cell, along the Morton curve as far as cells were made together.
+/// Cells are twice the Poisson radius wide: a ball of one radius meets at most eight. Blocks of 4 x 4 x 4
+/// cells are found by a hash and hold a bit for each cell that exists: space around a surface is mostly
+/// empty. Samples lie cell by cell, along the Morton curve as far as cells were made together.
 class SampleGrid {
  public:
   struct Cell {
@@ -52,8 +52,8 @@ class SampleGrid {
   /// Makes sure that the cell exists; may move all cells.
   void reserve_cell(std::uint64_t key);
 
-  /// Ends a round: takes in the candidates accepted in it. accepted(i): the sample of candidate i, for i in each
-  /// cell's [round_first, round_first + round_count).
+  /// Ends a round: takes in the candidates accepted in it. accepted(i): the sample of candidate i, for i in
+  /// each cell's [round_first, round_first + round_count).
   template <class Accepted>
   void end_round(const Accepted& accepted) {
     std::vector<Vec3f> positions, normals;
@@ -68,7 +68,8 @@ class SampleGrid {
     };
     for (Cell& cell : cells_) {
       const auto first = std::uint32_t(positions.size());
-      for (std::uint32_t i = cell.first; i < cell.first + cell.count; ++i) add({positions_[i], normals_[i], places_[i]});
+      for (std::uint32_t i = cell.first; i < cell.first + cell.count; ++i)
+        add({positions_[i], normals_[i], places_[i]});
       for (std::uint32_t i = 0; i < cell.round_count; ++i) add(accepted(cell.round_first + i));
       cell = {first, cell.count + cell.round_count, 0, 0};
     }
@@ -82,49 +83,71 @@ class SampleGrid {
   const Vec3f& geometric_normal(std::size_t sample) const { return normals_[sample]; }
   const Place& place(std::size_t sample) const { return places_[sample]; }
 
-  /// Calls visit(cell) for each existing cell that the ball of this radius around p meets, until one returns true.
+  /// Calls visit(cell) for each existing cell that the ball of this radius around p meets, until one returns
+  /// true.
   template <class Visit>
   void for_cells_near(const Vec3f& p, float radius, const Visit& visit) const {
     const Coordinates a = coordinates(p - Vec3f(radius)), b = coordinates(p + Vec3f(radius));
-    const Vec3f place = p - low_;
-    // Slightly more than the radius: rounding must not lose a cell.
-    const float reach2 = radius * radius * 1.0001f;
+    const std::uint64_t boxes = std::uint64_t((b.x >> 2) - (a.x >> 2) + 1) * ((b.y >> 2) - (a.y >> 2) + 1) *
+                                ((b.z >> 2) - (a.z >> 2) + 1);
+    if (boxes > blocks_.size()) {  // a wide ball over a sparse cloud: fewer blocks exist than it meets
+      for (const Block& block : blocks_)
+        if (visit_block(block, a, b, p, radius, visit)) return;
+      return;
+    }
     for (std::uint32_t bz = a.z >> 2; bz <= b.z >> 2; ++bz)
       for (std::uint32_t by = a.y >> 2; by <= b.y >> 2; ++by)
-        for (std::uint32_t bx = a.x >> 2; bx <= b.x >> 2; ++bx) {
-          const Block* block = find_block(morton_key(bx, by, bz));
-          if (block == nullptr) continue;
-          std::uint64_t inside =
-              block->occupied & range_mask(a.x, b.x, bx, 0) & range_mask(a.y, b.y, by, 1) & range_mask(a.z, b.z, bz, 2);
-          for (; inside != 0; inside &= inside - 1) {
-            const auto bit = std::uint32_t(std::countr_zero(inside));
-            const float gap2 = gap2_to(place.x, 4 * bx + axis_bits(bit)) + gap2_to(place.y, 4 * by + axis_bits(bit >> 1)) +
-                               gap2_to(place.z, 4 * bz + axis_bits(bit >> 2));
-            if (gap2 <= reach2 && visit(cells_[block->cells[bit]])) return;
-          }
-        }
+        for (std::uint32_t bx = a.x >> 2; bx <= b.x >> 2; ++bx)
+          if (const Block* block = find_block(morton_key(bx, by, bz)))
+            if (visit_block(*block, a, b, p, radius, visit)) return;
   }
 
  private:
   static constexpr std::uint32_t kNone = ~0u;
-  static constexpr std::uint32_t kLast = (1u << 20) - 1;  // largest coordinate; its cells hold all beyond, too
+  static constexpr std::uint32_t kLast =
+      (1u << 20) - 1;  // largest coordinate; its cells hold all beyond, too
 
   struct Block {
     std::uint64_t key, occupied;
     std::array<std::uint32_t, 64> cells;
   };
 
+  // Visits the block's cells that the ball meets and whose coordinates lie in [a, b]; true if a visit
+  // returned true.
+  template <class Visit>
+  bool visit_block(const Block& block, const Coordinates& a, const Coordinates& b, const Vec3f& p,
+                   float radius, const Visit& visit) const {
+    const Vec3f place = p - low_;
+    // Slightly more than the radius: rounding must not lose a cell.
+    const float reach2 = radius * radius * 1.0001f;
+    const std::uint32_t bx = gather_bits(block.key), by = gather_bits(block.key >> 1),
+                        bz = gather_bits(block.key >> 2);
+    std::uint64_t inside = block.occupied & range_mask(a.x, b.x, bx, 0) & range_mask(a.y, b.y, by, 1) &
+                           range_mask(a.z, b.z, bz, 2);
+    for (; inside != 0; inside &= inside - 1) {
+      const auto bit = std::uint32_t(std::countr_zero(inside));
+      const float gap2 = gap2_to(place.x, 4 * bx + axis_bits(bit)) +
+                         gap2_to(place.y, 4 * by + axis_bits(bit >> 1)) +
+                         gap2_to(place.z, 4 * bz + axis_bits(bit >> 2));
+      if (gap2 <= reach2 && visit(cells_[block.cells[bit]])) return true;
+    }
+    return false;
+  }
+
   // The two bits of x in a cell's six-bit Morton place within its block.
   static constexpr std::uint32_t axis_bits(std::uint32_t place) { return (place & 1) | (place >> 2 & 2); }
 
   // Bits of a block's cells whose coordinate along an axis lies in [low, high].
-  static std::uint64_t range_mask(std::uint32_t low, std::uint32_t high, std::uint32_t block, std::uint32_t axis) {
+  static std::uint64_t range_mask(std::uint32_t low, std::uint32_t high, std::uint32_t block,
+                                  std::uint32_t axis) {
     static constexpr auto kLayers = [] {
       std::array<std::array<std::uint64_t, 4>, 3> layers{};
       for (std::uint32_t a = 0; a < 3; ++a)
-        for (std::uint32_t bit = 0; bit < 64; ++bit) layers[a][axis_bits(bit >> a)] |= std::uint64_t(1) << bit;
+        for (std::uint32_t bit = 0; bit < 64; ++bit)
+          layers[a][axis_bits(bit >> a)] |= std::uint64_t(1) << bit;
       return layers;
     }();
+    if (high < 4 * block || low > 4 * block + 3) return 0;
     const std::uint32_t first = low > 4 * block ? low - 4 * block : 0, last = std::min(high - 4 * block, 3u);
     std::uint64_t mask = 0;
     for (std::uint32_t i = first; i <= last; ++i) mask |= kLayers[axis][i];
@@ -150,7 +173,9 @@ class SampleGrid {
     return std::size_t((key * 0x9E3779B97F4A7C15ull) >> shift_);  // the top bits depend on all of the key
   }
 
-  static std::uint32_t clamp_coordinate(float c) { return c <= 0 ? 0 : c >= float(kLast) ? kLast : std::uint32_t(c); }
+  static std::uint32_t clamp_coordinate(float c) {
+    return c <= 0 ? 0 : c >= float(kLast) ? kLast : std::uint32_t(c);
+  }
 
   Vec3f low_;
   float cell_size_, inverse_cell_;

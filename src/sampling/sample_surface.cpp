@@ -17,7 +17,7 @@
 namespace opaline {
 namespace {
 
-// Radius over sqrt(area / count) for a sampling of 6 rounds; measured (test_poisson_disk checks the count).
+// Radius over sqrt(area / count) for a sampling of 6 rounds; measured (test_density checks the count).
 constexpr double kRadiusPerSpacing = 0.7195;
 
 // A place on the surface that has no accepted sample within the radius yet.
@@ -51,12 +51,13 @@ class PoissonDisk {
     });
   }
 
-  // The last round: the centroids of triangles with nothing near, so that no part of the surface, however small,
-  // stays without a sample.
+  // The last round: the centroids of triangles with nothing near, so that no part of the surface, however
+  // small, stays without a sample.
   void cover_centroids(Monitor* monitor) {
-    run_round(triangles_.size(), 2 * radius_, monitor, [&](std::size_t begin, std::size_t end, const auto& keep) {
-      for (std::size_t t = begin; t < end; ++t) keep(t, 1.0f / 3, 1.0f / 3, hash_bits(0, t));
-    });
+    run_round(triangles_.size(), 2 * radius_, monitor,
+              [&](std::size_t begin, std::size_t end, const auto& keep) {
+                for (std::size_t t = begin; t < end; ++t) keep(t, 1.0f / 3, 1.0f / 3, hash_bits(0, t));
+              });
   }
 
   const SampleGrid& grid() const { return grid_; }
@@ -140,8 +141,8 @@ class PoissonDisk {
     for (const std::uint64_t key : keys) grid_.reserve_cell(key);
   }
 
-  // Tries one cell's candidates in order; the accepted ones move to the front of its run. Cells of one phase are
-  // two radii apart, so none sees another at work.
+  // Tries one cell's candidates in order; the accepted ones move to the front of its run. Cells of one phase
+  // are two radii apart, so none sees another at work.
   void try_cell(const std::vector<Candidate>& candidates, const std::vector<Vec3f>& normals,
                 std::vector<Entry>& entries, std::size_t begin, std::size_t end) {
     SampleGrid::Cell& own = grid_.cell(entries[begin].cell);
@@ -194,7 +195,8 @@ SurfaceSamples sample_surface(const SamplingInput& input) {
   const float radius = float(kRadiusPerSpacing * std::sqrt(result.area / double(input.count)));
   result.radius = double(radius);
   if (input.monitor != nullptr)
-    input.monitor->begin("sampling", input.count * std::size_t(input.candidate_rounds) + 2 * triangles.size());
+    input.monitor->begin("sampling",
+                         input.count * std::size_t(input.candidate_rounds) + 2 * triangles.size());
 
   PoissonDisk poisson(triangles, lowest_corner(input.world, input.meshes), radius);
   for (int round = 0; round < input.candidate_rounds; ++round)

@@ -77,8 +77,8 @@ struct Owner {
   std::uint32_t sample;
 };
 
-// A sample in the plane of a triangle: `power` is its squared height above the plane plus its squared distance from
-// the plane's origin, so that bisectors are lines.
+// A sample in the plane of a triangle: `power` is its squared height above the plane plus its squared
+// distance from the plane's origin, so that bisectors are lines.
 struct Site {
   std::uint32_t sample;
   Point2 place;
@@ -87,11 +87,13 @@ struct Site {
 
 class TriangleDivider {
  public:
-  TriangleDivider(const SampleGrid& grid, float radius, std::vector<Share>& out)
-      : grid_(grid), radius_(radius), out_(out) {}
+  TriangleDivider(const SampleGrid& grid, float radius, Monitor* monitor, std::vector<Share>& out)
+      : grid_(grid), radius_(radius), monitor_(monitor), out_(out) {}
 
   void divide(const TriangleList::Corners& t) {
     normal_ = t.geometric_normal();
+    // A needle's samples are few and far apart: it is not cut into millions of pieces for them.
+    piece_extent_ = std::max(3 * radius_, ball(t.a, t.b, t.c).extent / 64);
     divide_large(t.a, t.b, t.c);
   }
 
@@ -103,8 +105,8 @@ class TriangleDivider {
   };
   static Ball ball(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const Vec3d center = (a + b + c) / 3.0;
-    const double extent2 =
-        std::max(dot(a - center, a - center), std::max(dot(b - center, b - center), dot(c - center, c - center)));
+    const double extent2 = std::max(dot(a - center, a - center),
+                                    std::max(dot(b - center, b - center), dot(c - center, c - center)));
     return {Vec3f(center), float(std::sqrt(extent2) * 1.0001)};
   }
 
@@ -125,8 +127,9 @@ class TriangleDivider {
   // Down to a few spacings, where the owners are looked up once for all the smaller pieces.
   void divide_large(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const Ball piece = ball(a, b, c);
-    if (piece.extent > 3 * radius_)
+    if (piece.extent > piece_extent_)
       return halve(a, b, c, [this](const auto&... corners) { divide_large(corners...); });
+    advance(monitor_, 0);  // one large triangle can be a minute's work
     owners_.clear();
     find_owners(piece);
     divide_small(a, b, c, piece, 0);
@@ -150,8 +153,8 @@ class TriangleDivider {
     }
   }
 
-  // All samples that can be nearest to some point of the ball: those within d0 + 2 extent of its centre, d0 the
-  // distance of the nearest one.
+  // All samples that can be nearest to some point of the ball: those within d0 + 2 extent of its centre, d0
+  // the distance of the nearest one.
   void find_owners(const Ball& piece) {
     for (float reach = 1.2f * radius_ + 2 * piece.extent;; reach *= 2) {
       owners_.clear();
@@ -219,7 +222,8 @@ class TriangleDivider {
   static constexpr std::size_t kClippedOwners = 28;
 
   const SampleGrid& grid_;
-  float radius_;
+  float radius_, piece_extent_ = 0;
+  Monitor* monitor_;
   std::vector<Share>& out_;
   Vec3f normal_;
   std::vector<Owner> owners_;
@@ -239,7 +243,7 @@ std::vector<double> surface_shares(const TriangleList& triangles, const SampleGr
     const std::size_t n = std::min(kBlock, triangles.size() - begin);
     parallel_chunks(n, kChunk, [&](std::size_t first, std::size_t last, std::size_t chunk) {
       chunks[chunk].clear();
-      TriangleDivider divider(grid, radius, chunks[chunk]);
+      TriangleDivider divider(grid, radius, monitor, chunks[chunk]);
       for (std::size_t i = first; i < last; ++i) divider.divide(triangles.corners(triangles.id(begin + i)));
       advance(monitor, last - first);
     });

@@ -10,9 +10,9 @@
 
 namespace opaline {
 
-/// Area of the part of the surface that is nearer to each sample than to any other sample of the same sheet, mm^2,
-/// in the grid's order. Triangles are halved until they are no larger than the spacing and then clipped by the
-/// bisecting planes: the cells are exact and sum to the surface's area.
+/// Area of the part of the surface that is nearer to each sample than to any other sample of the same sheet,
+/// mm^2, in the grid's order. Triangles are halved until they are no larger than the spacing and then clipped
+/// by the bisecting planes: the cells are exact and sum to the surface's area.
 std::vector<double> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
                                    Monitor* monitor);
 

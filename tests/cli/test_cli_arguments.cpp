@@ -24,7 +24,7 @@ TEST(CliArguments, HelpAndVersion) {
 }
 
 // Claim: a mistake on the command line is exit 2, one line on stderr that names it, nothing on stdout, no
-// file. Source: DESIGN.md exit codes. Fails if: CLI11's own codes (above 100) come through, or a check is
+// file. Source: the design exit codes. Fails if: CLI11's own codes (above 100) come through, or a check is
 // left out.
 TEST(CliArguments, MistakesAreAnsweredInOneLine) {
   const SceneFolder folder;

@@ -7,7 +7,7 @@
 namespace opaline {
 namespace {
 
-// Claim: bad scenes are exit 2 with file and line, and nothing is written. Source: DESIGN.md. Fails if: main
+// Claim: bad scenes are exit 2 with file and line, and nothing is written. Source: the design. Fails if: main
 // maps Error to another code.
 TEST(CliFailures, BadScenes) {
   const SceneFolder folder;
@@ -78,7 +78,7 @@ TEST(CliFailures, FullDiskKeepsTheOldFile) {
 
 #ifndef __SANITIZE_ADDRESS__  // which needs more address space than the limit
 // Claim: a picture that memory does not hold is exit 3, "out of memory", with nothing written.
-// Source: DESIGN.md exit codes. Fails if: std::bad_alloc is not told from other exceptions.
+// Source: the design exit codes. Fails if: std::bad_alloc is not told from other exceptions.
 TEST(CliFailures, OutOfMemory) {
   const SceneFolder folder;
   const Outcome outcome = run_program({"render", folder.scene, "-o", folder.file("a.exr"), "--quiet",
@@ -93,7 +93,7 @@ TEST(CliFailures, OutOfMemory) {
 const std::string kShading = R"({"event":"progress","stage":"shading")";
 
 // Claim: Ctrl-C, and what a batch system sends, end the run soon with 130; the old picture stays, nothing is
-// beside it. Source: DESIGN.md. Fails if: the handler is not installed, or a stage does not look at its
+// beside it. Source: the design. Fails if: the handler is not installed, or a stage does not look at its
 // monitor.
 TEST(CliFailures, InterruptKeepsTheOldFile) {
   for (const int signal : {SIGINT, SIGTERM}) {

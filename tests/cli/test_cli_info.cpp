@@ -8,7 +8,7 @@ namespace opaline {
 namespace {
 
 // Claim: the plan says what there is, how many samples and why, and what memory; info writes no file.
-// Source: DESIGN.md ("shows the plan"). Fails if: a member is left out, or info renders.
+// Source: the design ("shows the plan"). Fails if: a member is left out, or info renders.
 TEST(CliInfo, PlanAsTextAndJson) {
   const SceneFolder folder;
   const Outcome text = run_program({"info", folder.scene}, folder.path.string());

@@ -45,7 +45,7 @@ TEST(CliRender, WritesPicturesAndMetadata) {
 }
 
 // Claim: the same bytes in every output for any number of threads and file names, and on every run.
-// Source: DESIGN.md ("Bits do not move"). Fails if: metadata holds the thread count, a time or an output's
+// Source: the design ("Bits do not move"). Fails if: metadata holds the thread count, a time or an output's
 // name.
 TEST(CliRender, BytesDoNotMove) {
   const SceneFolder folder;

@@ -102,7 +102,7 @@ TEST(Patch, SmallMeanFreePathIsLambert) {
 }
 
 // Claim: irradiance handed in at the queries is used where the mean free path is below the spacing
-// (needs_irradiance), so a shadow edge stays sharp there; channels above it do not need it. Source: the
+// (own_irradiance), so a shadow edge stays sharp there; channels above it do not need it. Source: the
 // header. Tolerance: .5 %. Fails if: the interpolated irradiance is used all the same.
 TEST(Patch, GivenIrradianceIsUsed) {
   const double spacing = square().surface.spacing();
@@ -111,9 +111,9 @@ TEST(Patch, GivenIrradianceIsUsed) {
       {"m", PhysicalMedium{Rgb(0), sigma_s_prime}, 1.5, ProfileKind::normalized_diffusion});
   const SplitKernel kernel = square().kernel(profile);
   EXPECT_TRUE(kernel.split);
-  EXPECT_TRUE(kernel.needs_irradiance[0]);
-  EXPECT_TRUE(kernel.needs_irradiance[1]);
-  EXPECT_FALSE(kernel.needs_irradiance[2]);
+  EXPECT_EQ(kernel.own_irradiance[0], 1);
+  EXPECT_EQ(kernel.own_irradiance[1], 1);
+  EXPECT_EQ(kernel.own_irradiance[2], 0);
   EXPECT_NEAR(double(kernel.radius), 2.5 * spacing, 1e-5);
   for (std::size_t c = 0; c < 3; ++c)
     EXPECT_NEAR(double(kernel.near[c]), near_field_reflectance(profile.channels[c], double(kernel.radius)),

@@ -90,7 +90,7 @@ void expect_cube(const CheckedMesh& cube, const std::string& what) {
 }
 
 // Claim: every dialect below gives the cube with 8 vertices, closed, area 24, volume 8, without a warning.
-// Source: the formats' descriptions; DEPENDENCIES on what OpenMesh 9 gets wrong: continued lines, colours of
+// Source: the formats' descriptions; the notes on what OpenMesh 9 gets wrong: continued lines, colours of
 // faces in OFF, lists in PLY, comments at the end of a binary PLY header, "outer" in the name of an STL
 // solid. Tolerance: rounding. Fails if: any of the scans leaves its bytes as they are.
 TEST(MeshFormats, AllGiveTheSameCube) {

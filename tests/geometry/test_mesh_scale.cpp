@@ -31,7 +31,7 @@ void expect_scaled(const CheckedMesh& mesh, const CheckedMesh& scaled, double sc
     ASSERT_EQ(mesh.mesh.positions[v] * scale, scaled.mesh.positions[v]);
 }
 
-// Claim: as the file's name says, for repair, hole filling and normals alike. Source: PHYSICS.md section 6,
+// Claim: as the file's name says, for repair, hole filling and normals alike. Source: the physics notes section 6,
 // the power-of-two test. Tolerance: none. Fails if: any threshold is an absolute length, area or volume.
 TEST(MeshScale, PowersOfTwoAreExact) {
   const Soup soup = troubled();

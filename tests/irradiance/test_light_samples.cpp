@@ -106,7 +106,7 @@ TEST(LightSamples, ColourAndPlace) {
   EXPECT_EQ(emission(light_of(PointLight{{}, {1, 2, 3}})), Rgb(1, 2, 3));
   EXPECT_EQ(emission(light_of(DirectionalLight{{0, 0, 1}, {1, 2, 3}})), Rgb(1, 2, 3));
   EXPECT_EQ(emission(light_of(Surroundings{{1, 2, 3}})), Rgb(1, 2, 3));
-  const auto& moved = std::get<SphereLight>(recentred(sphere, {1, 1, 1}).source);
+  const auto moved = std::get<SphereLight>(recentred(sphere, {1, 1, 1}).source);
   EXPECT_EQ(moved.center, Vec3d(0, 1, 2));
   EXPECT_EQ(moved.radius, 4);
   const Light sun = unit_directional({0, 0, 1});

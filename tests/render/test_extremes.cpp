@@ -89,6 +89,16 @@ TEST(Extremes, Pictures) {
          EXPECT_GT(min_component(s.radiance), 0);
          EXPECT_LT(s.radiance.x, plain.radiance.x);
        }},
+      {"a needle of ratio 1e8: ends",
+       [](Scene& s) { s.shapes[0].source = BoxShape{{-10, 0, 0}, {10, 2e-7, 2e-7}}; }, [](const Sums&, const Sums&) {}},
+      {"coefficients of 1e-300: not translucent",
+       [](Scene& s) { coefficients(s) = {Rgb(1e-300), Rgb(1e-300)}; }, kBlack},
+      {"no mean free path: as Lambert, few samples",
+       [](Scene& s) {
+         s.media[0].coefficients = ArtistMedium{Rgb(.5), Rgb(0.0), 0};
+         s.settings.samples.reset();
+       },
+       kLit},
       {"a single sample", [](Scene& s) { s.settings.samples = 1; }, kFinite},
       {"eight and nine samples", [](Scene& s) { s.settings.samples = 9; }, kFinite},
       {"1 x 1 picture", [](Scene& s) { s.film.resolution = {1, 1}; }, kLit},

@@ -31,6 +31,14 @@ TEST(Groups, NoBleedUnlessGrouped) {
   EXPECT_GT(light_of_right_half(Prepared(two_spheres("pair")).picture()), 0);
 }
 
+// Claim: a shape without a group stays alone, even if a group has its name. Fails when: groups are found by the name
+// that is shown.
+TEST(Groups, LoneShapeJoinsNoGroupOfItsName) {
+  Scene scene = two_spheres("");
+  scene.shapes[1].group = scene.shapes[0].name;
+  EXPECT_EQ(make_plan(scene, make_world(scene)).groups.size(), 2u);
+}
+
 // Claim: a box cut in two and grouped is the box in one piece, within 2 % over the picture (the cut's inner faces add
 // area that no light reaches). Source: PHYSICS, extremes: grouped = one object. Fails when: the group's second mesh is
 // forgotten, or each member has a tree of its own.

@@ -26,9 +26,10 @@ struct SplitKernel {
   /// plane with that much area gives, per channel.
   static constexpr std::size_t kBorderRows = 65;
   std::array<std::array<float, 3>, kBorderRows> border{};
-  /// Channels whose mean free path is below the sample spacing: the irradiance at the point itself is needed
-  /// there, the samples' would blur it.
-  std::array<bool, 3> needs_irradiance{};
+  /// How much of the irradiance around the point is the one at the point itself: rises from 0 where the mean free
+  /// path is the sample spacing to 1 where it is half of it; the samples' irradiance would blur shadows there.
+  std::array<float, 3> own_irradiance{};
+  bool needs_irradiance() const { return own_irradiance[0] + own_irradiance[1] + own_irradiance[2] > 0; }
 };
 
 /// in    spacing: sqrt(area / samples), mm; extent: largest distance between a query and a sample, mm

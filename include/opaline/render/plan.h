@@ -14,6 +14,7 @@ namespace opaline {
 /// Translucent shapes that share samples and one tree.
 struct GroupPlan {
   std::string name;                   ///< the group's, or its only shape's
+  bool shared = false;                ///< a named group: others may join; a lone shape stays alone
   std::vector<std::uint32_t> meshes;  ///< indices into World::meshes
   std::size_t medium = 0;             ///< index into Scene::media
   double area = 0;                    ///< mm^2

@@ -41,7 +41,8 @@ struct Precompute {
 
 Precompute precompute(const PrecomputeInput& input);
 
-/// Radiant exitance at points of a group's surface, for callers with points of their own.
+/// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free path is
+/// below the sample spacing, `render` traces shadow rays for the irradiance at its points; this interpolates it.
 /// in    points: world space, mm; normals: unit, outward, one a point
 /// out   M_o in W/mm^2 per point, in their order
 std::vector<RgbF> radiant_exitance(const TranslucentGroup& group, const World& world,
