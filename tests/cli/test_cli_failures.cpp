@@ -112,21 +112,24 @@ TEST(CliFailures, InterruptKeepsTheOldFile) {
   }
 }
 
-// Claim: a second Ctrl-C kills at once, whatever the stage does: here one tile of 16 million rays, in which
-// nobody looks at the monitor. Source: interrupt.h. Fails if: the handler stays after the first.
+// Claim: a second Ctrl-C kills at once, whatever the stage does: here one tile of 100 million kernels, in which
+// nobody looks at the monitor. Source: interrupt.h. On a loaded machine the first may be heard before the tile
+// begins, which ends in 130: three tries. Fails if: the handler stays after the first.
 TEST(CliFailures, SecondInterruptKills) {
   const SceneFolder folder;
-  Child child({"render", folder.scene, "-o", folder.file("a.exr"), "--log", "json", "--evaluator", "brute_force",
-               "--set", "settings.samples=400000", "--resolution", "16x16"});
-  ASSERT_TRUE(child.prints(kShading));
-  // The only tile takes some 200 ms and hears nothing meanwhile: both signals fall into it.
-  std::this_thread::sleep_for(std::chrono::milliseconds(30));
-  child.send(SIGINT);
-  std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  child.send(SIGINT);
-  const Outcome outcome = child.wait(20);
+  Outcome outcome;
+  for (int attempt = 0; attempt < 3 && outcome.signal != SIGINT; ++attempt) {
+    Child child({"render", folder.scene, "-o", folder.file("a.exr"), "--log", "json", "--evaluator", "brute_force",
+                 "--set", "settings.samples=400000", "--resolution", "16x16"});
+    ASSERT_TRUE(child.prints(kShading));
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    child.send(SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    child.send(SIGINT);
+    outcome = child.wait(20);
+    EXPECT_EQ(folder.entries(), 1u);
+  }
   EXPECT_EQ(outcome.signal, SIGINT) << "exit code " << outcome.exit_code;
-  EXPECT_EQ(folder.entries(), 1u);
 }
 
 }  // namespace
