@@ -33,8 +33,11 @@ Precompute precompute(const PrecomputeInput& input) {
     const GroupPlan& plan = input.plan.groups[g];
     const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium]);
     const Stopwatch sampling_watch;
-    SurfaceSamples surface = sample_surface(
-        {input.world, plan.meshes, plan.samples, hash_bits(settings.seed, g), 6, input.monitor});
+    SurfaceSamples surface = sample_surface({.world = input.world,
+                                             .meshes = plan.meshes,
+                                             .count = plan.samples,
+                                             .seed = hash_bits(settings.seed, g),
+                                             .monitor = input.monitor});
     add_cost(sampling, sampling_watch.cost({}));
 
     const Stopwatch irradiance_watch;
