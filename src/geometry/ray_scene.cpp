@@ -4,20 +4,65 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
+#include <cstddef>
 #include <ctime>
 #include <string>
 
+#include "geometry/oriented_point.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 #include "opaline/geometry/world.h"
 
 namespace opaline {
 
+namespace {
+
+// Rays of one kind and the time of those batches that were timed.
+struct RayCounter {
+  std::atomic<std::uint64_t> rays{0}, batches{0}, timed_rays{0}, timed_nanoseconds{0};
+
+  double seconds() const {
+    return timed_rays > 0 ? 1e-9 * double(timed_nanoseconds) * double(rays) / double(timed_rays) : 0;
+  }
+};
+
+std::uint64_t thread_nanoseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::uint64_t(now.tv_sec) * 1000000000u + std::uint64_t(now.tv_nsec);
+}
+
+template <class Trace>
+void count(RayCounter& counter, std::size_t rays, const Trace& trace) {
+  constexpr std::uint64_t kTimedEvery = 8;
+  counter.rays.fetch_add(rays, std::memory_order_relaxed);
+  if (counter.batches.fetch_add(1, std::memory_order_relaxed) % kTimedEvery != 0) return trace();
+  const std::uint64_t start = thread_nanoseconds();
+  trace();
+  counter.timed_nanoseconds.fetch_add(thread_nanoseconds() - start, std::memory_order_relaxed);
+  counter.timed_rays.fetch_add(rays, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+// One cache line holds two of them: a hit's interpolation reads three.
+struct alignas(32) RayScene::Vertex {
+  Vec3f position, normal;
+};
+
+struct RayScene::MeshView {
+  const Vertex* vertices;                         // Embree's buffer
+  const std::array<std::uint32_t, 3>* triangles;  // likewise
+  bool faceted;
+  float offset;
+};
+
 struct RayScene::Handles {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   std::atomic<std::ptrdiff_t> bytes{0};
-  std::atomic<std::uint64_t> rays{0}, nanoseconds{0};
+  RayCounter intersected, occluded;
 
   ~Handles() {
     if (scene != nullptr) rtcReleaseScene(scene);
@@ -36,60 +81,19 @@ bool count_memory(void* counter, ssize_t bytes, bool) {
 
 void check(RTCDevice device) {
   const RTCError error = rtcGetDeviceError(device);
-  if (error == RTC_ERROR_OUT_OF_MEMORY) throw run_failed({}, "out of memory while building the ray structure");
+  if (error == RTC_ERROR_OUT_OF_MEMORY)
+    throw run_failed({}, "out of memory while building the ray structure");
   require(error == RTC_ERROR_NONE, "Embree reports an error");
 }
 
-void attach_mesh(RTCDevice device, RTCScene scene, const Mesh& mesh, unsigned id) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), mesh.positions.size()));
-  auto* indices = static_cast<std::array<std::uint32_t, 3>*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              sizeof(std::array<std::uint32_t, 3>), mesh.triangles.size()));
-  check(device);
-  std::ranges::transform(mesh.positions, vertices, [](const Vec3d& p) { return Vec3f(p); });
-  std::ranges::copy(mesh.triangles, indices);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, id);
-  rtcReleaseGeometry(geometry);
-}
-
-RTCRay to_embree(const Ray& ray) {
-  RTCRay r{};
-  r.org_x = ray.origin.x;
-  r.org_y = ray.origin.y;
-  r.org_z = ray.origin.z;
-  r.tnear = ray.near;
-  r.dir_x = ray.direction.x;
-  r.dir_y = ray.direction.y;
-  r.dir_z = ray.direction.z;
-  r.tfar = ray.far;
-  r.mask = ~0u;
-  return r;
-}
-
-std::uint64_t thread_nanoseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return std::uint64_t(now.tv_sec) * 1000000000u + std::uint64_t(now.tv_nsec);
-}
-
-// Adds the rays and CPU time of a scope to the counters.
-class CountRays {
- public:
-  CountRays(std::atomic<std::uint64_t>& rays, std::atomic<std::uint64_t>& nanoseconds, std::size_t n)
-      : nanoseconds_(nanoseconds), start_(thread_nanoseconds()) {
-    rays.fetch_add(n, std::memory_order_relaxed);
-  }
-  ~CountRays() { nanoseconds_.fetch_add(thread_nanoseconds() - start_, std::memory_order_relaxed); }
-  CountRays(const CountRays&) = delete;
-  CountRays& operator=(const CountRays&) = delete;
-
- private:
-  std::atomic<std::uint64_t>& nanoseconds_;
-  std::uint64_t start_;
-};
+static_assert(sizeof(Ray) == sizeof(RTCRay) && sizeof(TracedRay) == sizeof(RTCRayHit));
+static_assert(offsetof(Ray, near) == offsetof(RTCRay, tnear) &&
+              offsetof(Ray, direction) == offsetof(RTCRay, dir_x));
+static_assert(offsetof(Ray, far) == offsetof(RTCRay, tfar) && offsetof(Ray, mask) == offsetof(RTCRay, mask));
+static_assert(offsetof(TracedRay, hit) == offsetof(RTCRayHit, hit) &&
+              offsetof(Hit, u) == offsetof(RTCHit, u));
+static_assert(offsetof(Hit, triangle) == offsetof(RTCHit, primID) &&
+              offsetof(Hit, mesh) == offsetof(RTCHit, geomID));
 
 RTCIntersectContext coherent_context() {
   RTCIntersectContext context;
@@ -106,61 +110,77 @@ RayScene::RayScene(const World& world) : handles_(std::make_unique<Handles>()) {
   rtcSetDeviceMemoryMonitorFunction(handles_->device, count_memory, &handles_->bytes);
   handles_->scene = rtcNewScene(handles_->device);
   rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST);
-  for (std::size_t i = 0; i < world.meshes.size(); ++i)
-    attach_mesh(handles_->device, handles_->scene, world.meshes[i], unsigned(i));
+  for (const Mesh& mesh : world.meshes) attach(mesh);
   rtcCommitScene(handles_->scene);
   check(handles_->device);
-  for (const Mesh& mesh : world.meshes) {
-    const Bounds box = bounds(mesh);
-    offsets_.push_back(float(length(box.high - box.low) * 0x1p-18));
-    largest_offset_ = std::max(largest_offset_, offsets_.back());
-  }
+}
+
+void RayScene::attach(const Mesh& mesh) {
+  RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<Vertex*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vertex), mesh.positions.size()));
+  auto* indices = static_cast<std::array<std::uint32_t, 3>*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              sizeof(std::array<std::uint32_t, 3>), mesh.triangles.size()));
+  check(handles_->device);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    vertices[i] = {Vec3f(mesh.positions[i]), mesh.normals.empty() ? Vec3f{} : mesh.normals[i]};
+  std::ranges::copy(mesh.triangles, indices);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(handles_->scene, geometry, unsigned(meshes_.size()));
+  rtcReleaseGeometry(geometry);
+  const Bounds box = bounds(mesh);
+  const float offset = float(length(box.high - box.low) * 0x1p-18);
+  meshes_.push_back({vertices, indices, mesh.normals.empty(), offset});
+  largest_offset_ = std::max(largest_offset_, offset);
 }
 
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 
-std::size_t RayScene::bytes() const { return std::size_t(handles_->bytes.load()); }
+std::size_t RayScene::bytes() const {
+  return std::size_t(handles_->bytes.load());
+}
 
 RayScene::Statistics RayScene::statistics() const {
-  return {handles_->rays, 1e-9 * double(handles_->nanoseconds)};
+  return {handles_->intersected.rays + handles_->occluded.rays,
+          handles_->intersected.seconds() + handles_->occluded.seconds()};
 }
 
-void RayScene::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+void RayScene::intersect(std::span<TracedRay> rays) const {
   const FlushDenormals mode;
   RTCIntersectContext context = coherent_context();
-  std::array<RTCRayHit, kBatch> batch;
   for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
-    const std::size_t n = std::min(kBatch, rays.size() - begin);
-    for (std::size_t i = 0; i < n; ++i) {
-      batch[i].ray = to_embree(rays[begin + i]);
-      batch[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      batch[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    }
-    {
-      const CountRays count(handles_->rays, handles_->nanoseconds, n);
-      rtcIntersect1M(handles_->scene, &context, batch.data(), unsigned(n), sizeof(RTCRayHit));
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const RTCHit& hit = batch[i].hit;
-      hits[begin + i] = {hit.geomID, hit.primID, batch[i].ray.tfar, hit.u, hit.v};
-    }
+    const std::span<TracedRay> batch = rays.subspan(begin, std::min(kBatch, rays.size() - begin));
+    count(handles_->intersected, batch.size(), [&] {
+      rtcIntersect1M(handles_->scene, &context, reinterpret_cast<RTCRayHit*>(batch.data()),
+                     unsigned(batch.size()), sizeof(RTCRayHit));
+    });
   }
 }
 
-void RayScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const {
+void RayScene::occluded(std::span<Ray> rays) const {
   const FlushDenormals mode;
   RTCIntersectContext context = coherent_context();
-  std::array<RTCRay, kBatch> batch;
   for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
-    const std::size_t n = std::min(kBatch, rays.size() - begin);
-    for (std::size_t i = 0; i < n; ++i) batch[i] = to_embree(rays[begin + i]);
-    {
-      const CountRays count(handles_->rays, handles_->nanoseconds, n);
-      rtcOccluded1M(handles_->scene, &context, batch.data(), unsigned(n), sizeof(RTCRay));
-    }
-    for (std::size_t i = 0; i < n; ++i) blocked[begin + i] = batch[i].tfar < 0 ? 1 : 0;
+    const std::span<Ray> batch = rays.subspan(begin, std::min(kBatch, rays.size() - begin));
+    count(handles_->occluded, batch.size(), [&] {
+      rtcOccluded1M(handles_->scene, &context, reinterpret_cast<RTCRay*>(batch.data()),
+                    unsigned(batch.size()), sizeof(RTCRay));
+    });
   }
+}
+
+SurfacePoint RayScene::surface_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v) const {
+  const MeshView& view = meshes_[mesh];
+  const auto& corner = view.triangles[triangle];
+  const Vertex &a = view.vertices[corner[0]], &b = view.vertices[corner[1]], &c = view.vertices[corner[2]];
+  const Vec3f ab = b.position - a.position, ac = c.position - a.position;
+  const Vec3f normal = a.normal * (1 - u - v) + b.normal * u + c.normal * v;
+  SurfacePoint point = oriented_point(a.position + ab * u + ac * v, ab, ac, view.faceted ? nullptr : &normal);
+  const Vec3f& p = point.position;
+  point.offset = view.offset + 0x1p-20f * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
+  return point;
 }
 
 }  // namespace opaline

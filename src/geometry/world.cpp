@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/geometry/world.h"
 
+#include "geometry/oriented_point.h"
 #include "opaline/geometry/make_mesh.h"
 
 namespace opaline {
-namespace {
-
-// v along its own direction with length 1, or the substitute where it has none.
-Vec3f unit(const Vec3f& v, const Vec3f& substitute) {
-  const float length2 = dot(v, v);
-  return length2 > 0 ? v * (1 / std::sqrt(length2)) : substitute;
-}
-
-}  // namespace
 
 World make_world(const Scene& scene) {
   World world;
@@ -37,20 +29,12 @@ SurfacePoint surface_point(const Mesh& mesh, std::uint32_t triangle, float u, fl
   const auto& corner = mesh.triangles[triangle];
   const Vec3d& a = mesh.positions[corner[0]];
   const Vec3d ab = mesh.positions[corner[1]] - a, ac = mesh.positions[corner[2]] - a;
-  SurfacePoint point;
-  point.position = Vec3f(a + ab * double(u) + ac * double(v));
-  // Scaled first: the cross product of tiny edges must not underflow.
-  const double scale = 1 / (std::abs(ab.x) + std::abs(ab.y) + std::abs(ab.z) + std::abs(ac.x) +
-                            std::abs(ac.y) + std::abs(ac.z));
-  point.geometric = unit(cross(Vec3f(ab * scale), Vec3f(ac * scale)), {});
-  if (mesh.normals.empty()) {
-    point.normal = point.geometric;
-  } else {
-    const Vec3f blended =
+  Vec3f normal;
+  if (!mesh.normals.empty())
+    normal =
         mesh.normals[corner[0]] * (1 - u - v) + mesh.normals[corner[1]] * u + mesh.normals[corner[2]] * v;
-    point.normal = unit(blended, point.geometric);
-  }
-  return point;
+  return oriented_point(a + ab * double(u) + ac * double(v), ab, ac,
+                        mesh.normals.empty() ? nullptr : &normal);
 }
 
 }  // namespace opaline

@@ -45,7 +45,7 @@ class ShadowBatch {
       carried_.push_back(carried);
       if (carried > 0) {
         const Vec3f origin = point.position + point.geometric * rays_.offset(point);
-        shadow_.push_back({origin, sample.direction, 0, sample.distance * 0.9999f});
+        shadow_.push_back({origin, sample.direction, sample.distance * 0.9999f});
       }
     }
   }
@@ -53,11 +53,10 @@ class ShadowBatch {
   // Calls use(point in batch, sample, contribution) for each ray in order, then forgets them.
   template <class Use>
   void trace(const Use& use) {
-    blocked_.resize(shadow_.size());
-    rays_.occluded(shadow_, blocked_);
+    rays_.occluded(shadow_);
     std::size_t ray = 0;
     for (std::size_t i = 0; i < carried_.size(); ++i) {
-      const bool lit = carried_[i] > 0 && blocked_[ray++] == 0;
+      const bool lit = carried_[i] > 0 && shadow_[ray++].far >= 0;
       use(i / std::size_t(samples_), int(i % std::size_t(samples_)), lit ? carried_[i] : 0.0f);
     }
     carried_.clear();
@@ -72,7 +71,6 @@ class ShadowBatch {
   std::uint64_t seed_;
   std::vector<float> carried_;
   std::vector<Ray> shadow_;
-  std::vector<std::uint8_t> blocked_;
 };
 
 // Points whose rays are traced at once: enough for coherent batches, few enough to bound their memory.
@@ -95,9 +93,7 @@ LightTransfer transfer_from(const IrradianceInput& input, const Light& light, st
         batch.reserve(end - begin);
         for (std::size_t i = begin; i < end; ++i) {
           const SurfaceSample& s = input.samples[i];
-          SurfacePoint point = surface_point(input.world.meshes[s.mesh], s.triangle, s.u, s.v);
-          point.offset = input.rays.offset(s.mesh, point.position);
-          batch.add(point, i);
+          batch.add(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v), i);
         }
         // The first and the second half of the low-discrepancy points, each such a set itself, estimate the
         // error of their mean: its variance is (difference of the halves' means)^2 times n0 n1 / n^2.

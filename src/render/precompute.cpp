@@ -42,7 +42,7 @@ Precompute precompute(const PrecomputeInput& input) {
 
     const Stopwatch irradiance_watch;
     std::vector<LightTransfer> transfers =
-        compute_irradiance({input.world, input.rays, surface.samples, lights, profile.eta,
+        compute_irradiance({input.rays, surface.samples, lights, profile.eta,
                             settings.light_samples, hash_bits(settings.seed, g + 1000), input.monitor});
     std::vector<RgbF> entered = combine_lights(transfers, lights);
     add_cost(irradiance, irradiance_watch.cost({}));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/render/render.h"
 
+#include <algorithm>
 #include <atomic>
 
 #include "opaline/core/parallel.h"
@@ -35,30 +36,33 @@ class TileRenderer {
   Counts render(const Rectangle& tile) const {
     const std::size_t pixels = std::size_t(tile.x1 - tile.x0) * std::size_t(tile.y1 - tile.y0);
     const int samples = input_.scene.film.samples_per_pixel;
-    std::vector<PixelSample> sums(pixels), seen(samples > 1 ? pixels : 0);
-    std::vector<Ray> rays(pixels);
-    std::vector<Hit> hits(pixels);
+    std::vector<PixelSample> sums, seen;  // once there is something to see
+    std::vector<TracedRay> rays(pixels);
     std::vector<std::uint64_t> keys(pixels);
     Counts counts;
     for (int s = 0; s < samples; ++s) {
       std::size_t i = 0;
       for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x, ++i) {
-          rays[i] = camera_.ray(x, y, s);
+          rays[i] = {camera_.ray(x, y, s), {}};
           keys[i] = (std::uint64_t(y) * std::uint64_t(image_.full_width) + std::uint64_t(x)) *
                         std::uint64_t(samples) +
                     std::uint64_t(s);
         }
       advance(input_.monitor, 1);
-      input_.rays.intersect(rays, hits);
-      if (s == 0) {
-        counts.queries += shader_.shade(rays, hits, keys, sums);
-        continue;
+      input_.rays.intersect(rays);
+      const auto is_hit = [](const TracedRay& traced) { return traced.hit.mesh != Hit::kMiss; };
+      if (!shader_.has_visible_lights() && std::ranges::none_of(rays, is_hit)) continue;
+      if (sums.empty()) {
+        sums.resize(pixels);
+        counts.queries += shader_.shade(rays, keys, sums);
+      } else {
+        seen.assign(pixels, PixelSample{});
+        counts.queries += shader_.shade(rays, keys, seen);
+        for (i = 0; i < pixels; ++i) add_sample(sums[i], seen[i]);
       }
-      std::fill(seen.begin(), seen.end(), PixelSample{});
-      counts.queries += shader_.shade(rays, hits, keys, seen);
-      for (i = 0; i < pixels; ++i) add_sample(sums[i], seen[i]);
     }
+    if (sums.empty()) return counts;
     counts.non_finite = store(tile, sums, samples);
     return counts;
   }

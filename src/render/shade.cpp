@@ -19,7 +19,7 @@ Appearance appearance_of(const RenderInput& input, std::size_t mesh) {
   appearance.albedo = RgbF(shape.reflectance);
   if (!shape.medium) return appearance;
   const DiffuseProfile profile = make_diffuse_profile(input.scene.media[*shape.medium]);
-  appearance = {true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), nullptr};
+  appearance = {true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance)};
   if (input.scene.settings.method == Method::lambert) return appearance;
   for (const TranslucentGroup& group : input.groups)
     if (std::ranges::find(group.plan.meshes, mesh) != group.plan.meshes.end()) appearance.group = &group;
@@ -32,6 +32,10 @@ RgbF outgoing_radiance(const Appearance& a, const RgbF& exitance, float cos_view
   return exitance * (kInversePi * fresnel_transmittance(cos_view, a.eta) / (1 - a.average_reflectance));
 }
 
+float cos_view(const Vec3f& normal, const Vec3f& direction) {
+  return std::min(1.0f, std::abs(dot(normal, direction)) / length(direction));
+}
+
 }  // namespace
 
 Shader::Shader(const RenderInput& input) : input_(input) {
@@ -42,127 +46,120 @@ Shader::Shader(const RenderInput& input) : input_(input) {
     else if (!is_delta(light))
       emitters_.push_back(lights_.back());
   }
-  for (std::size_t m = 0; m < input.world.meshes.size(); ++m) appearances_.push_back(appearance_of(input, m));
-}
-
-std::size_t Shader::shade(std::span<const Ray> rays, std::span<const Hit> hits,
-                          std::span<const std::uint64_t> keys, std::span<PixelSample> out) const {
-  std::vector<Surface> surfaces;
-  const auto hit_count = std::ranges::count_if(hits, [](const Hit& h) { return h.mesh != Hit::kMiss; });
-  if (hit_count == 0 && emitters_.empty() && surroundings_ == RgbF{}) return 0;
-  surfaces.reserve(std::size_t(hit_count));
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const bool hit = hits[i].mesh != Hit::kMiss;
-    const float far = hit ? hits[i].t : rays[i].far;
-    const EmitterHit emitter = nearest_emitter(rays[i].origin, rays[i].direction, far);
-    if (emitter.hit)
-      out[i].emitted = emitter.radiance;
-    else if (hit)
-      surfaces.push_back(surface_at(i, rays[i], hits[i]));
-    else
-      out[i].emitted = surroundings_;
-  }
-  const std::size_t queries = add_translucent(surfaces, keys, out);
-  add_lambert(surfaces, keys, out);
-  add_mirrored_lights(surfaces, rays, out);
-  for (const Surface& s : surfaces) {
-    PixelSample& sample = out[s.ray];
-    sample.diffuse = outgoing_radiance(*s.appearance, s.exitance, s.cos_view);
-    sample.coverage = 1;
-    sample.albedo = s.appearance->albedo;
-    sample.normal = s.point.normal;
-    sample.position = Vec3f(Vec3d(s.point.position) + input_.world.origin);
-    sample.depth = hits[s.ray].t;
-  }
-  return queries;
-}
-
-Shader::Surface Shader::surface_at(std::size_t ray, const Ray& camera_ray, const Hit& hit) const {
-  const Appearance& appearance = appearances_[hit.mesh];
-  Surface s{
-      ray, surface_point(input_.world.meshes[hit.mesh], hit.triangle, hit.u, hit.v), &appearance, 0, {}};
-  s.point.offset = input_.rays.offset(hit.mesh, s.point.position);
-  const Vec3f view = normalized(-camera_ray.direction);
-  // An opaque sheet has two equal sides; a translucent one is lit and seen from outside.
-  if (!appearance.translucent && dot(s.point.geometric, view) < 0) {
-    s.point.geometric = -s.point.geometric;
-    s.point.normal = -s.point.normal;
-  }
-  s.cos_view = std::min(1.0f, std::abs(dot(s.point.normal, view)));
-  return s;
-}
-
-// Surfaces whose exitance is local: opaque ones, and translucent ones without a tree.
-void Shader::add_lambert(std::vector<Surface>& surfaces, std::span<const std::uint64_t> keys,
-                         std::span<PixelSample> out) const {
-  std::vector<Surface*> rest;
-  for (Surface& s : surfaces)
-    if (s.appearance->group == nullptr) rest.push_back(&s);
-  // One batch of shadow rays for each kind of boundary.
-  while (!rest.empty()) {
-    const float eta = rest.front()->appearance->translucent ? rest.front()->appearance->eta : 0;
-    const auto same = [eta](const Surface* s) {
-      return (s->appearance->translucent ? s->appearance->eta : 0) == eta;
-    };
-    const auto end = std::stable_partition(rest.begin(), rest.end(), same);
-    const std::vector<const Surface*> batch(rest.begin(), end);
-    const std::vector<RgbF> entered = irradiance(batch, keys, double(eta));
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      rest[i]->exitance = rest[i]->appearance->albedo * entered[i];
-      out[rest[i]->ray].irradiance = entered[i];
-    }
-    rest.erase(rest.begin(), end);
+  for (std::size_t m = 0; m < input.world.meshes.size(); ++m) {
+    Appearance appearance = appearance_of(input, m);
+    const Kind kind{appearance.group, appearance.translucent ? appearance.eta : 0};
+    const auto known = std::ranges::find(kinds_, kind);
+    appearance.kind = std::size_t(known - kinds_.begin());
+    if (known == kinds_.end()) kinds_.push_back(kind);
+    appearances_.push_back(appearance);
   }
 }
 
-std::size_t Shader::add_translucent(std::vector<Surface>& surfaces, std::span<const std::uint64_t> keys,
-                                    std::span<PixelSample> out) const {
+std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
+                          std::span<PixelSample> out) const {
   std::size_t queries = 0;
-  for (const TranslucentGroup& group : input_.groups) {
-    std::vector<Surface*> own;
-    for (Surface& s : surfaces)
-      if (s.appearance->group == &group) own.push_back(&s);
-    if (own.empty()) continue;
-    std::vector<Query> points;
-    for (const Surface* s : own) points.push_back({s->point.position, s->point.normal});
-    std::vector<RgbF> at_point;
-    if (group.kernel.needs_irradiance())
-      at_point = irradiance({own.begin(), own.end()}, keys, group.profile.eta);
-    const Settings& settings = input_.scene.settings;
-    const std::vector<Exitance> exitance = evaluate(
-        {group.octree, group.kernel, points, at_point, settings.evaluator, settings.max_solid_angle});
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      own[i]->exitance = exitance[i].exitance;
-      out[own[i]->ray].irradiance = at_point.empty() ? exitance[i].irradiance : at_point[i];
-    }
-    queries += own.size();
+  const std::vector<Surfaces> surfaces = collect(rays, keys, out);
+  for (std::size_t k = 0; k < kinds_.size(); ++k) {
+    if (surfaces[k].points.empty()) continue;
+    write(surfaces[k], light(kinds_[k], surfaces[k]), rays, out);
+    if (kinds_[k].eta > 0 && has_visible_lights()) add_mirrored_lights(surfaces[k], rays, out);
+    if (kinds_[k].group != nullptr) queries += surfaces[k].points.size();
   }
   return queries;
+}
+
+// Sorts the hits by kind; rays that meet a light or nothing are done.
+std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
+                                              std::span<const std::uint64_t> keys,
+                                              std::span<PixelSample> out) const {
+  std::vector<Surfaces> surfaces(kinds_.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto& [ray, hit] = rays[i];
+    const EmitterHit emitter = nearest_emitter(ray.origin, ray.direction, ray.far);
+    if (emitter.hit) {
+      out[i].emitted = emitter.radiance;
+    } else if (hit.mesh == Hit::kMiss) {
+      out[i].emitted = surroundings_;
+    } else {
+      const Appearance& appearance = appearances_[hit.mesh];
+      Surfaces& own = surfaces[appearance.kind];
+      if (own.points.empty()) {
+        own.points.reserve(rays.size());
+        own.keys.reserve(rays.size());
+        own.rays.reserve(rays.size());
+      }
+      SurfacePoint point = input_.rays.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
+      // An opaque sheet has two equal sides; a translucent one is lit and seen from outside.
+      if (!appearance.translucent && dot(point.geometric, ray.direction) > 0) {
+        point.geometric = -point.geometric;
+        point.normal = -point.normal;
+      }
+      own.points.push_back(point);
+      own.keys.push_back(keys[i]);
+      own.rays.push_back(std::uint32_t(i));
+    }
+  }
+  return surfaces;
+}
+
+// Entered irradiance, and exitance: of the group's tree, or E itself (times albedo it is the exitance).
+Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces) const {
+  if (kind.group == nullptr) return {{}, entered_irradiance(surfaces, kind.eta)};
+  Lit lit;
+  const TranslucentGroup& group = *kind.group;
+  if (group.kernel.needs_irradiance()) lit.irradiance = entered_irradiance(surfaces, kind.eta);
+  std::vector<Query> queries;
+  queries.reserve(surfaces.points.size());
+  for (const SurfacePoint& point : surfaces.points) queries.push_back({point.position, point.normal});
+  const Settings& settings = input_.scene.settings;
+  const std::vector<Exitance> exitance = evaluate(
+      {group.octree, group.kernel, queries, lit.irradiance, settings.evaluator, settings.max_solid_angle});
+  const bool interpolated = lit.irradiance.empty();
+  for (const Exitance& e : exitance) {
+    lit.exitance.push_back(e.exitance);
+    if (interpolated) lit.irradiance.push_back(e.irradiance);
+  }
+  return lit;
+}
+
+void Shader::write(const Surfaces& surfaces, const Lit& lit, std::span<const TracedRay> rays,
+                   std::span<PixelSample> out) const {
+  for (std::size_t i = 0; i < surfaces.rays.size(); ++i) {
+    const auto& [ray, hit] = rays[surfaces.rays[i]];
+    const Appearance& appearance = appearances_[hit.mesh];
+    const SurfacePoint& point = surfaces.points[i];
+    PixelSample& sample = out[surfaces.rays[i]];
+    const RgbF exitance = lit.exitance.empty() ? appearance.albedo * lit.irradiance[i] : lit.exitance[i];
+    sample.diffuse = outgoing_radiance(appearance, exitance, cos_view(point.normal, ray.direction));
+    sample.coverage = 1;
+    sample.albedo = appearance.albedo;
+    sample.irradiance = lit.irradiance[i];
+    sample.normal = point.normal;
+    sample.position = Vec3f(Vec3d(point.position) + input_.world.origin);
+    sample.depth = ray.far;
+  }
 }
 
 // The smooth boundary mirrors area lights and surroundings; a point has no extent to be seen by reflection.
-void Shader::add_mirrored_lights(const std::vector<Surface>& surfaces, std::span<const Ray> rays,
+void Shader::add_mirrored_lights(const Surfaces& surfaces, std::span<const TracedRay> rays,
                                  std::span<PixelSample> out) const {
-  if (emitters_.empty() && surroundings_ == RgbF{}) return;
-  std::vector<Ray> mirrored;
-  std::vector<const Surface*> owners;
-  for (const Surface& s : surfaces) {
-    if (!s.appearance->translucent) continue;
-    const Vec3f d = normalized(rays[s.ray].direction);
-    const Vec3f r = d - s.point.normal * (2 * dot(d, s.point.normal));
-    const float side = dot(r, s.point.geometric) >= 0 ? 1.0f : -1.0f;
-    mirrored.push_back({s.point.position + s.point.geometric * (side * s.point.offset), r});
-    owners.push_back(&s);
-  }
-  std::vector<Hit> hits(mirrored.size());
-  input_.rays.intersect(mirrored, hits);
+  std::vector<TracedRay> mirrored(surfaces.rays.size());
   for (std::size_t i = 0; i < mirrored.size(); ++i) {
-    const bool blocked = hits[i].mesh != Hit::kMiss;
-    const EmitterHit emitter =
-        nearest_emitter(mirrored[i].origin, mirrored[i].direction, blocked ? hits[i].t : mirrored[i].far);
-    const RgbF seen = emitter.hit ? emitter.radiance : blocked ? RgbF{} : surroundings_;
-    out[owners[i]->ray].specular =
-        seen * fresnel_reflectance(owners[i]->cos_view, owners[i]->appearance->eta);
+    const SurfacePoint& point = surfaces.points[i];
+    const Vec3f d = normalized(rays[surfaces.rays[i]].ray.direction);
+    const Vec3f r = d - point.normal * (2 * dot(d, point.normal));
+    const float side = dot(r, point.geometric) >= 0 ? 1.0f : -1.0f;
+    mirrored[i].ray = {point.position + point.geometric * (side * point.offset), r};
+  }
+  input_.rays.intersect(mirrored);
+  for (std::size_t i = 0; i < mirrored.size(); ++i) {
+    const auto& [ray, hit] = mirrored[i];
+    const EmitterHit emitter = nearest_emitter(ray.origin, ray.direction, ray.far);
+    const RgbF seen = emitter.hit ? emitter.radiance : hit.mesh != Hit::kMiss ? RgbF{} : surroundings_;
+    const TracedRay& camera = rays[surfaces.rays[i]];
+    const float cosine = cos_view(surfaces.points[i].normal, camera.ray.direction);
+    out[surfaces.rays[i]].specular = seen * fresnel_reflectance(cosine, appearances_[camera.hit.mesh].eta);
   }
 }
 
@@ -175,20 +172,13 @@ EmitterHit Shader::nearest_emitter(const Vec3f& origin, const Vec3f& direction, 
   return nearest;
 }
 
-std::vector<RgbF> Shader::irradiance(const std::vector<const Surface*>& surfaces,
-                                     std::span<const std::uint64_t> keys, double eta) const {
-  std::vector<SurfacePoint> points;
-  std::vector<std::uint64_t> point_keys;
-  for (const Surface* s : surfaces) {
-    points.push_back(s->point);
-    point_keys.push_back(keys[s->ray]);
-  }
+std::vector<RgbF> Shader::entered_irradiance(const Surfaces& surfaces, float eta) const {
   const Settings& settings = input_.scene.settings;
   // The samples of a pixel share the rays: their average has as many.
   const int spp = input_.scene.film.samples_per_pixel,
             light_samples = (settings.light_samples + spp - 1) / spp;
-  return irradiance_at(
-      {input_.rays, points, point_keys, lights_, eta, light_samples, hash_bits(settings.seed, 2000)});
+  return irradiance_at({input_.rays, surfaces.points, surfaces.keys, lights_, double(eta), light_samples,
+                        hash_bits(settings.seed, 2000)});
 }
 
 }  // namespace opaline

@@ -14,46 +14,58 @@ namespace opaline {
 /// What a mesh looks like: opaque of some reflectance, or translucent with a profile.
 struct Appearance {
   bool translucent = false;
-  RgbF albedo{};                  ///< reflectance, or total diffuse reflectance
-  float eta = 1;                  ///< translucent only
-  float average_reflectance = 0;  ///< F_bar
+  RgbF albedo{};                            ///< reflectance, or total diffuse reflectance
+  float eta = 1;                            ///< translucent only
+  float average_reflectance = 0;            ///< F_bar
   const TranslucentGroup* group = nullptr;  ///< null: plain Lambert
+  std::size_t kind = 0;                     ///< of the shader's kinds
 };
 
 class Shader {
  public:
   explicit Shader(const RenderInput& input);
 
-  /// Shades a batch of camera rays, one PixelSample a ray. keys: one a ray, for its light samples.
+  /// Shades a batch of traced camera rays, one PixelSample a ray. keys: one a ray, for its light samples.
   /// Returns the number of exitance queries.
-  std::size_t shade(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const std::uint64_t> keys,
+  std::size_t shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                     std::span<PixelSample> out) const;
 
+  /// False where rays that hit nothing see nothing either.
+  bool has_visible_lights() const { return !emitters_.empty() || surroundings_ != RgbF{}; }
+
  private:
-  struct Surface {
-    std::size_t ray;
-    SurfacePoint point;
-    const Appearance* appearance;
-    float cos_view;  // between shading normal and the way back to the camera
-    RgbF exitance;
+  // Surfaces whose exitance is found in one go: of a group, or with one boundary.
+  struct Kind {
+    const TranslucentGroup* group;  // null: exitance is local
+    float eta;                      // 0: opaque
+    friend bool operator==(const Kind&, const Kind&) = default;
+  };
+  // The hits of one kind in a batch.
+  struct Surfaces {
+    std::vector<SurfacePoint> points;
+    std::vector<std::uint64_t> keys;
+    std::vector<std::uint32_t> rays;  // their places in the batch
+  };
+  struct Lit {
+    std::vector<RgbF> exitance, irradiance;
   };
 
-  Surface surface_at(std::size_t ray, const Ray& camera_ray, const Hit& hit) const;
-  void add_lambert(std::vector<Surface>& surfaces, std::span<const std::uint64_t> keys,
-                   std::span<PixelSample> out) const;
-  std::size_t add_translucent(std::vector<Surface>& surfaces, std::span<const std::uint64_t> keys,
-                              std::span<PixelSample> out) const;
-  void add_mirrored_lights(const std::vector<Surface>& surfaces, std::span<const Ray> rays,
+  std::vector<Surfaces> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
+                                std::span<PixelSample> out) const;
+  Lit light(const Kind& kind, const Surfaces& surfaces) const;
+  std::vector<RgbF> entered_irradiance(const Surfaces& surfaces, float eta) const;
+  void write(const Surfaces& surfaces, const Lit& lit, std::span<const TracedRay> rays,
+             std::span<PixelSample> out) const;
+  void add_mirrored_lights(const Surfaces& surfaces, std::span<const TracedRay> rays,
                            std::span<PixelSample> out) const;
   EmitterHit nearest_emitter(const Vec3f& origin, const Vec3f& direction, float far) const;
-  std::vector<RgbF> irradiance(const std::vector<const Surface*>& surfaces, std::span<const std::uint64_t> keys,
-                               double eta) const;
 
   const RenderInput& input_;
   std::vector<Light> lights_;    // recentred
   std::vector<Light> emitters_;  // those with an area
   RgbF surroundings_{};
   std::vector<Appearance> appearances_;  // one a mesh
+  std::vector<Kind> kinds_;
 };
 
 }  // namespace opaline

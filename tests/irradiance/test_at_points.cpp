@@ -42,7 +42,7 @@ TEST(IrradianceAtPoints, AgreesWithTheSamples) {
   for (const std::size_t kept : {2u, 5u}) {
     scene.lights.assign(all.begin(), all.begin() + std::ptrdiff_t(kept));
     const auto transfers =
-        compute_irradiance({scene.lit.world, scene.lit.rays, scene.samples, scene.lights, 1.5, 256});
+        compute_irradiance({scene.lit.rays, scene.samples, scene.lights, 1.5, 256});
     const std::vector<RgbF> by_samples = combine_lights(transfers, scene.lights),
                             at = scene.at_points(1.5, 256);
     double error = 1e-5;

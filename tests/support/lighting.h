@@ -47,7 +47,7 @@ struct LitWorld {
                                        std::uint64_t seed = 0) const {
     std::vector<Light> moved;
     for (const Light& light : lights) moved.push_back(recentred(light, world.origin));
-    return compute_irradiance({world, rays, samples, moved, eta, light_samples, seed});
+    return compute_irradiance({rays, samples, moved, eta, light_samples, seed});
   }
 
   LightTransfer transfer(const std::vector<SurfaceSample>& samples, const Light& light, double eta,

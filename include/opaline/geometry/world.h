@@ -26,27 +26,42 @@ struct World {
 /// Meshes of all shapes; error as make_mesh.
 World make_world(const Scene& scene);
 
-struct Ray {
-  Vec3f origin, direction;  ///< direction of any length; times are in units of it
-  float near = 0, far = std::numeric_limits<float>::infinity();
+/// A ray in the layout Embree traces, so that batches need no copy (checked in ray_scene.cpp).
+struct alignas(16) Ray {
+  Vec3f origin;
+  float near = 0;
+  Vec3f direction;  ///< of any length; near and far are in units of it
+  float time = 0;
+  float far = std::numeric_limits<float>::infinity();  ///< of a traced ray: where it hit; < 0 where blocked
+  std::uint32_t mask = ~0u, id = 0, flags = 0;
+
+  Ray() = default;
+  Ray(const Vec3f& from, const Vec3f& towards, float end = std::numeric_limits<float>::infinity())
+      : origin(from), direction(towards), far(end) {}
 };
 
-struct Hit {
+/// Where a ray met a triangle, in Embree's layout.
+struct alignas(16) Hit {
   static constexpr std::uint32_t kMiss = ~0u;
-  std::uint32_t mesh = kMiss, triangle = 0;
-  float t = 0, u = 0, v = 0;  ///< barycentrics of the second and third corner
+  Vec3f edges_cross;   ///< geometric normal of any length
+  float u = 0, v = 0;  ///< barycentrics of the second and third corner
+  std::uint32_t triangle = kMiss, mesh = kMiss, instance = kMiss;
+};
+
+struct TracedRay {
+  Ray ray;
+  Hit hit;
 };
 
 /// Geometry at a point of a triangle: everything shading and sampling ask for.
 struct SurfacePoint {
-  Vec3f position;   ///< in the world's recentred space
-  Vec3f normal;     ///< shading normal, unit
-  Vec3f geometric;  ///< geometric normal, unit
-  float offset =
-      0;  ///< RayScene::offset here, mm, for whoever traces rays from the point; 0: the largest mesh's
+  Vec3f position;    ///< in the world's recentred space
+  Vec3f normal;      ///< shading normal, unit
+  Vec3f geometric;   ///< geometric normal, unit
+  float offset = 0;  ///< RayScene::offset here, mm, for rays from the point; 0: the largest mesh's
 };
 
-/// Ray queries against the meshes of a world. Batches of coherent rays are fastest (up to 1024 at once).
+/// Ray queries against the meshes of a world. Batches of coherent rays are fastest (256 at once).
 class RayScene {
  public:
   explicit RayScene(const World& world);
@@ -54,21 +69,21 @@ class RayScene {
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) = delete;
 
-  /// The first hit of each ray; hits has the size of rays.
-  void intersect(std::span<const Ray> rays, std::span<Hit> hits) const;
-  /// 1 for each ray that meets a triangle between near and far, else 0.
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;
+  /// Finds the first hit of each ray between near and far; far becomes its distance.
+  void intersect(std::span<TracedRay> rays) const;
+  /// Sets far < 0 for each ray that meets a triangle between near and far.
+  void occluded(std::span<Ray> rays) const;
+
+  /// Geometry at a place of a triangle, from the single precision vertices that the rays meet; offset is set.
+  SurfacePoint surface_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v) const;
 
   /// How far to move the origin of a ray off the surface of a mesh, along the geometric normal, mm: 2^-18 of
   /// the mesh's diagonal, more where floats far from the middle of the world are coarser.
   float offset(const SurfacePoint& point) const { return point.offset > 0 ? point.offset : largest_offset_; }
-  float offset(std::uint32_t mesh, const Vec3f& point) const {
-    return offsets_[mesh] + 0x1p-20f * (std::abs(point.x) + std::abs(point.y) + std::abs(point.z));
-  }
   std::size_t bytes() const;
 
   /// Rays traced so far and the CPU time spent inside Embree for them, all threads: the floor of a render
-  /// pass.
+  /// pass. Every eighth batch is timed, for the clock itself costs as much as ten rays.
   struct Statistics {
     std::uint64_t rays = 0;
     double seconds = 0;
@@ -77,8 +92,12 @@ class RayScene {
 
  private:
   struct Handles;
+  struct Vertex;
+  struct MeshView;
+  void attach(const Mesh& mesh);
+
   std::unique_ptr<Handles> handles_;
-  std::vector<float> offsets_;  // one a mesh
+  std::vector<MeshView> meshes_;
   float largest_offset_ = 0;
 };
 

@@ -13,7 +13,6 @@
 namespace opaline {
 
 struct IrradianceInput {
-  const World& world;
   const RayScene& rays;
   std::span<const SurfaceSample> samples;
   std::span<const Light> lights;  ///< in the world's recentred space
