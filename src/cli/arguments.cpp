@@ -23,6 +23,7 @@ constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o bunny.exr -o bunny.png
   opaline render bunny.json -o draft.png --method lambert --resolution 256x256
   opaline render bunny.json -o warm.exr --set media.marble.eta=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
+  opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
   opaline render bunny.json -o bunny.exr --log json --threads 4
 
 Exit codes: 0 done, 2 bad input, 3 the run failed (I/O, memory), 130 interrupted (Ctrl-C; old files stay).)";
@@ -31,12 +32,15 @@ constexpr const char* kRenderNotes = R"(Every option that changes the picture is
   --spp 4            --set film.samples_per_pixel=4
   --resolution 64x48 --set film.resolution=[64,48]
   --crop 0,0,16,16   --set film.crop=[0,0,16,16]
-  --method, --evaluator, --seed: --set settings.<name>=...; --exposure: --set film.exposure=...
+  --method, --evaluator, --seed, --entry-samples, --until-error: --set settings.<name>=...
+  --exposure: --set film.exposure=...
 They are applied first, then each --set in its order: the last one wins.)";
 
 /// What the options of both commands write to, before it becomes overrides.
 struct Options {
   std::string method, evaluator, resolution, crop;
+  std::string until_error;
+  std::optional<std::int64_t> entry_samples;
   std::optional<std::int64_t> spp;  // the scene's check answers a negative one
   std::optional<std::uint64_t> seed;
   std::optional<double> exposure;
@@ -58,6 +62,21 @@ std::optional<std::string> json_list(std::string_view text, char separator, std:
   }
   if (numbers.size() != count) return std::nullopt;
   return fmt::format("[{}]", fmt::join(numbers, ","));
+}
+
+/// "0.5%" or "0.005"; nothing if it is neither.
+std::optional<double> fraction(const std::string& text) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [next, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{}) return std::nullopt;
+  if (next == end) return value;
+  if (next + 1 == end && *next == '%') return value / 100;
+  return std::nullopt;
+}
+
+std::string fraction_check(const std::string& text) {
+  return fraction(text) ? std::string() : fmt::format("expected a percentage such as 0.5%, got {}", text);
 }
 
 CLI::Validator list_check(char separator, std::size_t count, const std::string& form) {
@@ -98,13 +117,21 @@ void add_picture_options(CLI::App& app, Options& options) {
       ->type_name("x0,y0,x1,y1")
       ->group(group);
   app.add_option("--exposure", options.exposure, "stops, PNG only")->type_name("STOPS")->group(group);
-  app.add_option("--method", options.method,
-                 "hierarchical: light under the surface; lambert: plain paint, fast")
+  app.add_option(
+         "--method", options.method,
+         "hierarchical: light under the surface; lambert: plain paint, fast; direct: the reference, slow")
       ->type_name("NAME")
       ->group(group);
   app.add_option("--evaluator", options.evaluator,
                  "classic: octree traversal; brute_force: the exact sum, slow")
       ->type_name("NAME")
+      ->group(group);
+  app.add_option("--entry-samples", options.entry_samples, "direct: places of entry for each pixel")
+      ->type_name("N")
+      ->group(group);
+  app.add_option("--until-error", options.until_error, "direct: stop at this noise of the pixels, e.g. 0.5%")
+      ->check(CLI::Validator([](std::string& text) { return fraction_check(text); }, {}))
+      ->type_name("PERCENT")
       ->group(group);
   app.add_option("--seed", options.seed, "of all random numbers")
       ->check(CLI::NonNegativeNumber.description(""))  // CLI11 would wrap it around
@@ -119,6 +146,17 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
   add_common_options(app, render.scene, options);
   app.add_option("--samples-ply", render.samples_ply, "also write the surface samples as a PLY point cloud")
       ->type_name("FILE");
+  app.add_option(
+         "--resume", render.resume,
+         "direct: go on from this file's sums if it is there; they are written to it every minute, at the "
+         "end and on Ctrl-C")
+      ->type_name("FILE")
+      ->check(CLI::Validator(
+          [](std::string& path) {
+            return path.ends_with(".exr") ? std::string()
+                                          : fmt::format("expected a name that ends in .exr, got {}", path);
+          },
+          {}));
   app.add_option("--threads", render.threads, "at most this many; default: one for each core")
       ->check(CLI::Range(1, 4096).description(""))
       ->type_name("N");
@@ -138,6 +176,9 @@ std::vector<std::string> overrides_of(const Options& options) {
   if (!options.resolution.empty()) add("film.resolution", *json_list(options.resolution, 'x', 2));
   if (!options.crop.empty()) add("film.crop", *json_list(options.crop, ',', 4));
   if (options.exposure) add("film.exposure", fmt::format("{}", *options.exposure));
+  if (options.entry_samples) add("settings.entry_samples", std::to_string(*options.entry_samples));
+  if (!options.until_error.empty())
+    add("settings.until_error", fmt::format("{}", *fraction(options.until_error)));
   add("settings.method", options.method);
   add("settings.evaluator", options.evaluator);
   if (options.seed) add("settings.seed", std::to_string(*options.seed));

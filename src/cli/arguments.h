@@ -16,6 +16,7 @@ struct RenderArguments {
   std::vector<std::string> overrides;
   std::vector<std::string> outputs;  ///< at least one; .exr or .png, no two alike
   std::string samples_ply;           ///< empty: none
+  std::string resume;                ///< file of a direct rendering's sums to go on from; empty: none
   int threads = 0;                   ///< 0: one for each core
   bool timings_in_metadata = false;
   Log log;

@@ -46,6 +46,7 @@ Json settings_json(const Scene& scene, const Precompute& precompute) {
             {"near_field", settings.near_field},
             {"light_samples", settings.light_samples},
             {"max_samples", settings.max_samples},
+            {"entry_strategy", name_of(settings.entry_strategy)},
             {"seed", settings.seed},
             {"resolution", film.resolution},
             {"samples_per_pixel", film.samples_per_pixel},
@@ -82,6 +83,14 @@ Metadata make_metadata(const RenderArguments& arguments, const Scene& scene, con
   metadata.emplace_back("opaline:settings", compact(settings_json(scene, precompute)));
   metadata.emplace_back("opaline:command", command_line(name, arguments.overrides));
   return metadata;
+}
+
+std::string direct_scene_key(const RenderArguments& arguments) {
+  std::vector<std::string> overrides;
+  for (const std::string& text : arguments.overrides)
+    if (!text.starts_with("settings.entry_samples=") && !text.starts_with("settings.until_error="))
+      overrides.push_back(text);
+  return scene_hash(arguments.scene, overrides);
 }
 
 std::pair<std::string, std::string> timings_metadata(const std::vector<StageCost>& costs) {

@@ -20,6 +20,9 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 /// makes the same picture: outputs, threads and log are not in it.
 Metadata make_metadata(const RenderArguments& arguments, const Scene& scene, const Precompute& precompute);
 
+/// What the sums of a direct rendering belong to: the scene and all overrides but those that say when to stop.
+std::string direct_scene_key(const RenderArguments& arguments);
+
 /// opaline:timings, JSON: wall and CPU seconds of each stage so far.
 std::pair<std::string, std::string> timings_metadata(const std::vector<StageCost>& costs);
 

@@ -4,11 +4,15 @@
 namespace opaline {
 
 const char* name_of(Method method) {
-  return method == Method::lambert ? "lambert" : "hierarchical";
+  return method == Method::lambert ? "lambert" : method == Method::direct ? "direct" : "hierarchical";
 }
 
 const char* name_of(EvaluatorKind evaluator) {
   return evaluator == EvaluatorKind::brute_force ? "brute_force" : "classic";
+}
+
+const char* name_of(EntryStrategy strategy) {
+  return strategy == EntryStrategy::chords ? "chords" : "disc_axes";
 }
 
 const char* name_of(PixelFilter filter) {

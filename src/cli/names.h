@@ -8,6 +8,7 @@ namespace opaline {
 
 const char* name_of(Method method);
 const char* name_of(EvaluatorKind evaluator);
+const char* name_of(EntryStrategy strategy);
 const char* name_of(PixelFilter filter);
 const char* name_of(const LightSource& source);
 

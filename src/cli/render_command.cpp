@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <tbb/global_control.h>
 
+#include <chrono>
 #include <csignal>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "cli/stages.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/render/direct.h"
 #include "opaline/render/render.h"
 #include "opaline/scene/load_scene.h"
 
@@ -25,6 +27,7 @@ struct LoadedScene {
 void check_writable(const RenderArguments& arguments) {
   for (const std::string& path : arguments.outputs) const AtomicFile probe(path);
   if (!arguments.samples_ply.empty()) const AtomicFile probe(arguments.samples_ply);
+  if (!arguments.resume.empty()) const AtomicFile probe(arguments.resume);
 }
 
 bool needs_precompute(const RenderArguments& arguments, const Scene& scene, const Plan& plan) {
@@ -60,15 +63,68 @@ std::vector<std::string> write_outputs(const RenderArguments& arguments, const L
 
 struct Shading {
   RenderResult picture;
+  std::optional<DirectResult> direct;  // without its picture
   std::uint64_t rays = 0;
   double cpu_seconds = 0, embree_seconds = 0;
 };
 
-Shading shade(StageRunner& stages, const LoadedScene& loaded, const RayScene& rays,
-              const Precompute& samples) {
+/// Sums that are kept in the --resume file, if there is one.
+class ResumableState {
+ public:
+  ResumableState(const RenderArguments& arguments, const Scene& scene)
+      : path_(arguments.resume), scene_(scene) {
+    if (path_.empty()) return;
+    key_ = direct_scene_key(arguments);
+    state = read_direct_state(path_, scene_, key_);
+    written_ = state.passes;
+  }
+
+  void keep_each_minute() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::minutes(1)) return;
+    keep();
+    last_ = now;
+  }
+
+  void keep() {
+    if (path_.empty() || state.passes == written_) return;
+    write_direct_state(path_, state, scene_, key_);
+    written_ = state.passes;
+  }
+
+  DirectState state;
+
+ private:
+  std::string path_, key_;
+  const Scene& scene_;
+  std::size_t written_ = 0;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+DirectResult shade_direct(const RenderArguments& arguments, const LoadedScene& loaded, const RayScene& rays,
+                          const Plan& plan, Monitor& monitor) {
+  ResumableState resumable(arguments, loaded.scene);
+  try {
+    DirectResult result = render_direct({loaded.scene, loaded.world, rays, plan, &monitor,
+                                         [&](const DirectState&) { resumable.keep_each_minute(); }},
+                                        resumable.state);
+    resumable.keep();
+    return result;
+  } catch (const Error& stopped) {
+    if (stopped.kind == ErrorKind::interrupted) resumable.keep();
+    throw;
+  }
+}
+
+Shading shade(StageRunner& stages, const RenderArguments& arguments, const LoadedScene& loaded,
+              const RayScene& rays, const Plan& plan, const Precompute& samples) {
   Shading shading;
   const RayScene::Statistics before = rays.statistics();
   shading.picture = stages.run("shading", [&] {
+    if (loaded.scene.settings.method == Method::direct) {
+      shading.direct = shade_direct(arguments, loaded, rays, plan, stages.monitor());
+      return std::move(shading.direct->picture);
+    }
     return render({loaded.scene, loaded.world, rays, samples.groups, &stages.monitor()});
   });
   const RayScene::Statistics after = rays.statistics();
@@ -82,6 +138,10 @@ Summary summarize(const Scene& scene, const Precompute& samples, const Shading& 
   Summary summary;
   summary.peak_memory = peak_memory();
   summary.queries = shading.picture.queries;
+  if (shading.direct) {
+    summary.entry_samples = shading.direct->entry_samples;
+    summary.direct_error = shading.direct->relative_error;
+  }
   summary.rays = shading.rays;
   summary.shading_seconds = shading.cpu_seconds;
   summary.embree_seconds = shading.embree_seconds;
@@ -101,6 +161,8 @@ void run_render(const RenderArguments& arguments) {
     World world = make_world(scene);
     return LoadedScene{std::move(scene), std::move(world)};
   });
+  if (!arguments.resume.empty() && loaded.scene.settings.method != Method::direct)
+    throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct");
   const Plan plan = make_plan(loaded.scene, loaded.world);
   const bool translucent = needs_precompute(arguments, loaded.scene, plan);
   print_plan(arguments.log, loaded.scene, plan);
@@ -113,11 +175,10 @@ void run_render(const RenderArguments& arguments) {
     });
     for (const StageCost& cost : samples.costs) stages.note(cost);
   }
-  Shading shading = shade(stages, loaded, rays, samples);
+  Shading shading = shade(stages, arguments, loaded, rays, plan, samples);
   if (shading.picture.non_finite > 0)
-    print_warning(arguments.log,
-                  std::to_string(shading.picture.non_finite) +
-                      " pixels are not finite and were written as 0; this is a defect");
+    print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
+                                     " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
   image.metadata = make_metadata(arguments, loaded.scene, samples);
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));

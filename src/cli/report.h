@@ -26,6 +26,8 @@ struct Summary {
   std::size_t peak_memory = 0;  ///< bytes
   std::size_t samples = 0, queries = 0;
   std::vector<LightNoise> noise;
+  std::size_t entry_samples = 0;  ///< of `direct`, a pixel
+  double direct_error = 0;        ///< its relative_noise
   /// Of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.
   std::uint64_t rays = 0;
   double shading_seconds = 0, embree_seconds = 0;

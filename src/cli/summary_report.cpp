@@ -39,6 +39,10 @@ void print_text(const Summary& summary) {
   row("memory", short_bytes(summary.peak_memory) + " at the peak");
   if (summary.samples > 0)
     row("samples", fmt::format("{}, {} shading points", grouped(summary.samples), grouped(summary.queries)));
+  if (summary.entry_samples > 0)
+    row("samples",
+        fmt::format("{} entry samples a pixel; noise {:.3g} % (standard error, rms over the pixels)",
+                    grouped(summary.entry_samples), 100 * summary.direct_error));
   for (const LightNoise& noise : summary.noise)
     row("noise", fmt::format("irradiance from {} on {}: {:.2g} % (standard error at a sample)", noise.light,
                              noise.group, 100 * noise.relative_error));
@@ -63,6 +67,8 @@ Json done_json(const Summary& summary) {
           {"samples", summary.samples},
           {"queries", summary.queries},
           {"irradiance_noise", noise},
+          {"entry_samples", summary.entry_samples},
+          {"direct_noise", summary.direct_error},
           {"shading_rays", summary.rays},
           {"shading_cpu_seconds", summary.shading_seconds},
           {"embree_cpu_seconds", summary.embree_seconds},

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -9,6 +7,7 @@
 #include <ctime>
 #include <string>
 
+#include "geometry/embree_handles.h"
 #include "geometry/oriented_point.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
@@ -17,15 +16,6 @@
 namespace opaline {
 
 namespace {
-
-// Rays of one kind and the time of those batches that were timed.
-struct RayCounter {
-  std::atomic<std::uint64_t> rays{0}, batches{0}, timed_rays{0}, timed_nanoseconds{0};
-
-  double seconds() const {
-    return timed_rays > 0 ? 1e-9 * double(timed_nanoseconds) * double(rays) / double(timed_rays) : 0;
-  }
-};
 
 std::uint64_t thread_nanoseconds() {
   timespec now{};
@@ -58,18 +48,6 @@ struct RayScene::MeshView {
   float offset;
 };
 
-struct RayScene::Handles {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  std::atomic<std::ptrdiff_t> bytes{0};
-  RayCounter intersected, occluded;
-
-  ~Handles() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
-};
-
 namespace {
 
 constexpr std::size_t kBatch = 256;
@@ -79,21 +57,6 @@ bool count_memory(void* counter, ssize_t bytes, bool) {
   return true;
 }
 
-void check(RTCDevice device) {
-  const RTCError error = rtcGetDeviceError(device);
-  if (error == RTC_ERROR_OUT_OF_MEMORY)
-    throw run_failed({}, "out of memory while building the ray structure");
-  require(error == RTC_ERROR_NONE, "Embree reports an error");
-}
-
-static_assert(sizeof(Ray) == sizeof(RTCRay) && sizeof(TracedRay) == sizeof(RTCRayHit));
-static_assert(offsetof(Ray, near) == offsetof(RTCRay, tnear) &&
-              offsetof(Ray, direction) == offsetof(RTCRay, dir_x));
-static_assert(offsetof(Ray, far) == offsetof(RTCRay, tfar) && offsetof(Ray, mask) == offsetof(RTCRay, mask));
-static_assert(offsetof(TracedRay, hit) == offsetof(RTCRayHit, hit) &&
-              offsetof(Hit, u) == offsetof(RTCHit, u));
-static_assert(offsetof(Hit, triangle) == offsetof(RTCHit, primID) &&
-              offsetof(Hit, mesh) == offsetof(RTCHit, geomID));
 
 RTCIntersectContext coherent_context() {
   RTCIntersectContext context;
@@ -104,6 +67,13 @@ RTCIntersectContext coherent_context() {
 
 }  // namespace
 
+void check_device(RTCDevice device) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY)
+    throw run_failed({}, "out of memory while building the ray structure");
+  require(error == RTC_ERROR_NONE, "Embree reports an error");
+}
+
 RayScene::RayScene(const World& world) : handles_(std::make_unique<Handles>()) {
   handles_->device = rtcNewDevice(nullptr);
   require(handles_->device != nullptr, "Embree has no device");
@@ -112,7 +82,7 @@ RayScene::RayScene(const World& world) : handles_(std::make_unique<Handles>()) {
   rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST);
   for (const Mesh& mesh : world.meshes) attach(mesh);
   rtcCommitScene(handles_->scene);
-  check(handles_->device);
+  check_device(handles_->device);
 }
 
 void RayScene::attach(const Mesh& mesh) {
@@ -122,7 +92,7 @@ void RayScene::attach(const Mesh& mesh) {
   auto* indices = static_cast<std::array<std::uint32_t, 3>*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               sizeof(std::array<std::uint32_t, 3>), mesh.triangles.size()));
-  check(handles_->device);
+  check_device(handles_->device);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     vertices[i] = {Vec3f(mesh.positions[i]), mesh.normals.empty() ? Vec3f{} : mesh.normals[i]};
   std::ranges::copy(mesh.triangles, indices);

@@ -91,6 +91,15 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
   return groups;
 }
 
+std::string shading_stage(const Settings& settings) {
+  if (settings.method == Method::lambert) return "shading: lambert";
+  if (settings.method == Method::hierarchical) return "shading: hierarchical";
+  if (settings.until_error)
+    return fmt::format("shading: direct, until the noise is {:.3g} %", 100 * *settings.until_error);
+  return fmt::format("shading: direct, {} entry samples a pixel",
+                     settings.entry_samples.value_or(kDefaultEntrySamples));
+}
+
 void list_stages(const Scene& scene, Plan& plan) {
   if (scene.settings.method == Method::hierarchical && !plan.groups.empty()) {
     plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
@@ -105,8 +114,7 @@ void list_stages(const Scene& scene, Plan& plan) {
             ? fmt::format("evaluation: classic traversal, {} sr", scene.settings.max_solid_angle)
             : "evaluation: brute force");
   }
-  plan.stages.push_back(scene.settings.method == Method::hierarchical ? "shading: hierarchical"
-                                                                      : "shading: lambert");
+  plan.stages.push_back(shading_stage(scene.settings));
 }
 
 }  // namespace

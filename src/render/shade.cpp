@@ -6,23 +6,29 @@
 
 #include "opaline/core/random.h"
 #include "opaline/diffusion/fresnel.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "render/direct_exitance.h"
 
 namespace opaline {
 namespace {
 
 constexpr float kInversePi = float(std::numbers::inv_pi);
 
-Appearance appearance_of(const RenderInput& input, std::size_t mesh) {
+Appearance appearance_of(const RenderInput& input, std::span<const EntrySampler> entry_samplers,
+                         std::size_t mesh) {
   const Shape& shape = input.scene.shapes[mesh];
   Appearance appearance;
   appearance.albedo = RgbF(shape.reflectance);
   if (!shape.medium) return appearance;
   const DiffuseProfile profile = make_diffuse_profile(input.scene.media[*shape.medium]);
   appearance = {true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance)};
-  if (input.scene.settings.method == Method::lambert) return appearance;
-  for (const TranslucentGroup& group : input.groups)
-    if (std::ranges::find(group.plan.meshes, mesh) != group.plan.meshes.end()) appearance.group = &group;
+  const auto has_mesh = [mesh](const std::vector<std::uint32_t>& meshes) {
+    return std::ranges::find(meshes, mesh) != meshes.end();
+  };
+  if (input.scene.settings.method == Method::hierarchical)
+    for (const TranslucentGroup& group : input.groups)
+      if (has_mesh(group.plan.meshes)) appearance.group = &group;
+  for (const EntrySampler& sampler : entry_samplers)
+    if (has_mesh(sampler.meshes())) appearance.entries = &sampler;
   return appearance;
 }
 
@@ -38,7 +44,7 @@ float cos_view(const Vec3f& normal, const Vec3f& direction) {
 
 }  // namespace
 
-Shader::Shader(const RenderInput& input) : input_(input) {
+Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers) : input_(input) {
   for (const Light& light : input.scene.lights) {
     lights_.push_back(recentred(light, input.world.origin));
     if (const auto* all_around = std::get_if<Surroundings>(&light.source))
@@ -47,8 +53,8 @@ Shader::Shader(const RenderInput& input) : input_(input) {
       emitters_.push_back(lights_.back());
   }
   for (std::size_t m = 0; m < input.world.meshes.size(); ++m) {
-    Appearance appearance = appearance_of(input, m);
-    const Kind kind{appearance.group, appearance.translucent ? appearance.eta : 0};
+    Appearance appearance = appearance_of(input, entry_samplers, m);
+    const Kind kind{appearance.group, appearance.entries, appearance.translucent ? appearance.eta : 0};
     const auto known = std::ranges::find(kinds_, kind);
     appearance.kind = std::size_t(known - kinds_.begin());
     if (known == kinds_.end()) kinds_.push_back(kind);
@@ -57,12 +63,12 @@ Shader::Shader(const RenderInput& input) : input_(input) {
 }
 
 std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                          std::span<PixelSample> out) const {
+                          std::span<PixelSample> out, const Pass& pass) const {
   std::size_t queries = 0;
   const std::vector<Surfaces> surfaces = collect(rays, keys, out);
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
     if (surfaces[k].points.empty()) continue;
-    write(surfaces[k], light(kinds_[k], surfaces[k]), rays, out);
+    write(surfaces[k], light(kinds_[k], surfaces[k], pass), rays, out);
     if (kinds_[k].eta > 0 && has_visible_lights()) add_mirrored_lights(surfaces[k], rays, out);
     if (kinds_[k].group != nullptr) queries += surfaces[k].points.size();
   }
@@ -103,12 +109,17 @@ std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
   return surfaces;
 }
 
-// Entered irradiance, and exitance: of the group's tree, or E itself (times albedo it is the exitance).
-Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces) const {
-  if (kind.group == nullptr) return {{}, entered_irradiance(surfaces, kind.eta)};
+Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, const Pass& pass) const {
+  if (kind.group != nullptr) return evaluated(kind, surfaces);
+  if (kind.entries != nullptr)
+    return {direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}), {}};
+  return {{}, irradiance_at(lighting_of(surfaces, kind.eta))};
+}
+
+Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces) const {
   Lit lit;
   const TranslucentGroup& group = *kind.group;
-  if (group.kernel.needs_irradiance()) lit.irradiance = entered_irradiance(surfaces, kind.eta);
+  if (group.kernel.needs_irradiance()) lit.irradiance = irradiance_at(lighting_of(surfaces, kind.eta));
   std::vector<Query> queries;
   queries.reserve(surfaces.points.size());
   for (const SurfacePoint& point : surfaces.points) queries.push_back({point.position, point.normal});
@@ -134,7 +145,7 @@ void Shader::write(const Surfaces& surfaces, const Lit& lit, std::span<const Tra
     sample.diffuse = outgoing_radiance(appearance, exitance, cos_view(point.normal, ray.direction));
     sample.coverage = 1;
     sample.albedo = appearance.albedo;
-    sample.irradiance = lit.irradiance[i];
+    if (!lit.irradiance.empty()) sample.irradiance = lit.irradiance[i];
     sample.normal = point.normal;
     sample.position = Vec3f(Vec3d(point.position) + input_.world.origin);
     sample.depth = ray.far;
@@ -172,13 +183,18 @@ EmitterHit Shader::nearest_emitter(const Vec3f& origin, const Vec3f& direction, 
   return nearest;
 }
 
-std::vector<RgbF> Shader::entered_irradiance(const Surfaces& surfaces, float eta) const {
+PointIrradianceInput Shader::lighting_of(const Surfaces& surfaces, float eta) const {
   const Settings& settings = input_.scene.settings;
   // The samples of a pixel share the rays: their average has as many.
   const int spp = input_.scene.film.samples_per_pixel,
             light_samples = (settings.light_samples + spp - 1) / spp;
-  return irradiance_at({input_.rays, surfaces.points, surfaces.keys, lights_, double(eta), light_samples,
-                        hash_bits(settings.seed, 2000)});
+  return {input_.rays,
+          surfaces.points,
+          surfaces.keys,
+          lights_,
+          double(eta),
+          light_samples,
+          hash_bits(settings.seed, 2000)};
 }
 
 }  // namespace opaline

@@ -5,8 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "opaline/irradiance/irradiance.h"
 #include "opaline/irradiance/light_sampling.h"
 #include "opaline/render/render.h"
+#include "render/entry_sampler.h"
 #include "render/layers.h"
 
 namespace opaline {
@@ -17,18 +19,26 @@ struct Appearance {
   RgbF albedo{};                            ///< reflectance, or total diffuse reflectance
   float eta = 1;                            ///< translucent only
   float average_reflectance = 0;            ///< F_bar
-  const TranslucentGroup* group = nullptr;  ///< null: plain Lambert
+  const TranslucentGroup* group = nullptr;  ///< of the samples to sum
+  const EntrySampler* entries = nullptr;    ///< or to draw entry points with; neither: plain Lambert
   std::size_t kind = 0;                     ///< of the shader's kinds
+};
+
+/// One of several independent estimates of the same picture; only `direct` makes more than one.
+struct Pass {
+  std::uint64_t index = 0;
+  int entry_samples = 0;  ///< of each camera ray
 };
 
 class Shader {
  public:
-  explicit Shader(const RenderInput& input);
+  /// entry_samplers: of Method::direct, one a group.
+  explicit Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers = {});
 
   /// Shades a batch of traced camera rays, one PixelSample a ray. keys: one a ray, for its light samples.
   /// Returns the number of exitance queries.
   std::size_t shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                    std::span<PixelSample> out) const;
+                    std::span<PixelSample> out, const Pass& pass) const;
 
   /// False where rays that hit nothing see nothing either.
   bool has_visible_lights() const { return !emitters_.empty() || surroundings_ != RgbF{}; }
@@ -36,8 +46,9 @@ class Shader {
  private:
   // Surfaces whose exitance is found in one go: of a group, or with one boundary.
   struct Kind {
-    const TranslucentGroup* group;  // null: exitance is local
-    float eta;                      // 0: opaque
+    const TranslucentGroup* group;
+    const EntrySampler* entries;  // neither: exitance is local
+    float eta;                    // 0: opaque
     friend bool operator==(const Kind&, const Kind&) = default;
   };
   // The hits of one kind in a batch.
@@ -47,13 +58,15 @@ class Shader {
     std::vector<std::uint32_t> rays;  // their places in the batch
   };
   struct Lit {
-    std::vector<RgbF> exitance, irradiance;
+    std::vector<RgbF> exitance,
+        irradiance;  // empty exitance: albedo x irradiance; empty irradiance: not known
   };
 
   std::vector<Surfaces> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                 std::span<PixelSample> out) const;
-  Lit light(const Kind& kind, const Surfaces& surfaces) const;
-  std::vector<RgbF> entered_irradiance(const Surfaces& surfaces, float eta) const;
+  Lit light(const Kind& kind, const Surfaces& surfaces, const Pass& pass) const;
+  Lit evaluated(const Kind& kind, const Surfaces& surfaces) const;
+  PointIrradianceInput lighting_of(const Surfaces& surfaces, float eta) const;
   void write(const Surfaces& surfaces, const Lit& lit, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;
   void add_mirrored_lights(const Surfaces& surfaces, std::span<const TracedRay> rays,

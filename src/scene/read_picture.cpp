@@ -8,8 +8,9 @@ namespace {
 
 constexpr std::array<std::string_view, 2> filter_names{"box", "gaussian"};
 constexpr std::array<std::string_view, 2> pixel_type_names{"half", "float"};
-constexpr std::array<std::string_view, 2> method_names{"hierarchical", "lambert"};
+constexpr std::array<std::string_view, 3> method_names{"hierarchical", "lambert", "direct"};
 constexpr std::array<std::string_view, 2> evaluator_names{"classic", "brute_force"};
+constexpr std::array<std::string_view, 2> strategy_names{"disc_axes", "chords"};
 
 constexpr std::uint64_t largest_side = 65536, most_pixels = std::uint64_t{1} << 28;
 constexpr std::uint64_t most_samples = 1000000000;
@@ -90,6 +91,11 @@ Settings read_settings(const Value& value, double mm_per_unit) {
     settings.max_samples = samples->integer(1, most_samples);
   if (const auto samples = reader.find("light_samples"))
     settings.light_samples = static_cast<int>(samples->integer(1, 65536));
+  if (const auto strategy = reader.find("entry_strategy"))
+    settings.entry_strategy = static_cast<EntryStrategy>(strategy->choice(strategy_names));
+  if (const auto samples = reader.find("entry_samples"))
+    settings.entry_samples = samples->integer(1, most_samples);
+  if (const auto error = reader.find("until_error")) settings.until_error = error->number({0, 1, true, false});
   if (const auto seed = reader.find("seed")) settings.seed = seed->integer(0, UINT64_MAX);
   return settings;
 }

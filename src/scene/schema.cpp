@@ -39,7 +39,7 @@ const std::vector<Section>& sections() {
       {"film", {"resolution", "crop", "samples_per_pixel", "filter", "pixel_type", "exposure"}},
       {"settings",
        {"method", "evaluator", "max_solid_angle", "near_field", "sample_spacing", "samples", "max_samples",
-        "light_samples", "seed"}},
+        "light_samples", "entry_strategy", "entry_samples", "until_error", "seed"}},
   };
   return table;
 }

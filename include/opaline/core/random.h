@@ -27,4 +27,15 @@ constexpr std::array<double, 2> r2_point(std::uint64_t i, std::array<double, 2> 
   return {u - double(std::int64_t(u)), v - double(std::int64_t(v))};
 }
 
+/// The same in four dimensions, on the root of x^5 = x + 1.
+constexpr std::array<double, 4> r4_point(std::uint64_t i, std::array<double, 4> shift) {
+  constexpr std::array<double, 4> kSteps{0.85667488385450287, 0.73389185662064190, 0.62870672102576909,
+                                         0.53859725722361136};
+  for (std::size_t d = 0; d < 4; ++d) {
+    shift[d] += kSteps[d] * double(i);
+    shift[d] -= double(std::int64_t(shift[d]));
+  }
+  return shift;
+}
+
 }  // namespace opaline

@@ -91,6 +91,7 @@ class RayScene {
   Statistics statistics() const;
 
  private:
+  friend class LineQuery;
   struct Handles;
   struct Vertex;
   struct MeshView;

@@ -151,8 +151,16 @@ struct Film {
   double exposure = 0;                       ///< stops, for PNG only
 };
 
-enum class Method { hierarchical, lambert };
+enum class Method {
+  hierarchical,  ///< diffusion from the tree of samples
+  lambert,       ///< translucent surfaces as plain paint: the floor of all costs
+  direct         ///< the BSSRDF sampled at random: the reference of `hierarchical`, noisy instead of biased
+};
 enum class EvaluatorKind { classic, brute_force };
+enum class EntryStrategy { disc_axes, chords };
+
+/// Of `direct`, where neither Settings::entry_samples nor Settings::until_error says.
+inline constexpr std::size_t kDefaultEntrySamples = 256;
 
 struct Settings {
   Method method = Method::hierarchical;
@@ -163,6 +171,9 @@ struct Settings {
   std::optional<std::size_t> samples;  ///< per group; none: from the spacing
   std::size_t max_samples = 2000000;   ///< per group
   int light_samples = 64;              ///< shadow rays per sample (opaque: pixel) and light with an area
+  EntryStrategy entry_strategy = EntryStrategy::disc_axes;  ///< direct: how entry points are drawn
+  std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
+  std::optional<double> until_error;         ///< direct: stop at this estimated relative error of the pixels
   std::uint64_t seed = 0;
 };
 

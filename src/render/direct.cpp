@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/render/direct.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "opaline/core/parallel.h"
+#include "opaline/diffusion/diffuse_profile.h"
+#include "render/tile_renderer.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::size_t kEntrySamples = 16;  // per pixel and pass
+constexpr std::size_t kFewestPasses = 8;   // before an estimate of the error is believed
+
+int entry_samples_per_ray(const Film& film) {
+  return std::max(1, int(kEntrySamples) / film.samples_per_pixel);
+}
+
+std::size_t most_passes(const Settings& settings, const Film& film) {
+  constexpr std::size_t kWithoutEnd = std::size_t(1) << 32;
+  const std::size_t samples =
+      settings.entry_samples.value_or(settings.until_error ? kWithoutEnd : kDefaultEntrySamples);
+  const std::size_t per_pass = entry_samples_per_pass(film);
+  return (samples + per_pass - 1) / per_pass;
+}
+
+std::vector<std::string> direct_layer_names() {
+  std::vector<std::string> names = layer_names();
+  for (std::string& name : names)
+    if (name.starts_with("irradiance.")) name.replace(0, 10, "variance");
+  return names;
+}
+
+// Mean of a pixel's passes and the variance of that mean.
+struct Estimate {
+  RgbF mean{}, variance{};
+};
+
+Estimate estimate(const DirectState& state, std::size_t pixel) {
+  Estimate result;
+  const float* sums = state.sums.data() + pixel * DirectState::kSums;
+  const double n = double(state.passes);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double mean = double(sums[c]) / n;
+    result.mean[c] = float(mean);
+    if (state.passes > 1)
+      result.variance[c] = float(std::max(0.0, double(sums[c + 3]) / n - mean * mean) / (n - 1));
+  }
+  return result;
+}
+
+class DirectRenderer {
+ public:
+  explicit DirectRenderer(const DirectInput& input)
+      : scene_(input.scene),
+        render_input_{input.scene, input.world, input.rays, {}, input.monitor},
+        samplers_(make_samplers(input)),
+        shader_(render_input_, samplers_),
+        tile_renderer_(render_input_, shader_),
+        part_(rendered_part(input.scene.film)),
+        tiles_(tiles_of(part_)) {}
+
+  std::size_t pixels() const { return std::size_t(part_.x1 - part_.x0) * std::size_t(part_.y1 - part_.y0); }
+  std::size_t work_per_pass() const { return tiles_.size() * std::size_t(scene_.film.samples_per_pixel); }
+
+  void add_pass(DirectState& state) const {
+    const int samples = scene_.film.samples_per_pixel;
+    const Pass pass{state.passes, entry_samples_per_ray(scene_.film)};
+    std::vector<RgbF> radiance(pixels());
+    for_each_tile(pass, [&](std::size_t pixel, const PixelSample& sum) {
+      radiance[pixel] = sum.diffuse * (1 / float(samples));
+    });
+    for (std::size_t p = 0; p < radiance.size(); ++p) {
+      if (radiance[p] == RgbF{}) continue;
+      float* sums = state.sums.data() + p * DirectState::kSums;
+      for (std::size_t c = 0; c < 3; ++c) {
+        sums[c] += radiance[p][c];
+        sums[c + 3] += radiance[p][c] * radiance[p][c];
+      }
+    }
+    ++state.passes;
+  }
+
+  // All layers; those without noise from rays of their own.
+  RenderResult picture(const DirectState& state) const {
+    RenderResult result;
+    result.image = empty_image(part_, scene_.film, direct_layer_names());
+    std::atomic<std::size_t> queries{0}, non_finite{0};
+    for_each_tile(Pass{}, [&](std::size_t pixel, PixelSample sum) {
+      if (sum.empty()) return;
+      // As if each of the samples had sent out the mean; where the irradiance of other pictures is, the
+      // variance.
+      const auto samples = float(scene_.film.samples_per_pixel);
+      const Estimate passes = estimate(state, pixel);
+      sum.diffuse = passes.mean * samples;
+      sum.irradiance = passes.variance * sum.coverage;
+      non_finite += store_pixel(sum, scene_.film.samples_per_pixel,
+                                result.image.pixels.data() + pixel * PixelSample::kChannels);
+      ++queries;
+    });
+    result.queries = queries;
+    result.non_finite = non_finite;
+    return result;
+  }
+
+ private:
+  static std::vector<EntrySampler> make_samplers(const DirectInput& input) {
+    std::vector<EntrySampler> samplers;
+    for (const GroupPlan& group : input.plan.groups)
+      samplers.emplace_back(group, make_diffuse_profile(input.scene.media[group.medium]), input.rays,
+                            input.world.diagonal, input.scene.settings.entry_strategy);
+    return samplers;
+  }
+
+  template <class Use>
+  void for_each_tile(const Pass& pass, const Use& use) const {
+    parallel_chunks(tiles_.size(), 1, [&](std::size_t begin, std::size_t, std::size_t) {
+      const Rectangle& tile = tiles_[begin];
+      const TileRenderer::Tile rendered = tile_renderer_.render(tile, pass);
+      std::size_t i = 0;
+      for (int y = tile.y0; y < tile.y1; ++y)
+        for (int x = tile.x0; x < tile.x1 && i < rendered.sums.size(); ++x, ++i)
+          use(std::size_t(y - part_.y0) * std::size_t(part_.x1 - part_.x0) + std::size_t(x - part_.x0),
+              rendered.sums[i]);
+    });
+  }
+
+  const Scene& scene_;
+  RenderInput render_input_;
+  std::vector<EntrySampler> samplers_;
+  Shader shader_;
+  TileRenderer tile_renderer_;
+  Rectangle part_;
+  std::vector<Rectangle> tiles_;
+};
+
+}  // namespace
+
+std::size_t entry_samples_per_pass(const Film& film) {
+  return std::size_t(entry_samples_per_ray(film)) * std::size_t(film.samples_per_pixel);
+}
+
+double relative_noise(const DirectState& state) {
+  if (state.passes < 2) return std::numeric_limits<double>::infinity();
+  const std::size_t pixels = state.sums.size() / DirectState::kSums;
+  std::array<double, 3> brightest{}, squares{};
+  std::size_t lit = 0;
+  for (std::size_t p = 0; p < pixels; ++p)
+    for (std::size_t c = 0; c < 3; ++c)
+      brightest[c] = std::max(brightest[c], double(estimate(state, p).mean[c]));
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const Estimate pixel = estimate(state, p);
+    if (pixel.mean == RgbF{}) continue;
+    ++lit;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double mean = double(pixel.mean[c]), floor = 0.01 * brightest[c];
+      if (brightest[c] > 0) squares[c] += double(pixel.variance[c]) / (mean * mean + floor * floor);
+    }
+  }
+  return lit == 0 ? 0 : std::sqrt(*std::ranges::max_element(squares) / double(lit));
+}
+
+DirectResult render_direct(const DirectInput& input, DirectState& state) {
+  const DirectRenderer renderer(input);
+  const Settings& settings = input.scene.settings;
+  state.sums.resize(renderer.pixels() * DirectState::kSums);
+  const std::size_t passes = most_passes(settings, input.scene.film);
+  const auto good_enough = [&] {
+    return settings.until_error && state.passes >= kFewestPasses &&
+           relative_noise(state) <= *settings.until_error;
+  };
+  if (input.monitor != nullptr && state.passes < passes)
+    input.monitor->begin("shading", (passes - state.passes) * renderer.work_per_pass());
+  while (state.passes < passes && !good_enough()) {
+    renderer.add_pass(state);
+    if (input.after_pass) input.after_pass(state);
+  }
+  DirectResult result;
+  result.picture = renderer.picture(state);
+  result.entry_samples = state.passes * entry_samples_per_pass(input.scene.film);
+  result.relative_error = relative_noise(state);
+  return result;
+}
+
+}  // namespace opaline

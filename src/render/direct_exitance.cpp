@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/direct_exitance.h"
+
+#include "opaline/core/random.h"
+
+namespace opaline {
+namespace {
+
+// Entries that carry less than this share of a usual one are dropped at random and the others made up for it:
+// far sides of a steep profile would cost shadow rays for nothing.
+constexpr float kRouletteBelow = 0.05f;
+
+// True if the entry goes on, its weight divided by the chance of that.
+bool survives(Entry& entry, float usual, double random) {
+  const float chance = max_component(entry.weight) / (kRouletteBelow * usual);
+  if (chance >= 1) return true;
+  if (random >= double(chance)) return false;
+  entry.weight *= 1 / chance;
+  return true;
+}
+
+}  // namespace
+
+std::vector<RgbF> direct_exitance(const DirectExitanceInput& input) {
+  const std::size_t points = input.exits.points.size();
+  std::vector<RgbF> exitance(points);
+  std::vector<Hit> crossings;
+  std::vector<Entry> entries;
+  std::vector<SurfacePoint> entry_points;
+  std::vector<std::uint64_t> keys;
+  std::vector<RgbF> weights;
+  std::vector<std::size_t> first(points + 1, 0);
+  const float usual = input.sampler.usual_weight();
+  for (std::size_t p = 0; p < points; ++p) {
+    const std::uint64_t key = hash_bits(input.exits.seed, input.exits.keys[p]);
+    const std::array<double, 4> shift{unit_double(hash_bits(key, 0)), unit_double(hash_bits(key, 1)),
+                                      unit_double(hash_bits(key, 2)), unit_double(hash_bits(key, 3))};
+    for (int s = 0; s < input.entry_samples; ++s) {
+      entries.clear();
+      const std::uint64_t sample_key = hash_bits(key, 4 + std::uint64_t(s));
+      input.sampler.sample(input.exits.points[p], {r4_point(std::uint64_t(s), shift), sample_key}, crossings,
+                           entries);
+      for (std::size_t e = 0; e < entries.size(); ++e) {
+        const std::uint64_t entry_key = hash_bits(sample_key, 2 + e);
+        if (!survives(entries[e], usual, unit_double(entry_key))) continue;
+        entry_points.push_back(entries[e].point);
+        weights.push_back(entries[e].weight);
+        keys.push_back(entry_key);
+      }
+    }
+    first[p + 1] = entry_points.size();
+  }
+  PointIrradianceInput at = input.exits;
+  at.points = entry_points;
+  at.keys = keys;
+  at.light_samples = 1;
+  const std::vector<RgbF> entered = irradiance_at(at);
+  for (std::size_t p = 0; p < points; ++p) {
+    for (std::size_t e = first[p]; e < first[p + 1]; ++e) exitance[p] += weights[e] * entered[e];
+    if (input.entry_samples > 0) exitance[p] *= 1 / float(input.entry_samples);
+  }
+  return exitance;
+}
+
+}  // namespace opaline

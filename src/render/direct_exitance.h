@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Radiant exitance at points by sampling where the light entered.
+#pragma once
+
+#include "opaline/irradiance/irradiance.h"
+#include "render/entry_sampler.h"
+
+namespace opaline {
+
+struct DirectExitanceInput {
+  const EntrySampler& sampler;
+  PointIrradianceInput exits;  ///< points that light leaves, their keys, lights and boundary
+  int entry_samples = 1;       ///< a point, >= 0
+};
+
+/// Unbiased estimates of M_o at each point, W/mm^2: the mean over the samples of weight x E at their entries,
+/// with one shadow ray to each light from each entry.
+std::vector<RgbF> direct_exitance(const DirectExitanceInput& input);
+
+}  // namespace opaline

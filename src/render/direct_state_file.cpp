@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include "opaline/core/error.h"
+#include "opaline/render/direct.h"
+#include "render/tile_renderer.h"
+
+namespace opaline {
+namespace {
+
+constexpr const char* kPasses = "opaline:direct_passes";
+constexpr const char* kScene = "opaline:direct_scene";
+
+Image empty_state_image(const Scene& scene) {
+  return empty_image(rendered_part(scene.film), scene.film,
+                     {"sum.R", "sum.G", "sum.B", "squares.R", "squares.G", "squares.B"});
+}
+
+std::string text_of(const Image& image, const std::string& key) {
+  for (const auto& [name, value] : image.metadata)
+    if (name == key) return value;
+  return {};
+}
+
+}  // namespace
+
+void write_direct_state(const std::string& path, const DirectState& state, const Scene& scene,
+                        const std::string& scene_key) {
+  Image image = empty_state_image(scene);
+  require(image.pixels.size() == state.sums.size(), "the state is of another picture");
+  std::ranges::copy(state.sums, image.pixels.begin());
+  image.metadata = {{kPasses, std::to_string(state.passes)}, {kScene, scene_key}};
+  write_exr(path, image, false);
+}
+
+DirectState read_direct_state(const std::string& path, const Scene& scene, const std::string& scene_key) {
+  DirectState state;
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return state;
+  const Image image = read_image(path), expected = empty_state_image(scene);
+  const std::string passes = text_of(image, kPasses);
+  const auto [end, error] = std::from_chars(passes.data(), passes.data() + passes.size(), state.passes);
+  // The file's own channel order is alphabetic or as written; it must be the latter.
+  if (passes.empty() || error != std::errc{} || end != passes.data() + passes.size() ||
+      image.channels != expected.channels)
+    throw bad_file(path, "not the sums of a direct rendering", "a file that --resume wrote");
+  if (text_of(image, kScene) != scene_key)
+    throw bad_file(path, "the sums are of another scene or other settings",
+                   "those of this one, or a new file name");
+  if (image.width != expected.width || image.height != expected.height)
+    throw bad_file(path, "the sums are of another picture size");
+  state.sums.assign(image.pixels.begin(), image.pixels.end());
+  return state;
+}
+
+}  // namespace opaline

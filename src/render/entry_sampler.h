@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where light that leaves a point may have entered.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/diffusion/kernel_table.h"
+#include "opaline/geometry/line_query.h"
+#include "opaline/render/plan.h"
+
+namespace opaline {
+
+/// Random numbers of one sample: four in [0, 1), stratified over the samples of a point, and a key for more.
+struct EntryRandom {
+  std::array<double, 4> stratified;
+  std::uint64_t key;
+};
+
+/// An entry point of one sample: M_o is the expected sum of weight x E(point) over the entries of a sample.
+struct Entry {
+  SurfacePoint point;
+  RgbF weight;  ///< R_d / density per area, per channel
+};
+
+/// Draws entry points on the surfaces of one group of translucent meshes with a density near R_d of their
+/// distance.
+///
+/// `disc_axes` (King et al. 2013, BSSRDF Importance Sampling): a line along one of three axes (the normal,
+/// half of the time, and two tangents) through a disc around the point, at a distance drawn from one
+/// channel's profile; every crossing with the group is an entry. Balance heuristic over axes and channels.
+/// R_d falls with distance and the disc shortens it, so a weight is at most total / (1/4 x 1/sqrt(3) x
+/// 1/channels): no fireflies, nothing cut. `chords`: a random chord of a sphere around the point, see
+/// sample_chord_sphere_radius. Weight 2 x total for one channel, whatever the surface.
+class EntrySampler {
+ public:
+  EntrySampler(const GroupPlan& plan, const DiffuseProfile& profile, const RayScene& rays, double diagonal,
+               EntryStrategy strategy);
+
+  const std::vector<std::uint32_t>& meshes() const { return meshes_; }
+
+  /// About the largest channel's weight of an entry on a flat surface.
+  float usual_weight() const { return usual_weight_; }
+
+  /// Adds the entries of one sample to `entries`; crossings: scratch.
+  void sample(const SurfacePoint& exit, const EntryRandom& random, std::vector<Hit>& crossings,
+              std::vector<Entry>& entries) const;
+
+ private:
+  struct Line {
+    Ray ray;
+    bool empty = false;  // nothing of the group can lie on it
+  };
+  Line disc_line(const SurfacePoint& exit, const EntryRandom& random) const;
+  Line chord_line(const SurfacePoint& exit, const EntryRandom& random) const;
+  const ChannelProfile& choose_channel(double& u) const;
+  float density(const SurfacePoint& exit, const Vec3f& offset, const Vec3f& normal) const;
+  float channel_mean(float r2) const;
+
+  std::vector<std::uint32_t> meshes_;
+  DiffuseProfile profile_;
+  const RayScene& rays_;
+  LineQuery lines_;
+  KernelTable table_;
+  double reach_;  // no two points of the group are farther apart, mm
+  EntryStrategy strategy_;
+  std::vector<std::size_t> channels_;  // that scatter
+  float usual_weight_ = 0;
+  std::array<float, 3> inverse_total_{};  // 1 / (channels x total)
+};
+
+}  // namespace opaline

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/tile_renderer.h"
+
+#include <algorithm>
+
+namespace opaline {
+namespace {
+
+constexpr int kTile = 16;
+
+}  // namespace
+
+Rectangle rendered_part(const Film& film) {
+  if (film.crop) return {(*film.crop)[0], (*film.crop)[1], (*film.crop)[2], (*film.crop)[3]};
+  return {0, 0, film.resolution[0], film.resolution[1]};
+}
+
+std::vector<Rectangle> tiles_of(const Rectangle& part) {
+  std::vector<Rectangle> tiles;
+  for (int y = part.y0 / kTile * kTile; y < part.y1; y += kTile)
+    for (int x = part.x0 / kTile * kTile; x < part.x1; x += kTile)
+      tiles.push_back({std::max(x, part.x0), std::max(y, part.y0), std::min(x + kTile, part.x1),
+                       std::min(y + kTile, part.y1)});
+  return tiles;
+}
+
+Image empty_image(const Rectangle& part, const Film& film, std::vector<std::string> channels) {
+  Image image;
+  image.width = part.x1 - part.x0;
+  image.height = part.y1 - part.y0;
+  image.crop_x = part.x0;
+  image.crop_y = part.y0;
+  image.full_width = film.resolution[0];
+  image.full_height = film.resolution[1];
+  image.channels = std::move(channels);
+  image.pixels.resize(std::size_t(image.width) * std::size_t(image.height) * image.channels.size());
+  return image;
+}
+
+TileRenderer::TileRenderer(const RenderInput& input, const Shader& shader)
+    : input_(input), camera_(input.scene.camera, input.scene.film, input.world.origin), shader_(shader) {}
+
+TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass) const {
+  const Film& film = input_.scene.film;
+  const std::size_t pixels = std::size_t(tile.x1 - tile.x0) * std::size_t(tile.y1 - tile.y0);
+  const auto samples = std::uint64_t(film.samples_per_pixel), width = std::uint64_t(film.resolution[0]);
+  const std::uint64_t first_key = pass.index * width * std::uint64_t(film.resolution[1]) * samples;
+  std::vector<PixelSample> seen;
+  std::vector<TracedRay> rays(pixels);
+  std::vector<std::uint64_t> keys(pixels);
+  Tile result;
+  for (std::uint64_t s = 0; s < samples; ++s) {
+    std::size_t i = 0;
+    for (int y = tile.y0; y < tile.y1; ++y)
+      for (int x = tile.x0; x < tile.x1; ++x, ++i) {
+        rays[i] = {camera_.ray(x, y, int(s)), {}};
+        keys[i] = first_key + (std::uint64_t(y) * width + std::uint64_t(x)) * samples + s;
+      }
+    advance(input_.monitor, 1);
+    input_.rays.intersect(rays);
+    const auto is_hit = [](const TracedRay& traced) { return traced.hit.mesh != Hit::kMiss; };
+    if (!shader_.has_visible_lights() && std::ranges::none_of(rays, is_hit)) continue;
+    if (result.sums.empty()) {
+      result.sums.resize(pixels);
+      result.queries += shader_.shade(rays, keys, result.sums, pass);
+    } else {
+      seen.assign(pixels, PixelSample{});
+      result.queries += shader_.shade(rays, keys, seen, pass);
+      for (i = 0; i < pixels; ++i) add_sample(result.sums[i], seen[i]);
+    }
+  }
+  return result;
+}
+
+}  // namespace opaline

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures tile by tile.
+#pragma once
+
+#include <vector>
+
+#include "opaline/render/render.h"
+#include "render/camera_rays.h"
+#include "render/layers.h"
+#include "render/shade.h"
+
+namespace opaline {
+
+/// Pixels [x0, x1) x [y0, y1) of the whole picture.
+struct Rectangle {
+  int x0, y0, x1, y1;
+};
+
+/// What the film's crop leaves, or all of it.
+Rectangle rendered_part(const Film& film);
+
+/// Tiles lie on a fixed grid of the whole picture: a crop's pixels are those of the whole.
+std::vector<Rectangle> tiles_of(const Rectangle& part);
+
+/// A picture of the part with these channels, all zero.
+Image empty_image(const Rectangle& part, const Film& film, std::vector<std::string> channels);
+
+class TileRenderer {
+ public:
+  TileRenderer(const RenderInput& input, const Shader& shader);
+
+  struct Tile {
+    std::vector<PixelSample> sums;  ///< row by row; over the samples of a pixel; empty: nothing was seen
+    std::size_t queries = 0;
+  };
+
+  /// All samples of the tile's pixels. Another pass: other random numbers, the same camera rays.
+  Tile render(const Rectangle& tile, const Pass& pass = {}) const;
+
+ private:
+  const RenderInput& input_;
+  CameraRays camera_;
+  const Shader& shader_;
+};
+
+}  // namespace opaline
