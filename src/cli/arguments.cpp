@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
@@ -14,6 +15,8 @@
 #include <sstream>
 
 #include "opaline/core/error.h"
+#include "scene/json_tree.h"
+#include "scene/schema.h"
 
 namespace opaline {
 namespace {
@@ -175,6 +178,17 @@ std::string hint(const CLI::App& app) {
   return fmt::format("; see opaline {}--help", chosen.empty() ? "" : chosen.front()->get_name() + " ");
 }
 
+/// What CLI11 calls an argument too many is a mistyped command if it stands where the command belongs.
+Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
+  const std::vector<std::string> extras = app.remaining();
+  if (!app.get_subcommands().empty() || extras.empty() || extras.front().starts_with('-'))
+    return usage_error(failure.what() + hint(app));
+  constexpr std::array<std::string_view, 2> commands{"render", "info"};
+  const std::string near = did_you_mean(extras.front(), commands);
+  return usage_error("unknown command '" + printable(extras.front()) + "'" + near,
+                     near.empty() ? "one of " + join(commands) : "");
+}
+
 }  // namespace
 
 OutputFormat output_format(const std::string& path) {
@@ -206,7 +220,7 @@ Command parse_arguments(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& failure) {
     if (failure.get_exit_code() == 0) return shown_text(app, failure);
-    throw usage_error(failure.what() + hint(app));
+    throw parse_error(app, failure);
   }
   if (app.get_subcommands().empty()) throw usage_error("no command given: render or info" + hint(app));
   const LogFormat format = options.log == "json" ? LogFormat::json : LogFormat::text;

@@ -35,7 +35,11 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
     std::string named;
   } cases[] = {
       {{}, "no command"},
-      {{"rendr", scene}, "rendr"},
+      {{"rendr", scene}, "unknown command 'rendr' (did you mean 'render'?)"},
+      {{"ifno", scene, "--spp", "4"}, "unknown command 'ifno' (did you mean 'info'?)"},
+      {{"draw", scene}, "unknown command 'draw' (expected one of render, info)"},
+      {{scene}, "unknown command '"},
+      {{"--quiet", "rendr"}, "--quiet"},
       {{"render"}, "required"},
       {{"render", scene}, "--output"},
       {{"render", "-o", out}, "SCENE"},
@@ -60,7 +64,7 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"render", scene, "-o", out, "--method", "lambrt"}, "did you mean 'lambert'"},
       {{"render", scene, "-o", out, "--crop", "0,0,64,64"}, "crop"},
       {{"render", scene, "-o", out, "--resolution", "1000000000x1000000000"}, "resolution"},
-      {{"render", scene, "-o", out, "--set", "media.marbel.eta=1.4"}, "marbel"},
+      {{"render", scene, "-o", out, "--set", "media.marbel.eta=1.4"}, "did you mean 'marble'"},
       {{"render", scene, "-o", out, "--set", "film.crop=[0,0,32,32]", "--resolution", "16x16"}, "crop"},
       {{"render", scene, "-o", out, "--method", "lambert", "--samples-ply", folder.file("s.ply")},
        "no samples"},
