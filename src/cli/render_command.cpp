@@ -19,6 +19,7 @@ namespace {
 struct LoadedScene {
   Scene scene;
   World world;
+  std::string hash;
 };
 
 /// What cannot be written at the end is said before the work.
@@ -99,7 +100,8 @@ void run_render(const RenderArguments& arguments) {
   const LoadedScene loaded = stages.run("loading", [&] {
     Scene scene = load_scene(arguments.scene, arguments.overrides);
     World world = make_world(scene);
-    return LoadedScene{std::move(scene), std::move(world)};
+    std::string hash = scene_hash(arguments, scene);
+    return LoadedScene{std::move(scene), std::move(world), std::move(hash)};
   });
   const Plan plan = make_plan(loaded.scene, loaded.world);
   const bool translucent = needs_precompute(arguments, loaded.scene, plan);
@@ -119,7 +121,7 @@ void run_render(const RenderArguments& arguments) {
                   std::to_string(shading.picture.non_finite) +
                       " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
-  image.metadata = make_metadata(arguments, loaded.scene, samples);
+  image.metadata = make_metadata(arguments, loaded.hash, loaded.scene, samples);
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
 
   auto outputs = stages.run("writing", [&] { return write_outputs(arguments, loaded, samples, image); });
