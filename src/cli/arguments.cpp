@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
@@ -14,6 +15,8 @@
 #include <sstream>
 
 #include "opaline/core/error.h"
+#include "scene/json_tree.h"
+#include "scene/schema.h"
 
 namespace opaline {
 namespace {
@@ -40,27 +43,37 @@ They are applied first, then each --set in its order: the last one wins.)";
 struct Options {
   std::string method, evaluator, resolution, crop;
   std::string until_error;
-  std::optional<std::int64_t> entry_samples;
-  std::optional<std::int64_t> spp;  // the scene's check answers a negative one
+  std::optional<std::uint64_t> entry_samples;
+  std::optional<std::uint64_t> spp;
   std::optional<std::uint64_t> seed;
   std::optional<double> exposure;
   std::vector<std::string> sets;
   std::string log = "text";
 };
 
-/// "640x480" -> "[640,480]"; nothing if it is not `count` whole numbers with the separator between them.
-std::optional<std::string> json_list(std::string_view text, char separator, std::size_t count) {
-  std::vector<long> numbers;
+struct WholeRange {
+  std::uint64_t low, high;
+};
+
+// As the scene's check has them: here the message can name the option.
+constexpr WholeRange kSpp{1, 65536}, kSide{1, 65536}, kPixel{0, 65536}, kSeed{0, UINT64_MAX},
+    kThreads{1, 4096}, kEntrySamples{1, 1000000000};
+
+/// "640x480" -> "[640,480]"; empty if it is not `count` whole numbers in the range with the separator between
+/// them.
+std::string json_list(std::string_view text, char separator, std::size_t count, WholeRange range) {
+  std::vector<std::uint64_t> numbers;
   const char *at = text.data(), *end = text.data() + text.size();
   while (numbers.size() < count) {
-    const auto [next, error] = std::from_chars(at, end, numbers.emplace_back());
-    if (error != std::errc{}) return std::nullopt;
+    std::uint64_t& number = numbers.emplace_back();
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc{} || number < range.low || number > range.high) return {};
     if (next == end) break;
-    if (*next != separator) return std::nullopt;
+    if (*next != separator) return {};
     at = next + 1;
-    if (numbers.size() == count) return std::nullopt;
+    if (numbers.size() == count) return {};
   }
-  if (numbers.size() != count) return std::nullopt;
+  if (numbers.size() != count) return {};
   return fmt::format("[{}]", fmt::join(numbers, ","));
 }
 
@@ -79,11 +92,32 @@ std::string fraction_check(const std::string& text) {
   return fraction(text) ? std::string() : fmt::format("expected a percentage such as 0.5%, got {}", text);
 }
 
-CLI::Validator list_check(char separator, std::size_t count, const std::string& form) {
+std::string resolution_json(std::string_view text) {
+  return json_list(text, 'x', 2, kSide);
+}
+std::string crop_json(std::string_view text) {
+  return json_list(text, ',', 4, kPixel);
+}
+
+CLI::Validator list_check(std::string (*json)(std::string_view), const std::string& form) {
   return CLI::Validator(
       [=](std::string& text) {
-        return json_list(text, separator, count) ? std::string()
-                                                 : fmt::format("expected {}, got {}", form, text);
+        return json(text).empty() ? fmt::format("expected {}, got {}", form, text) : std::string();
+      },
+      {});
+}
+
+/// CLI11 would let a number beyond 64 bits wrap or stop at the end, and take 010 for 8.
+CLI::Validator whole_number(WholeRange range) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        std::uint64_t number = 0;
+        const char* end = text.data() + text.size();
+        const auto [next, error] = std::from_chars(text.data(), end, number);
+        if (error != std::errc{} || next != end || number < range.low || number > range.high)
+          return fmt::format("expected a whole number from {} to {}, got {}", range.low, range.high, text);
+        text = std::to_string(number);
+        return std::string();
       },
       {});
 }
@@ -107,13 +141,16 @@ void add_common_options(CLI::App& app, std::string& scene, Options& options) {
 
 void add_picture_options(CLI::App& app, Options& options) {
   const char* group = "Picture";
-  app.add_option("--spp", options.spp, "samples per pixel")->type_name("N")->group(group);
+  app.add_option("--spp", options.spp, "samples per pixel")
+      ->transform(whole_number(kSpp))
+      ->type_name("N")
+      ->group(group);
   app.add_option("--resolution", options.resolution, "width and height, e.g. 640x480")
-      ->check(list_check('x', 2, "WIDTHxHEIGHT, such as 640x480"))
+      ->check(list_check(resolution_json, "WIDTHxHEIGHT, each 1 to 65536, such as 640x480"))
       ->type_name("WxH")
       ->group(group);
   app.add_option("--crop", options.crop, "only these pixels, from the top left; x1 and y1 excluded")
-      ->check(list_check(',', 4, "four numbers x0,y0,x1,y1"))
+      ->check(list_check(crop_json, "four numbers x0,y0,x1,y1, each 0 to 65536"))
       ->type_name("x0,y0,x1,y1")
       ->group(group);
   app.add_option("--exposure", options.exposure, "stops, PNG only")->type_name("STOPS")->group(group);
@@ -127,6 +164,7 @@ void add_picture_options(CLI::App& app, Options& options) {
       ->type_name("NAME")
       ->group(group);
   app.add_option("--entry-samples", options.entry_samples, "direct: places of entry for each pixel")
+      ->transform(whole_number(kEntrySamples))
       ->type_name("N")
       ->group(group);
   app.add_option("--until-error", options.until_error, "direct: stop at this noise of the pixels, e.g. 0.5%")
@@ -134,7 +172,7 @@ void add_picture_options(CLI::App& app, Options& options) {
       ->type_name("PERCENT")
       ->group(group);
   app.add_option("--seed", options.seed, "of all random numbers")
-      ->check(CLI::NonNegativeNumber.description(""))  // CLI11 would wrap it around
+      ->transform(whole_number(kSeed))
       ->type_name("N")
       ->group(group);
 }
@@ -158,7 +196,7 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
           },
           {}));
   app.add_option("--threads", render.threads, "at most this many; default: one for each core")
-      ->check(CLI::Range(1, 4096).description(""))
+      ->transform(whole_number(kThreads))
       ->type_name("N");
   app.add_flag("--quiet", render.log.quiet, "print warnings and errors only");
   app.add_flag("--timings-in-metadata", render.timings_in_metadata,
@@ -173,8 +211,8 @@ std::vector<std::string> overrides_of(const Options& options) {
     if (!value.empty()) overrides.push_back(fmt::format("{}={}", key, value));
   };
   if (options.spp) add("film.samples_per_pixel", std::to_string(*options.spp));
-  if (!options.resolution.empty()) add("film.resolution", *json_list(options.resolution, 'x', 2));
-  if (!options.crop.empty()) add("film.crop", *json_list(options.crop, ',', 4));
+  if (!options.resolution.empty()) add("film.resolution", resolution_json(options.resolution));
+  if (!options.crop.empty()) add("film.crop", crop_json(options.crop));
   if (options.exposure) add("film.exposure", fmt::format("{}", *options.exposure));
   if (options.entry_samples) add("settings.entry_samples", std::to_string(*options.entry_samples));
   if (!options.until_error.empty())
@@ -216,6 +254,17 @@ std::string hint(const CLI::App& app) {
   return fmt::format("; see opaline {}--help", chosen.empty() ? "" : chosen.front()->get_name() + " ");
 }
 
+/// What CLI11 calls an argument too many is a mistyped command if it stands where the command belongs.
+Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
+  const std::vector<std::string> extras = app.remaining();
+  if (!app.get_subcommands().empty() || extras.empty() || extras.front().starts_with('-'))
+    return usage_error(failure.what() + hint(app));
+  constexpr std::array<std::string_view, 2> commands{"render", "info"};
+  const std::string near = did_you_mean(extras.front(), commands);
+  return usage_error("unknown command '" + printable(extras.front()) + "'" + near,
+                     near.empty() ? "one of " + join(commands) : "");
+}
+
 }  // namespace
 
 OutputFormat output_format(const std::string& path) {
@@ -247,7 +296,7 @@ Command parse_arguments(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& failure) {
     if (failure.get_exit_code() == 0) return shown_text(app, failure);
-    throw usage_error(failure.what() + hint(app));
+    throw parse_error(app, failure);
   }
   if (app.get_subcommands().empty()) throw usage_error("no command given: render or info" + hint(app));
   const LogFormat format = options.log == "json" ? LogFormat::json : LogFormat::text;

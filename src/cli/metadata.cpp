@@ -5,7 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <set>
 
 #include "cli/names.h"
 #include "cli/report.h"
@@ -16,20 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Lengths go in front: what is hashed can be cut in one way only.
-std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+std::string read_again(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  std::string bytes(file ? std::size_t(file.tellg()) : 0, '\0');
+  file.seekg(0).read(bytes.data(), std::streamsize(bytes.size()));
   if (!file) throw bad_file(path, "cannot be read again");
-  OIIO::SHA1 hash;
-  const auto add = [&](const std::string& part) {
-    const std::string length = std::to_string(part.size()) + ':';
-    hash.append(length.data(), length.size());
-    hash.append(part.data(), part.size());
-  };
-  add(bytes);
-  for (const std::string& text : overrides) add(text);
-  return hash.digest();
+  return bytes;
 }
 
 Json settings_json(const Scene& scene, const Precompute& precompute) {
@@ -73,24 +65,46 @@ std::string command_line(const std::string& scene, const std::vector<std::string
 
 }  // namespace
 
-Metadata make_metadata(const RenderArguments& arguments, const Scene& scene, const Precompute& precompute) {
+// Lengths go in front: what is hashed can be cut in one way only.
+std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides, const Scene& scene) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return {};
+  OIIO::SHA1 hash;
+  const auto add = [&](const std::string& part) {
+    const std::string length = std::to_string(part.size()) + ':';
+    hash.append(length.data(), length.size());
+    hash.append(part.data(), part.size());
+  };
+  add(read_again(path));
+  for (const std::string& text : overrides) add(text);
+  std::set<std::string> seen;
+  for (const Shape& shape : scene.shapes)
+    if (const auto* mesh = std::get_if<MeshFile>(&shape.source))
+      if (seen.insert(mesh->path).second) add(read_again(mesh->path));
+  return hash.digest();
+}
+
+Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
+                       const Precompute& precompute) {
   const std::string name = fs::path(arguments.scene).filename().string();
   Metadata metadata{{"opaline:version", OPALINE_VERSION}, {"opaline:scene", name}};
-  std::error_code ignored;
-  if (fs::is_regular_file(arguments.scene, ignored))
-    metadata.emplace_back("opaline:scene_hash", scene_hash(arguments.scene, arguments.overrides));
+  if (!hash.empty()) metadata.emplace_back("opaline:scene_hash", hash);
   metadata.emplace_back("opaline:seed", std::to_string(scene.settings.seed));
   metadata.emplace_back("opaline:settings", compact(settings_json(scene, precompute)));
   metadata.emplace_back("opaline:command", command_line(name, arguments.overrides));
   return metadata;
 }
 
-std::string direct_scene_key(const RenderArguments& arguments) {
+std::string direct_scene_key(const RenderArguments& arguments, const Scene& scene) {
   std::vector<std::string> overrides;
   for (const std::string& text : arguments.overrides)
     if (!text.starts_with("settings.entry_samples=") && !text.starts_with("settings.until_error="))
       overrides.push_back(text);
-  return scene_hash(arguments.scene, overrides);
+  std::string key = scene_hash(arguments.scene, overrides, scene);
+  if (key.empty())
+    throw bad_file(arguments.resume, "the sums of a scene that comes through a pipe cannot be kept",
+                   "a scene in a file");
+  return key;
 }
 
 std::pair<std::string, std::string> timings_metadata(const std::vector<StageCost>& costs) {

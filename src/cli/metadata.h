@@ -14,14 +14,20 @@ namespace opaline {
 
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-/// opaline:version; opaline:scene, the scene file's name without its folder; opaline:scene_hash, SHA-1 of the
-/// scene file's bytes and the overrides (mesh files are not in it; left out where the scene came through a
-/// pipe); opaline:seed; opaline:settings, JSON of the values in use; opaline:command, a command line that
-/// makes the same picture: outputs, threads and log are not in it.
-Metadata make_metadata(const RenderArguments& arguments, const Scene& scene, const Precompute& precompute);
+/// SHA-1 of the scene file's bytes, the overrides, and the bytes of each mesh file in use, once; empty where the
+/// scene came through a pipe. Taken while loading: files may change during a long render.
+/// error Error{bad_input}: a file that cannot be read a second time
+std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides, const Scene& scene);
+
+/// opaline:version; opaline:scene, the scene file's name without its folder; opaline:scene_hash, left out if
+/// empty; opaline:seed; opaline:settings, JSON of the values in use; opaline:command, a command line that makes
+/// the same picture: outputs, threads and log are not in it.
+Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
+                       const Precompute& precompute);
 
 /// What the sums of a direct rendering belong to: the scene and all overrides but those that say when to stop.
-std::string direct_scene_key(const RenderArguments& arguments);
+/// error Error{bad_input}: the scene came through a pipe
+std::string direct_scene_key(const RenderArguments& arguments, const Scene& scene);
 
 /// opaline:timings, JSON: wall and CPU seconds of each stage so far.
 std::pair<std::string, std::string> timings_metadata(const std::vector<StageCost>& costs);

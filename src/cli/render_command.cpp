@@ -21,6 +21,7 @@ namespace {
 struct LoadedScene {
   Scene scene;
   World world;
+  std::string hash;
 };
 
 /// What cannot be written at the end is said before the work.
@@ -74,7 +75,7 @@ class ResumableState {
   ResumableState(const RenderArguments& arguments, const Scene& scene)
       : path_(arguments.resume), scene_(scene) {
     if (path_.empty()) return;
-    key_ = direct_scene_key(arguments);
+    key_ = direct_scene_key(arguments, scene_);
     state = read_direct_state(path_, scene_, key_);
     written_ = state.passes;
   }
@@ -159,7 +160,8 @@ void run_render(const RenderArguments& arguments) {
   const LoadedScene loaded = stages.run("loading", [&] {
     Scene scene = load_scene(arguments.scene, arguments.overrides);
     World world = make_world(scene);
-    return LoadedScene{std::move(scene), std::move(world)};
+    std::string hash = scene_hash(arguments.scene, arguments.overrides, scene);
+    return LoadedScene{std::move(scene), std::move(world), std::move(hash)};
   });
   if (!arguments.resume.empty() && loaded.scene.settings.method != Method::direct)
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct");
@@ -180,7 +182,7 @@ void run_render(const RenderArguments& arguments) {
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
-  image.metadata = make_metadata(arguments, loaded.scene, samples);
+  image.metadata = make_metadata(arguments, loaded.hash, loaded.scene, samples);
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
 
   auto outputs = stages.run("writing", [&] { return write_outputs(arguments, loaded, samples, image); });

@@ -9,6 +9,7 @@
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/irradiance/light_sampling.h"
 #include "opaline/sampling/sample_surface.h"
+#include "render/light_distance.h"
 
 namespace opaline {
 namespace {
@@ -61,6 +62,19 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
         group.name, mean_free_path, wanted, group.area));
   group.samples = std::max<std::size_t>(1, std::size_t(std::ceil(count)));
   group.spacing = std::sqrt(group.area / double(group.samples));
+}
+
+void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan& group,
+                         std::vector<std::string>& warnings) {
+  for (const Light& light : scene.lights) {
+    if (emission(light) == Rgb{}) continue;
+    const std::optional<double> distance = near_light_distance(light, world, group.meshes, group.spacing);
+    if (!distance) continue;
+    warnings.push_back(fmt::format(
+        "{}: the light {} is {:.3g} mm from its surface and the samples are {:.3g} mm apart: light falls "
+        "between them; move the light away or make settings.sample_spacing smaller",
+        group.name, light.name, *distance < 1e-3 * group.spacing ? 0 : *distance, group.spacing));
+  }
 }
 
 std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
@@ -136,6 +150,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   for (GroupPlan& group : plan.groups) {
     choose_samples(scene, group, plan.warnings);
     if (scene.settings.method != Method::hierarchical) continue;
+    warn_of_near_lights(scene, world, group, plan.warnings);
     // Measured (bench_sampling): candidates, grid and shares, then samples, weights and tree.
     plan.bytes += group.samples * (300 + 4 * scene.lights.size());
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "schema.h"
 
@@ -101,10 +102,43 @@ class Override {
   std::string_view text_;
 };
 
+std::set<std::string> media_names(const Node& scene) {
+  std::set<std::string> names;
+  if (const Node* media = find_member(scene, "media"))
+    for (const Node& medium : media->children) names.insert(medium.key);
+  return names;
+}
+
+bool has_shape_of(const Node& scene, std::string_view medium) {
+  const Node* shapes = find_member(scene, "shapes");
+  return shapes != nullptr &&
+         std::any_of(shapes->children.begin(), shapes->children.end(), [&](const Node& s) {
+           const Node* name = find_member(s, "medium");
+           return name != nullptr && name->text == medium;
+         });
+}
+
+/// The names of media are the user's, so a mistyped one makes a new medium. One that no shape is made of and
+/// that is called almost as one of the file's was meant to be that.
+void check_new_media(const Document& document, const std::set<std::string>& names) {
+  const Node* media = find_member(document.root, "media");
+  if (media == nullptr || media->override_index >= 0) return;  // as a whole from the command line
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  for (const Node& medium : media->children) {
+    if (medium.override_index < 0 || names.contains(medium.key)) continue;
+    const std::string hint = did_you_mean(medium.key, views);
+    if (hint.empty() || has_shape_of(document.root, medium.key)) continue;
+    throw error_at(document, 0, medium.override_index, "no '" + printable(medium.key) + "' in 'media'" + hint,
+                   "a medium of the file, or a new one that a shape is made of");
+  }
+}
+
 }  // namespace
 
 void apply_overrides(Document& document) {
+  const std::set<std::string> names = media_names(document.root);
   for (std::size_t i = 0; i < document.overrides.size(); ++i) Override(document, static_cast<int>(i)).apply();
+  check_new_media(document, names);
 }
 
 }  // namespace opaline

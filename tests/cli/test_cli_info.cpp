@@ -34,6 +34,8 @@ TEST(CliInfo, WarningsAreSaid) {
   const SceneFolder folder;
   const std::vector<std::string> dark{"info", folder.scene, "--set", "lights=[]"};
   EXPECT_TRUE(run_program(dark).err.starts_with("opaline: warning: the scene has no lights"));
+  const Outcome near = run_program({"info", folder.scene, "--set", "lights.key.position=[0, 0, 10.1]"});
+  EXPECT_TRUE(near.err.starts_with("opaline: warning: ball: the light key is 0.1")) << near.err;
   std::vector<std::string> as_json = dark;
   as_json.insert(as_json.end(), {"--log", "json"});
   const Outcome outcome = run_program(as_json);

@@ -100,6 +100,26 @@ TEST(CliRender, SceneHash) {
   EXPECT_NE(hash({}), plain);
 }
 
+// Claim: it changes with the bytes of a mesh file that a shape shows, each time the file changes, and not with
+// a file that no shape shows. Source: metadata.h. Fails if: mesh files are not hashed.
+TEST(CliRender, SceneHashCoversMeshFiles) {
+  const SceneFolder folder;
+  const std::string out = folder.file("a.exr"), mesh = folder.file("wedge.obj");
+  const std::string obj = "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  const auto hash = [&](const std::string& bytes, const std::string& shape) {
+    put_bytes(mesh, bytes);
+    const std::vector<std::string> line{"render", folder.scene, "-o",       out,     "--quiet",
+                                        "--method", "lambert",  "--set", "shapes=" + shape};
+    EXPECT_EQ(run_program(line).exit_code, 0);
+    return metadata_of(out)["opaline:scene_hash"];
+  };
+  const std::string shown = R"([{"file": "wedge.obj"}, {"sphere": {"radius": 1}}, {"file": "wedge.obj"}])",
+                    hidden = R"([{"sphere": {"radius": 1}}])";
+  EXPECT_EQ(hash(obj, shown), hash(obj, shown));
+  EXPECT_NE(hash(obj + "# other bytes\n", shown), hash(obj, shown));
+  EXPECT_EQ(hash(obj + "# other bytes\n", hidden), hash(obj, hidden));
+}
+
 // Claim: timings are in the file only when asked for. Source: arguments.h. Fails if: the flag does nothing.
 TEST(CliRender, TimingsOnRequest) {
   const SceneFolder folder;
