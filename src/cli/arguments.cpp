@@ -47,9 +47,9 @@ pixels that show an object: coverage A > 0 in the reference, or all of them if i
              on the sRGB pictures after --exposure
 NaN and infinities are counted, and enter no mean; any in the picture fails the comparison.
 
---halves takes two references with independent noise, such as two seeds, and reports the error that their
-noise does not raise: err^2 = mean of (h - d1)(h - d2) / (d^2 + (.01 max d)^2), d the mean of both. It is 'below
-noise' where it is negative, and lost in noise where it is not above twice its standard error.
+--halves takes two references with independent noise, such as two seeds, and prints the error that their noise
+does not raise: err^2 = mean of (h - d1)(h - d2) / (d^2 + (.01 max d)^2), d the mean of both. Below 0 it is
+'below noise'; not above twice its standard error it says nothing. What is wrong with both halves stays.
 
 Error pictures: .png shows the largest error over the channels from black (.01 % or less) over violet, red (1 %)
 and orange to white (100 % or more); grey: no object; green: not finite. .exr holds the signed relative errors.
