@@ -189,7 +189,7 @@ void add_compare_options(CLI::App& app, CompareArguments& compare, Options& opti
   app.add_option("--error-picture", compare.error_picture, "write where the errors are, .png or .exr")
       ->type_name("FILE");
   app.add_option("--exposure", compare.exposure,
-                 "stops, for FLIP; default: p99 of the reference becomes white, PNG are taken as they are")
+                 "stops, for FLIP; default: 0 for PNG, else what turns the p99 of B white")
       ->type_name("STOPS");
   app.add_flag("--json", options.json, "the result as one JSON object on stdout");
   app.footer(kCompareNotes);
