@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -28,8 +29,9 @@ constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o warm.exr --set media.marble.eta=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
   opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
   opaline render bunny.json -o bunny.exr --log json --threads 4
+  opaline compare bunny.exr reference.exr --fail-above 1%
 
-Exit codes: 0 done, 2 bad input, 3 the run failed (I/O, memory), 130 interrupted (Ctrl-C; old files stay).)";
+Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the run failed (I/O, memory), 130 interrupted (Ctrl-C; old files stay).)";
 
 constexpr const char* kRenderNotes = R"(Every option that changes the picture is short for a --set:
   --spp 4            --set film.samples_per_pixel=4
@@ -39,7 +41,32 @@ constexpr const char* kRenderNotes = R"(Every option that changes the picture is
   --exposure: --set film.exposure=...
 They are applied first, then each --set in its order: the last one wins.)";
 
-/// What the options of both commands write to, before it becomes overrides.
+constexpr const char* kCompareNotes =
+    R"(Figures are of the relative error (a - b) / max(|b|, floor), floor being 1e-3 of the p99 of |b|, over the
+pixels that show an object: coverage A > 0 in the reference, or all of them if it has no A.
+  mean       of the absolute relative error; this is what --fail-above looks at
+  relMSE     mean of its square
+  p99, max   what 99 % and all of the values do not exceed
+  signed     mean with the sign: above 0 where the picture is too bright
+  FLIP       what a person sees who flips between the two: 0 nothing, 1 all (LDR-FLIP, 67 pixels a degree),
+             on the sRGB pictures after --exposure
+NaN and infinities are counted, and enter no mean; any in the picture fails the comparison.
+
+--halves takes two references with independent noise, such as two seeds, and prints the error that their noise
+does not raise: err^2 = mean of (h - d1)(h - d2) / (d^2 + (.01 max d)^2), d the mean of both. Below 0 it is
+'below noise'; not above twice its standard error it says nothing. What is wrong with both halves stays.
+
+Error pictures: .png shows the largest error over the channels from black (.01 % or less) over violet, red (1 %)
+and orange to white (100 % or more); grey: no object; green: not finite. .exr holds the signed relative errors.
+
+Examples:
+  opaline compare a.exr b.exr --error-picture error.png
+  opaline compare a.exr b.exr --layer diffuse --fail-above 1% --json
+  opaline compare a.exr --halves seed1.exr seed2.exr
+
+Exit codes: 0 done, 1 above the bound or not finite, 2 bad input, 3 the error picture cannot be written.)";
+
+/// What the options of render and info write to, before it becomes overrides.
 struct Options {
   std::string method, evaluator, resolution, crop;
   std::string until_error;
@@ -49,6 +76,8 @@ struct Options {
   std::optional<double> exposure;
   std::vector<std::string> sets;
   std::string log = "text";
+  std::string fail_above;
+  bool json = false;
 };
 
 struct WholeRange {
@@ -205,6 +234,43 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
   app.footer(kRenderNotes);
 }
 
+/// "1%" or ".01" -> .01; nothing if it is neither, or below 0.
+std::optional<double> share_of(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  if (percent) text.remove_suffix(1);
+  while (percent && text.ends_with(' ')) text.remove_suffix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0) || std::isinf(value))
+    return std::nullopt;
+  return percent ? value / 100 : value;
+}
+
+void add_compare_options(CLI::App& app, CompareArguments& compare, Options& options) {
+  app.add_option("A", compare.picture, "the picture under test, EXR or PNG")->required()->type_name("FILE");
+  app.add_option("B", compare.reference, "the reference, EXR or PNG")->type_name("FILE");
+  app.add_option("--halves", compare.halves, "in place of B: two references with independent noise")
+      ->expected(2)
+      ->type_name("FILE");
+  app.add_option("--layer", compare.layer, "a layer of the EXR, e.g. diffuse; default: R, G, B")
+      ->type_name("NAME");
+  app.add_option("--fail-above", options.fail_above,
+                 "exit 1 if a channel's mean relative error is above; e.g. 1% or .01")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            return share_of(text) ? std::string() : "expected a share such as 1% or .01, got " + text;
+          },
+          {}))
+      ->type_name("SHARE");
+  app.add_option("--error-picture", compare.error_picture, "write where the errors are, .png or .exr")
+      ->type_name("FILE");
+  app.add_option("--exposure", compare.exposure,
+                 "stops, for FLIP; default: 0 for PNG, else what turns the p99 of B white")
+      ->type_name("STOPS");
+  app.add_flag("--json", options.json, "the result as one JSON object on stdout");
+  app.footer(kCompareNotes);
+}
+
 std::vector<std::string> overrides_of(const Options& options) {
   std::vector<std::string> overrides;
   const auto add = [&](const char* key, const std::string& value) {
@@ -228,16 +294,31 @@ Error usage_error(const std::string& message, const std::string& expected = {}, 
   return Error(ErrorKind::bad_input, {}, 0, 0, message, expected, got);
 }
 
+Error unknown_format(const std::string& path) {
+  return usage_error("cannot tell the format of the output", "a name that ends in .exr or .png",
+                     "'" + path + "'");
+}
+
 void check_outputs(const RenderArguments& render) {
   std::set<std::string> seen;
   for (const std::string& path : render.outputs) {
-    if (output_format(path) == OutputFormat::unknown)
-      throw usage_error("cannot tell the format of the output", "a name that ends in .exr or .png",
-                        "'" + path + "'");
+    if (output_format(path) == OutputFormat::unknown) throw unknown_format(path);
     if (!seen.insert(path).second) throw usage_error("two outputs have the same name '" + path + "'");
   }
   if (seen.contains(render.samples_ply))
     throw usage_error("two outputs have the same name '" + render.samples_ply + "'");
+}
+
+CompareArguments checked(CompareArguments compare, const Options& options) {
+  if (compare.reference.empty() == compare.halves.empty())
+    throw usage_error("a picture is compared with a reference B or with --halves D1 D2: give one of them");
+  if (!compare.error_picture.empty() && output_format(compare.error_picture) == OutputFormat::unknown)
+    throw unknown_format(compare.error_picture);
+  if (!std::isfinite(compare.exposure.value_or(0)))
+    throw usage_error("--exposure", "a finite number", fmt::format("{}", *compare.exposure));
+  if (!options.fail_above.empty()) compare.fail_above = share_of(options.fail_above);
+  compare.log.format = options.json ? LogFormat::json : LogFormat::text;
+  return compare;
 }
 
 /// Help and version are exceptions of CLI11 too.
@@ -279,6 +360,7 @@ OutputFormat output_format(const std::string& path) {
 Command parse_arguments(int argc, const char* const* argv) {
   RenderArguments render;
   InfoArguments info;
+  CompareArguments compare;
   Options options;
   CLI::App app("opaline renders translucent things fast, and says how accurate the picture is.", "opaline");
   app.get_formatter()->column_width(34);
@@ -289,16 +371,20 @@ Command parse_arguments(int argc, const char* const* argv) {
   CLI::App& render_command = *app.add_subcommand("render", "render a scene to EXR and PNG files");
   CLI::App& info_command =
       *app.add_subcommand("info", "print what a scene requires and why; nothing is rendered");
+  CLI::App& compare_command = *app.add_subcommand("compare", "print how far a picture is from a reference");
   add_render_options(render_command, render, options);
   add_common_options(info_command, info.scene, options);
   add_picture_options(info_command, options);
+  add_compare_options(compare_command, compare, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& failure) {
     if (failure.get_exit_code() == 0) return shown_text(app, failure);
     throw parse_error(app, failure);
   }
-  if (app.get_subcommands().empty()) throw usage_error("no command given: render or info" + hint(app));
+  if (app.get_subcommands().empty())
+    throw usage_error("no command given: render, info or compare" + hint(app));
+  if (compare_command.parsed()) return checked(std::move(compare), options);
   const LogFormat format = options.log == "json" ? LogFormat::json : LogFormat::text;
   info.log.format = render.log.format = format;
   info.overrides = render.overrides = overrides_of(options);

@@ -2,6 +2,7 @@
 // The command line as data.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -28,12 +29,22 @@ struct InfoArguments {
   Log log;
 };
 
+struct CompareArguments {
+  std::string picture;
+  std::string reference;            ///< empty with halves
+  std::vector<std::string> halves;  ///< none or two
+  std::string layer;                ///< empty: R, G, B
+  std::string error_picture;        ///< empty: none; .exr or .png
+  std::optional<double> fail_above, exposure;
+  Log log;
+};
+
 /// --help or --version: text to print, and done.
 struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<ShowText, RenderArguments, InfoArguments>;
+using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments>;
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case

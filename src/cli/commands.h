@@ -13,4 +13,10 @@ void render_command(const RenderArguments& arguments);
 /// Prints the plan; error run_failed where stdout cannot take it.
 void info_command(const InfoArguments& arguments);
 
+/// Prints how far a picture is from its reference, and writes the error picture; the exit code: 0, or 1 where
+/// the error is above the bound or the picture has values that are not finite.
+/// error Error{bad_input}: a file that is no picture, without the layer, or of another size or crop;
+///       Error{run_failed}: stdout or the error picture cannot be written
+int compare_command(const CompareArguments& arguments);
+
 }  // namespace opaline

@@ -6,15 +6,19 @@
 
 namespace {
 
-void run(const opaline::Command& command) {
+int run(const opaline::Command& command) {
   if (const auto* show = std::get_if<opaline::ShowText>(&command)) opaline::write_line(stdout, show->text);
   if (const auto* render = std::get_if<opaline::RenderArguments>(&command)) opaline::render_command(*render);
   if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) opaline::info_command(*info);
+  if (const auto* compare = std::get_if<opaline::CompareArguments>(&command))
+    return opaline::compare_command(*compare);
+  return 0;
 }
 
 opaline::Log log_of(const opaline::Command& command) {
   if (const auto* render = std::get_if<opaline::RenderArguments>(&command)) return render->log;
   if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) return info->log;
+  if (const auto* compare = std::get_if<opaline::CompareArguments>(&command)) return compare->log;
   return {};
 }
 
@@ -25,8 +29,7 @@ int main(int argc, char** argv) {
   try {
     const opaline::Command command = opaline::parse_arguments(argc, argv);
     log = log_of(command);
-    run(command);
-    return 0;
+    return run(command);
   } catch (const std::exception& failure) {
     return opaline::print_failure(log, failure);
   }

@@ -80,6 +80,18 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"render", scene, "-o", out, "--set", "film.crop=[0,0,32,32]", "--resolution", "16x16"}, "crop"},
       {{"render", scene, "-o", out, "--method", "lambert", "--samples-ply", folder.file("s.ply")},
        "no samples"},
+      {{"compare"}, "required"},
+      {{"compare", out}, "--halves"},
+      {{"compare", out, out, "--halves", out, out}, "one of them"},
+      {{"compare", out, "--halves", out}, "--halves"},
+      {{"compare", out, out, out}, "out.exr"},
+      {{"compare", out, out, "--fail-above", "1e"}, "1% or .01"},
+      {{"compare", out, out, "--fail-above", "-1%"}, "1% or .01"},
+      {{"compare", out, out, "--fail-above", "nan"}, "1% or .01"},
+      {{"compare", out, out, "--fail-above", "%"}, "1% or .01"},
+      {{"compare", out, out, "--exposure", "nan"}, "nan"},
+      {{"compare", out, out, "--error-picture", "error.jpg"}, "error.jpg"},
+      {{"compare", out, out}, "cannot read"},
   };
   for (const auto& c : cases) {
     std::vector<std::string> arguments = c.arguments;

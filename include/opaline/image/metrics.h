@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far a picture is from a reference: relative errors, their statistics, and an estimate from two halves.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "opaline/image/image.h"
+
+namespace opaline {
+
+/// Some channels of a picture that belong together, a plane each.
+struct Layer {
+  int width = 0, height = 0;
+  std::vector<std::string> names;            ///< of the channels in the file: "R" or "diffuse.R"
+  std::vector<std::vector<float>> channels;  ///< as many as names, width * height values each
+};
+
+/// The layer of that name: "<name>.R", G, B or "<name>.X", Y, Z, or the one channel `name`; "" is R, G, B.
+/// out   without channels where the picture has no such layer
+Layer extract_layer(const Image& image, const std::string& name);
+
+/// The names that extract_layer answers, "R,G,B" standing for the empty one.
+std::vector<std::string> layers_of(const Image& image);
+
+/// 1 for each pixel that shows an object: coverage (channel A) above 0, or NaN, so that a defect is not lost;
+/// 1 everywhere without a channel A.
+std::vector<std::uint8_t> object_pixels(const Image& image);
+
+struct NonFinite {
+  std::size_t nan = 0, infinite = 0;  ///< values, over all channels and the whole picture
+};
+NonFinite count_non_finite(const Layer& layer);
+
+/// (a - b) / max(|b|, floor), a plane a channel. NaN where nothing is compared: no object there, or a or b is
+/// not finite.
+struct RelativeErrors {
+  std::vector<std::vector<double>> channels;
+  std::vector<double> floors;  ///< a channel's, > 0
+};
+
+/// Relative errors of a picture against its reference, the floor being 1e-3 of the p99 of |b| over the
+/// compared pixels of the channel; where that is 0, 1e-3 of the largest |b|, or of the largest |a| if all b
+/// are 0.
+/// in    two layers of the same size and number of channels, linear; object: a flag a pixel
+RelativeErrors relative_errors(const Layer& picture, const Layer& reference,
+                               const std::vector<std::uint8_t>& object);
+
+/// Over the values that are not NaN; all 0 if there are none.
+struct ErrorStatistics {
+  std::size_t values = 0;
+  double mean = 0;         ///< of |e|
+  double mean_square = 0;  ///< of e^2: relMSE
+  double p99 = 0;          ///< smallest |e| that 99 % of the values do not exceed
+  double largest = 0;      ///< of |e|
+  double signed_mean = 0;  ///< of e
+};
+ErrorStatistics error_statistics(std::span<const double> errors);
+
+/// The same over all channels as one set of values.
+ErrorStatistics error_statistics(const RelativeErrors& errors);
+
+/// Smallest value that a share of the values does not exceed (nearest rank); 0 of none.
+/// in    share in (0, 1]; no NaN
+double percentile(std::vector<double> values, double share);
+
+/// An error that the reference's noise does not raise.
+struct HalvesEstimate {
+  std::size_t pixels = 0;     ///< compared: finite in all three pictures
+  double squared_error = 0;   ///< below 0: the error is below the noise
+  double standard_error = 0;  ///< of squared_error, from the pixels' spread, as if they were independent
+  double error = 0;           ///< sqrt|squared_error| with its sign
+  double signed_mean = 0;     ///< mean of (h - d) / mean(d)
+  double half_noise = 0;      ///< relative noise of one half, rms
+};
+struct HalvesComparison {
+  std::vector<HalvesEstimate> channels;
+  HalvesEstimate all;  ///< of each pixel's mean over its compared channels
+};
+
+/// Error of h against what two references with independent noise, d1 and d2, have for their mean d: the mean
+/// of (h - d1)(h - d2) / (d^2 + (.01 m)^2) over the object's pixels, m the largest d of the channel there.
+/// The product's expectation is the squared error without the noise. Of the noise n (half_noise) the quotient
+/// keeps a share of the order of n^2 of what it measures, and 1.5 n^4 (n of Gaussian shape): at n = 5 % an
+/// error of .3 %.
+/// in    three layers of the same size and number of channels, linear; object: a flag a pixel
+/// out   where all d are 0, m and mean(d) are those of |h|: large, not infinite
+HalvesComparison compare_with_halves(const Layer& h, const Layer& d1, const Layer& d2,
+                                     const std::vector<std::uint8_t>& object);
+
+/// (d1 + d2) / 2.
+/// in    two layers of the same size and number of channels
+Layer mean_of(const Layer& d1, const Layer& d2);
+
+}  // namespace opaline

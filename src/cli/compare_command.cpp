@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <csignal>
+#include <utility>
+
+#include "cli/commands.h"
+#include "cli/compare_report.h"
+#include "cli/units.h"
+#include "opaline/core/error.h"
+#include "opaline/image/error_picture.h"
+#include "opaline/image/flip.h"
+
+namespace opaline {
+namespace {
+
+/// One layer of a file.
+struct Picture {
+  std::string path;
+  Image frame;  ///< the file without its pixels
+  Layer layer;
+  std::vector<std::uint8_t> object;
+};
+
+Picture load(const std::string& path, const std::string& layer) {
+  Picture picture{path, read_image(path), {}, {}};
+  picture.layer = extract_layer(picture.frame, layer);
+  if (picture.layer.channels.empty())
+    throw bad_file(path, "no such layer", fmt::format("one of {}", fmt::join(layers_of(picture.frame), "; ")),
+                   layer.empty() ? "R,G,B" : layer);
+  picture.object = object_pixels(picture.frame);
+  picture.frame.pixels = {};
+  return picture;
+}
+
+bool is_png(const std::string& path) {
+  return output_format(path) == OutputFormat::png;
+}
+
+/// A PNG does not say what it is a crop of.
+void check_comparable(const Picture& picture, const Picture& reference) {
+  const auto size = [](const Image& i) { return fmt::format("{} x {} pixels", i.width, i.height); };
+  const auto crop = [](const Image& i) {
+    return fmt::format("{} x {} pixels at {},{} of {} x {}", i.width, i.height, i.crop_x, i.crop_y,
+                       i.full_width, i.full_height);
+  };
+  const auto check = [&](const auto& text, const char* what) {
+    const std::string expected = text(reference.frame), got = text(picture.frame);
+    if (got != expected)
+      throw bad_file(picture.path, what, fmt::format("{} as in {}", expected, reference.path), got);
+  };
+  check(size, "the pictures differ in size");
+  if (!is_png(picture.path) && !is_png(reference.path)) check(crop, "the pictures show different crops");
+  if (picture.layer.names != reference.layer.names)
+    throw bad_file(picture.path, "the layers differ in their channels",
+                   fmt::format("{} as in {}", fmt::join(reference.layer.names, " "), reference.path),
+                   fmt::format("{}", fmt::join(picture.layer.names, " ")));
+}
+
+/// The pictures of one run: the one under test, then the reference or its halves.
+std::vector<Picture> load_all(const CompareArguments& arguments) {
+  std::vector<std::string> paths{arguments.picture};
+  if (arguments.halves.empty())
+    paths.push_back(arguments.reference);
+  else
+    paths.insert(paths.end(), arguments.halves.begin(), arguments.halves.end());
+  std::vector<Picture> pictures;
+  for (const std::string& path : paths) {
+    pictures.push_back(load(path, arguments.layer));
+    if (pictures.size() > 1) check_comparable(pictures[0], pictures.back());
+  }
+  return pictures;
+}
+
+/// What any of the references shows.
+std::vector<std::uint8_t> object_of(const std::vector<Picture>& pictures) {
+  std::vector<std::uint8_t> object = pictures[1].object;
+  for (const Picture& reference : pictures)
+    if (&reference != &pictures[0])
+      for (std::size_t i = 0; i < object.size(); ++i) object[i] |= reference.object[i];
+  if (std::ranges::count(object, 1) == 0)
+    throw bad_file(pictures[1].path, "no pixel shows an object", "coverage A above 0 somewhere");
+  return object;
+}
+
+void warn_of_uncovered(const CompareArguments& arguments, const Picture& picture,
+                       const std::vector<std::uint8_t>& object) {
+  if (std::ranges::find(picture.frame.channels, "A") == picture.frame.channels.end()) return;
+  std::size_t uncovered = 0;
+  for (std::size_t i = 0; i < object.size(); ++i) uncovered += picture.object[i] > object[i] ? 1 : 0;
+  if (uncovered > 0)
+    print_warning(arguments.log, fmt::format("{} pixels show an object in {} but not in the reference; they "
+                                             "are not compared",
+                                             grouped(uncovered), picture.path));
+}
+
+CompareReport describe(const std::vector<Picture>& pictures, const std::vector<std::uint8_t>& object) {
+  CompareReport report;
+  report.width = pictures[0].layer.width;
+  report.height = pictures[0].layer.height;
+  report.object_pixels = std::size_t(std::ranges::count(object, 1));
+  report.channels = pictures[0].layer.names;
+  for (const Picture& picture : pictures)
+    report.not_finite.push_back({picture.path, count_non_finite(picture.layer)});
+  return report;
+}
+
+bool is_colour(const Layer& layer) {
+  return layer.names.size() == 3 && layer.names[0].ends_with('R');
+}
+
+FlipReport flip_of(const CompareArguments& arguments, const std::vector<Picture>& pictures,
+                   const std::vector<std::uint8_t>& object) {
+  const double automatic = is_png(arguments.reference) ? 0.0 : display_exposure(pictures[1].layer, object);
+  FlipReport report{{}, arguments.exposure.value_or(automatic)};
+  const std::vector<float> map = flip(pictures[0].layer, pictures[1].layer, report.exposure);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < map.size(); ++i)
+    if (object[i]) values.push_back(map[i]);
+  report.statistics = error_statistics(values);
+  return report;
+}
+
+void note_errors(const RelativeErrors& errors, CompareReport& report) {
+  for (const std::vector<double>& channel : errors.channels)
+    report.errors.push_back(error_statistics(channel));
+  report.errors.push_back(error_statistics(errors));
+  report.floors = errors.floors;
+}
+
+void note_halves(const HalvesComparison& estimate, CompareReport& report) {
+  report.halves = estimate.channels;
+  report.halves.push_back(estimate.all);
+}
+
+void note_failures(const CompareArguments& arguments, CompareReport& report) {
+  const NonFinite& count = report.not_finite[0].count;
+  if (count.nan + count.infinite > 0)
+    report.failures.push_back(fmt::format("{} has {} values that are not finite", arguments.picture,
+                                          grouped(count.nan + count.infinite)));
+  if (!arguments.fail_above) return;
+  for (std::size_t c = 0; c < report.channels.size(); ++c) {
+    const double error = report.halves.empty() ? report.errors[c].mean : report.halves[c].error;
+    if (!(error <= *arguments.fail_above))
+      report.failures.push_back(fmt::format("the mean relative error of {} is {:.3g} %, above {:.3g} %",
+                                            report.channels[c], 100 * error, 100 * *arguments.fail_above));
+  }
+}
+
+void write_error_picture(const std::string& path, const RelativeErrors& errors, const Picture& picture,
+                         const std::vector<std::uint8_t>& object) {
+  if (output_format(path) == OutputFormat::png)
+    return write_png(path, error_colours(errors, picture.layer, object), 0);
+  Image image = signed_errors(errors, picture.layer);
+  image.crop_x = picture.frame.crop_x;
+  image.crop_y = picture.frame.crop_y;
+  image.full_width = picture.frame.full_width;
+  image.full_height = picture.frame.full_height;
+  write_exr(path, image, /*half=*/false);
+}
+
+/// The reference's defects must not pass for a small error.
+void check_values(const CompareReport& report, const Picture& reference) {
+  if (!report.failures.empty()) return;
+  for (std::size_t c = 0; c < report.channels.size(); ++c)
+    if (report.halves.empty() ? report.errors[c].values == 0 : report.halves[c].pixels == 0)
+      throw bad_file(reference.path, "no value of the object is finite in channel " + report.channels[c]);
+}
+
+}  // namespace
+
+int compare_command(const CompareArguments& arguments) {
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not cost the error picture
+  const std::vector<Picture> pictures = load_all(arguments);
+  const Layer& layer = pictures[0].layer;
+  const std::vector<std::uint8_t> object = object_of(pictures);
+  warn_of_uncovered(arguments, pictures[0], object);
+
+  CompareReport report = describe(pictures, object);
+  const bool halves = !arguments.halves.empty();
+  const RelativeErrors errors = relative_errors(
+      layer, halves ? mean_of(pictures[1].layer, pictures[2].layer) : pictures[1].layer, object);
+  if (halves) {
+    note_halves(compare_with_halves(layer, pictures[1].layer, pictures[2].layer, object), report);
+  } else {
+    note_errors(errors, report);
+    if (is_colour(layer)) report.flip = flip_of(arguments, pictures, object);
+  }
+  note_failures(arguments, report);
+  check_values(report, pictures[1]);
+  if (!arguments.error_picture.empty())
+    write_error_picture(arguments.error_picture, errors, pictures[0], object);
+  print_comparison(arguments, report);
+  if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
+  return report.failures.empty() ? 0 : 1;
+}
+
+}  // namespace opaline
