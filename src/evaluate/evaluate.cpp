@@ -49,13 +49,26 @@ void walk(const EvaluateInput& input, const Query& query, Gather& gather, Count&
   }
 }
 
+// The share of the irradiance at the point itself for which it and the samples' mean around, weighted by
+// (1 - t^2)^2 with mean square radius h^2/4, have the near kernel's mean square radius.
+double own_share(const ChannelProfile& profile, double h) {
+  double flux = 0, moment = 0;
+  constexpr int kRings = 1000;
+  for (int i = 0; i < kRings; ++i) {
+    const double t = (i + 0.5) / kRings, ring = t * diffuse_reflectance_profile(profile, t * h) * (1 - far_weight(t));
+    flux += ring;
+    moment += ring * t * t;
+  }
+  return flux > 0 ? std::clamp(1 - 4 * moment / flux, 0.0, 1.0) : 0;
+}
+
 struct NoCount {
   void node() {}
   void kernels(std::size_t) {}
 };
 
 Exitance evaluate_one(const EvaluateInput& input, std::size_t q) {
-  Gather gather(input.octree, input.kernel, input.queries[q]);
+  Gather gather(input, input.queries[q]);
   NoCount count;
   if (input.evaluator == EvaluatorKind::classic)
     walk(input, input.queries[q], gather, count);
@@ -74,11 +87,12 @@ SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, dou
   if (split) kernel.border = border_shares(profile, radius);
   for (std::size_t c = 0; split && c < 3; ++c) {
     kernel.near[c] = float(near_field_reflectance(profile.channels[c], radius));
-    const double t = std::clamp(2 * (1 - profile.mean_free_path[c] / spacing), 0.0, 1.0),
-                 share = t * t * (3 - 2 * t);
-    // Less than a few per cent is not worth the shadow rays: the default spacing is the mean free path, give
-    // or take.
-    kernel.own_irradiance[c] = kernel.near[c] > 0 && share > 0.03 ? float(share) : 0;
+    // Where little of the light depends on it the irradiance at the point is not worth its shadow rays; faded, for
+    // spacings differ a little with the seed.
+    const double own = own_share(profile.channels[c], radius), near = double(kernel.near[c]);
+    const double weight = near > 0 ? own * near / profile.total[c] : 0,
+                 t = std::clamp((weight - 0.02) / 0.02, 0.0, 1.0);
+    kernel.own_irradiance[c] = float(own * t * t * (3 - 2 * t));
   }
   return kernel;
 }
@@ -99,7 +113,7 @@ TraversalCost classic_cost(const EvaluateInput& input, std::size_t query) {
     void node() { ++cost.nodes; }
     void kernels(std::size_t n) { cost.kernels += n; }
   } count;
-  Gather gather(input.octree, input.kernel, input.queries[query]);
+  Gather gather(input, input.queries[query]);
   walk(input, input.queries[query], gather, count);
   return count.cost;
 }

@@ -2,6 +2,7 @@
 #include "opaline/irradiance/irradiance.h"
 
 #include <cmath>
+#include <numeric>
 
 #include "opaline/core/parallel.h"
 #include "opaline/core/random.h"
@@ -140,6 +141,17 @@ std::vector<RgbF> combine_lights(std::span<const LightTransfer> transfers, std::
     for (std::size_t i = 0; i < irradiance.size(); ++i) irradiance[i] += colour * transfers[l].weights[i];
   }
   return irradiance;
+}
+
+double combined_noise(std::span<const LightTransfer> transfers, std::span<const Light> lights) {
+  double squares = 0, sum = 0;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const auto& weights = transfers[l].weights;
+    const double brought = max_component(emission(lights[l])) * std::accumulate(weights.begin(), weights.end(), 0.0);
+    squares += std::pow(brought * transfers[l].relative_error, 2);
+    sum += brought;
+  }
+  return sum > 0 ? std::sqrt(squares) / sum : 0;
 }
 
 std::vector<RgbF> irradiance_at(const PointIrradianceInput& input) {

@@ -28,13 +28,6 @@ std::size_t most_passes(const Settings& settings, const Film& film) {
   return (samples + per_pass - 1) / per_pass;
 }
 
-std::vector<std::string> direct_layer_names() {
-  std::vector<std::string> names = layer_names();
-  for (std::string& name : names)
-    if (name.starts_with("irradiance.")) name.replace(0, 10, "variance");
-  return names;
-}
-
 // Mean of a pixel's passes and the variance of that mean.
 struct Estimate {
   RgbF mean{}, variance{};
@@ -88,7 +81,7 @@ class DirectRenderer {
   // All layers; those without noise from rays of their own.
   RenderResult picture(const DirectState& state) const {
     RenderResult result;
-    result.image = empty_image(part_, scene_.film, direct_layer_names());
+    result.image = empty_image(part_, scene_.film, layer_names(Method::direct));
     std::atomic<std::size_t> queries{0}, non_finite{0};
     for_each_tile(Pass{}, [&](std::size_t pixel, PixelSample sum) {
       if (sum.empty()) return;
@@ -98,8 +91,8 @@ class DirectRenderer {
       const Estimate passes = estimate(state, pixel);
       sum.diffuse = passes.mean * samples;
       sum.irradiance = passes.variance * sum.coverage;
-      non_finite += store_pixel(sum, scene_.film.samples_per_pixel,
-                                result.image.pixels.data() + pixel * PixelSample::kChannels);
+      non_finite += store_pixel(sum, scene_.film.samples_per_pixel, Method::direct,
+                                result.image.pixels.data() + pixel * result.image.channels.size());
       ++queries;
     });
     result.queries = queries;

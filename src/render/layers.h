@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "opaline/core/vec3.h"
+#include "opaline/scene/scene.h"
 
 namespace opaline {
 
@@ -14,27 +15,32 @@ struct PixelSample {
   RgbF diffuse{}, specular{};
   RgbF emitted{};     ///< lights and surroundings seen directly
   float coverage = 0; ///< 1 on a surface
-  RgbF albedo{}, irradiance{};
+  RgbF albedo{}, irradiance{}, error{};
   Vec3f normal{}, position{};
   float depth = 0;
 
   bool empty() const { return coverage == 0 && emitted == RgbF{}; }
-
-  static constexpr int kChannels = 23;
 };
 
-inline const std::vector<std::string>& layer_names() {
-  static const std::vector<std::string> names{
-      "R",        "G",        "B",   "A",   "diffuse.R", "diffuse.G", "diffuse.B", "specular.R",
-      "specular.G", "specular.B", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z",
-      "P.X",      "P.Y",      "P.Z", "Z",   "irradiance.R", "irradiance.G", "irradiance.B"};
+/// In the order in which store_pixel writes them. `hierarchical` adds its estimated error, `direct` has the variance of
+/// its mean where others have the irradiance.
+inline std::vector<std::string> layer_names(Method method) {
+  std::vector<std::string> names{"R", "G", "B", "A", "Z"};
+  const auto add = [&](const std::string& layer, const std::string& parts) {
+    for (const char part : parts) names.push_back(layer + "." + part);
+  };
+  for (const char* layer : {"diffuse", "specular", "albedo"}) add(layer, "RGB");
+  add("N", "XYZ");
+  add("P", "XYZ");
+  add(method == Method::direct ? "variance" : "irradiance", "RGB");
+  if (method == Method::hierarchical) add("error", "RGB");
   return names;
 }
 
 /// Writes the mean of `count` samples to one pixel: radiance and coverage over all of them; albedo, normal, position,
 /// depth and irradiance over those that met a surface. sum.coverage counts these. Returns 1 if the pixel's
 /// radiance is not finite, else 0.
-inline std::size_t store_pixel(const PixelSample& sum, int count, float* out) {
+inline std::size_t store_pixel(const PixelSample& sum, int count, Method method, float* out) {
   const float all = 1.0f / float(count), seen = sum.coverage > 0 ? 1.0f / sum.coverage : 0.0f;
   const auto put = [&out](const Vec3f& value, float scale) {
     out[0] = value.x * scale;
@@ -45,13 +51,14 @@ inline std::size_t store_pixel(const PixelSample& sum, int count, float* out) {
   const RgbF radiance = sum.diffuse + sum.specular + sum.emitted;
   put(radiance, all);
   *out++ = sum.coverage * all;
+  *out++ = sum.depth * seen;
   put(sum.diffuse, all);
   put(sum.specular, all);
   put(sum.albedo, seen);
   put(normalized(sum.normal), 1);
   put(sum.position, seen);
-  *out++ = sum.depth * seen;
   put(sum.irradiance, seen);
+  if (method == Method::hierarchical) put(sum.error, all);
   return is_finite(radiance) ? 0 : 1;
 }
 
@@ -62,6 +69,7 @@ inline void add_sample(PixelSample& sum, const PixelSample& s) {
   sum.coverage += s.coverage;
   sum.albedo += s.albedo;
   sum.irradiance += s.irradiance;
+  sum.error += s.error;
   sum.normal += s.normal;
   sum.position += s.position;
   sum.depth += s.depth;

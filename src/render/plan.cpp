@@ -142,7 +142,7 @@ Plan make_plan(const Scene& scene, const World& world) {
     plan.warnings.push_back("the scene has no shapes: the picture shows its surroundings");
   if (scene.lights.empty()) plan.warnings.push_back("the scene has no lights: the picture is black");
   const std::size_t pixels = std::size_t(scene.film.resolution[0]) * std::size_t(scene.film.resolution[1]);
-  plan.bytes = 135'000'000 + pixels * 23 * sizeof(float);  // the libraries (measured); all layers
+  plan.bytes = 135'000'000 + pixels * 26 * sizeof(float);  // the libraries (measured); all layers
   for (const Mesh& mesh : world.meshes) {
     plan.triangles += mesh.triangles.size();
     plan.bytes += mesh.positions.size() * 48 + mesh.triangles.size() * 140;  // and Embree's tree

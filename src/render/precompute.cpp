@@ -45,13 +45,14 @@ Precompute precompute(const PrecomputeInput& input) {
         compute_irradiance({input.rays, surface.samples, lights, profile.eta,
                             settings.light_samples, hash_bits(settings.seed, g + 1000), input.monitor});
     std::vector<RgbF> entered = combine_lights(transfers, lights);
+    const double noise = combined_noise(transfers, lights);
     add_cost(irradiance, irradiance_watch.cost({}));
 
     const Stopwatch octree_watch;
     SplitKernel kernel =
         make_split_kernel(profile, surface.spacing(), input.world.diagonal, settings.near_field);
     TranslucentGroup group{
-        plan, profile, std::move(surface), std::move(transfers), std::move(entered), {}, std::move(kernel)};
+        plan, profile, std::move(surface), std::move(transfers), std::move(entered), noise, {}, std::move(kernel)};
     group.octree = build_octree(flux_samples(group));
     add_cost(octree, octree_watch.cost({}));
     result.groups.push_back(std::move(group));

@@ -10,14 +10,15 @@ namespace opaline {
 namespace {
 
 // Pixels without anything stay as they are: zero, and their memory untouched.
-std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, int samples, Image& image) {
+std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, const Scene& scene,
+                  Image& image) {
   std::size_t i = 0, non_finite = 0;
   for (int y = tile.y0; y < tile.y1; ++y)
     for (int x = tile.x0; x < tile.x1 && i < sums.size(); ++x, ++i)
       if (!sums[i].empty()) {
         const std::size_t row = std::size_t(y - image.crop_y), column = std::size_t(x - image.crop_x);
-        const std::size_t place = (row * std::size_t(image.width) + column) * PixelSample::kChannels;
-        non_finite += store_pixel(sums[i], samples, image.pixels.data() + place);
+        const std::size_t place = (row * std::size_t(image.width) + column) * image.channels.size();
+        non_finite += store_pixel(sums[i], scene.film.samples_per_pixel, scene.settings.method, image.pixels.data() + place);
       }
   return non_finite;
 }
@@ -28,7 +29,7 @@ RenderResult render(const RenderInput& input) {
   const Film& film = input.scene.film;
   const Rectangle part = rendered_part(film);
   RenderResult result;
-  result.image = empty_image(part, film, layer_names());
+  result.image = empty_image(part, film, layer_names(input.scene.settings.method));
   const Shader shader(input);
   const TileRenderer renderer(input, shader);
   const std::vector<Rectangle> tiles = tiles_of(part);
@@ -38,7 +39,7 @@ RenderResult render(const RenderInput& input) {
   parallel_chunks(tiles.size(), 1, [&](std::size_t begin, std::size_t, std::size_t) {
     const TileRenderer::Tile tile = renderer.render(tiles[begin]);
     queries += tile.queries;
-    non_finite += store(tiles[begin], tile.sums, film.samples_per_pixel, result.image);
+    non_finite += store(tiles[begin], tile.sums, input.scene, result.image);
   });
   result.queries = queries;
   result.non_finite = non_finite;

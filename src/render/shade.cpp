@@ -112,8 +112,8 @@ std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
 Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, const Pass& pass) const {
   if (kind.group != nullptr) return evaluated(kind, surfaces);
   if (kind.entries != nullptr)
-    return {direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}), {}};
-  return {{}, irradiance_at(lighting_of(surfaces, kind.eta))};
+    return {direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}), {}, {}};
+  return {{}, irradiance_at(lighting_of(surfaces, kind.eta)), {}};
 }
 
 Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces) const {
@@ -124,11 +124,13 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces) const 
   queries.reserve(surfaces.points.size());
   for (const SurfacePoint& point : surfaces.points) queries.push_back({point.position, point.normal});
   const Settings& settings = input_.scene.settings;
-  const std::vector<Exitance> exitance = evaluate(
-      {group.octree, group.kernel, queries, lit.irradiance, settings.evaluator, settings.max_solid_angle});
+  const std::vector<Exitance> exitance =
+      evaluate({group.octree, group.kernel, queries, lit.irradiance, settings.evaluator,
+                settings.max_solid_angle, group.irradiance_noise});
   const bool interpolated = lit.irradiance.empty();
   for (const Exitance& e : exitance) {
     lit.exitance.push_back(e.exitance);
+    lit.error.push_back(e.error);
     if (interpolated) lit.irradiance.push_back(e.irradiance);
   }
   return lit;
@@ -142,10 +144,12 @@ void Shader::write(const Surfaces& surfaces, const Lit& lit, std::span<const Tra
     const SurfacePoint& point = surfaces.points[i];
     PixelSample& sample = out[surfaces.rays[i]];
     const RgbF exitance = lit.exitance.empty() ? appearance.albedo * lit.irradiance[i] : lit.exitance[i];
-    sample.diffuse = outgoing_radiance(appearance, exitance, cos_view(point.normal, ray.direction));
+    const float cosine = cos_view(point.normal, ray.direction);
+    sample.diffuse = outgoing_radiance(appearance, exitance, cosine);
     sample.coverage = 1;
     sample.albedo = appearance.albedo;
     if (!lit.irradiance.empty()) sample.irradiance = lit.irradiance[i];
+    if (!lit.error.empty()) sample.error = outgoing_radiance(appearance, lit.error[i], cosine);
     sample.normal = point.normal;
     sample.position = Vec3f(Vec3d(point.position) + input_.world.origin);
     sample.depth = ray.far;

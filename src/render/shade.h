@@ -58,8 +58,8 @@ class Shader {
     std::vector<std::uint32_t> rays;  // their places in the batch
   };
   struct Lit {
-    std::vector<RgbF> exitance,
-        irradiance;  // empty exitance: albedo x irradiance; empty irradiance: not known
+    std::vector<RgbF> exitance;           // empty: albedo x irradiance
+    std::vector<RgbF> irradiance, error;  // empty: not known
   };
 
   std::vector<Surfaces> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,

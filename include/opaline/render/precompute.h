@@ -22,6 +22,7 @@ struct TranslucentGroup {
   SurfaceSamples surface;
   std::vector<LightTransfer> transfers;  ///< one a light
   std::vector<RgbF> irradiance;          ///< one a sample, all lights
+  double irradiance_noise = 0;           ///< relative standard error at a sample, all lights
   Octree octree;
   SplitKernel kernel;
 };
