@@ -8,11 +8,11 @@
 namespace opaline {
 namespace {
 
-// d / z with exp(-s (d/z - 1)) z / d = u: y exp(s y) = exp(s) / u.
-double source_distance_ratio(double s, double u) {
-  if (s < 1e-8) return 1 / u;  // W(x) / s loses nothing to cancellation above that
-  const double logarithm = s + std::log(s) - std::log(u);
-  if (logarithm < 700) return std::max(1.0, boost::math::lambert_w0(std::exp(logarithm)) / s);
+// y = d / z with exp(-s (y - 1)) / y = beyond: s y exp(s y) = s exp(s) / beyond.
+double source_distance_ratio(double s, double beyond) {
+  if (s == 0) return 1 / beyond;
+  const double logarithm = s + std::log(s) - std::log(beyond);
+  if (logarithm < 700) return std::max(1.0, boost::math::lambert_w0(s * std::exp(s) / beyond) / s);
   double w = logarithm;
   for (int i = 0; i < 8; ++i) w = logarithm - std::log(w);
   return std::max(1.0, w / s);
@@ -22,23 +22,22 @@ struct Source {
   double z, s;  // depth, mm; sigma_tr z
 };
 
-// One of the two sources by its share of the total, and what is left of u in [0, 1).
-Source choose_source(const Dipole& dipole, double& u) {
-  const double real = std::exp(-dipole.s_real), imaginary = std::exp(-dipole.s_virtual);
-  const double share = real / (real + imaginary);
-  if (u < share || share == 1) {
-    u = std::min(u / share, 1 - 0x1p-53);
-    return {dipole.z_real, dipole.s_real};
+// One of the two sources by its share of the total, and what is left of `beyond` in (0, 1]. The virtual one
+// has the far end, where 1 - beyond would keep no digits.
+Source choose_source(const Dipole& dipole, double& beyond) {
+  const double ratio = std::exp(dipole.s_real - dipole.s_virtual), share = ratio / (1 + ratio);
+  if (beyond <= share) {
+    beyond /= share;
+    return {dipole.z_virtual, dipole.s_virtual};
   }
-  u = (u - share) / (1 - share);
-  return {dipole.z_virtual, dipole.s_virtual};
+  beyond = (beyond - share) * (1 + ratio);
+  return {dipole.z_real, dipole.s_real};
 }
 
 double sample(const Dipole& dipole, double beyond) {
-  double u = 1 - beyond;
-  const Source source = choose_source(dipole, u);
-  const double ratio = source_distance_ratio(source.s, 1 - u);
-  return source.z * std::sqrt((ratio - 1) * (ratio + 1));
+  const Source source = choose_source(dipole, beyond);
+  const double ratio = source_distance_ratio(source.s, beyond);
+  return source.z * std::sqrt(ratio - 1) * std::sqrt(ratio + 1);
 }
 
 double sample(const NormalizedDiffusion& profile, double beyond) {
@@ -61,15 +60,16 @@ double chord_radius(const NormalizedDiffusion& profile, double u, double v) {
 // The share of one source within R is 1 - z/d exp(-sigma_tr (d - z)) (1 + R^2 (1 + sigma_tr d) / (2 d^2)):
 // bisected on d/z, for its tail is a power law without absorption.
 double chord_radius(const Dipole& dipole, double u) {
-  const Source source = choose_source(dipole, u);
+  double rest = 1 - u;
+  const Source source = choose_source(dipole, rest);
   const auto beyond = [&](double y) {
     return std::exp(-source.s * (y - 1)) / y * (1 + (1 - 1 / (y * y)) / 2 * (1 + source.s * y));
   };
   double low = 0, high = 1;  // log2 of y
-  while (beyond(std::exp2(high)) > 1 - u && high < 200) high *= 2;
+  while (beyond(std::exp2(high)) > rest && high < 200) high *= 2;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (beyond(std::exp2(middle)) > 1 - u ? low : high) = middle;
+    (beyond(std::exp2(middle)) > rest ? low : high) = middle;
   }
   const double y = std::exp2(0.5 * (low + high));
   return source.z * std::sqrt((y - 1) * (y + 1));

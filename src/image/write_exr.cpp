@@ -13,9 +13,10 @@ namespace {
 
 constexpr float half_max = 65504.0f;
 
-/// Positions, depths and irradiance need more than a half's 11 bits or its range.
+/// Positions, depths, irradiance and variances need more than a half's 11 bits or its range.
 bool always_float(const std::string& channel) {
-  return channel == "Z" || channel.starts_with("P.") || channel.starts_with("irradiance.");
+  return channel == "Z" || channel.starts_with("P.") || channel.starts_with("irradiance.") ||
+         channel.starts_with("variance.");
 }
 
 OIIO::ImageSpec make_spec(const Image& image, const std::vector<OIIO::TypeDesc>& formats) {

@@ -166,8 +166,9 @@ DirectResult render_direct(const DirectInput& input, DirectState& state) {
     return settings.until_error && state.passes >= kFewestPasses &&
            relative_noise(state) <= *settings.until_error;
   };
-  if (input.monitor != nullptr && state.passes < passes)
-    input.monitor->begin("shading", (passes - state.passes) * renderer.work_per_pass());
+  if (input.monitor != nullptr)  // the picture of the other layers is one pass more
+    input.monitor->begin("shading",
+                         (std::max(passes, state.passes) - state.passes + 1) * renderer.work_per_pass());
   while (state.passes < passes && !good_enough()) {
     renderer.add_pass(state);
     if (input.after_pass) input.after_pass(state);

@@ -24,6 +24,23 @@ std::string text_of(const Image& image, const std::string& key) {
   return {};
 }
 
+// The image with its channels in this order, whatever the file's reader makes of it; nothing if any is
+// missing or one too many.
+std::vector<float> values_in_order(const Image& image, const std::vector<std::string>& channels) {
+  std::vector<float> values;
+  if (image.channels.size() != channels.size()) return values;
+  std::vector<std::size_t> places;
+  for (const std::string& channel : channels) {
+    const auto place = std::ranges::find(image.channels, channel);
+    if (place == image.channels.end()) return values;
+    places.push_back(std::size_t(place - image.channels.begin()));
+  }
+  values.resize(image.pixels.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = image.pixels[i / places.size() * places.size() + places[i % places.size()]];
+  return values;
+}
+
 }  // namespace
 
 void write_direct_state(const std::string& path, const DirectState& state, const Scene& scene,
@@ -41,17 +58,16 @@ DirectState read_direct_state(const std::string& path, const Scene& scene, const
   if (!std::filesystem::exists(path, ignored)) return state;
   const Image image = read_image(path), expected = empty_state_image(scene);
   const std::string passes = text_of(image, kPasses);
+  std::vector<float> sums = values_in_order(image, expected.channels);
   const auto [end, error] = std::from_chars(passes.data(), passes.data() + passes.size(), state.passes);
-  // The file's own channel order is alphabetic or as written; it must be the latter.
-  if (passes.empty() || error != std::errc{} || end != passes.data() + passes.size() ||
-      image.channels != expected.channels)
+  if (passes.empty() || error != std::errc{} || end != passes.data() + passes.size() || sums.empty())
     throw bad_file(path, "not the sums of a direct rendering", "a file that --resume wrote");
   if (text_of(image, kScene) != scene_key)
     throw bad_file(path, "the sums are of another scene or other settings",
                    "those of this one, or a new file name");
   if (image.width != expected.width || image.height != expected.height)
     throw bad_file(path, "the sums are of another picture size");
-  state.sums.assign(image.pixels.begin(), image.pixels.end());
+  state.sums = std::move(sums);
   return state;
 }
 

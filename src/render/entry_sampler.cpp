@@ -16,11 +16,24 @@ constexpr float kNormalShare = 0.5f, kTangentShare = 0.25f;
 // the flux enters there.
 constexpr double kSmallestDistance = 1e-5;
 
+// A mean free path below this fraction of the group's reach is a few roundings of a place, or less; and light
+// that moves so little is as good as not moved.
+constexpr double kLocal = 1e-6;
+
+// Without the channels whose light leaves where it enters.
+DiffuseProfile carried_part(DiffuseProfile profile, double reach) {
+  for (std::size_t c = 0; c < 3; ++c)
+    if (profile.mean_free_path[c] <= kLocal * reach) {
+      profile.channels[c] = {};
+      profile.total[c] = 0;
+    }
+  return profile;
+}
+
 double smallest_distance(const DiffuseProfile& profile, double reach) {
   double smallest = reach;
   for (std::size_t c = 0; c < 3; ++c)
-    if (profile.total[c] > 0 && profile.mean_free_path[c] > 0)
-      smallest = std::min(smallest, profile.mean_free_path[c]);
+    if (profile.total[c] > 0) smallest = std::min(smallest, profile.mean_free_path[c]);
   return smallest * kSmallestDistance;
 }
 
@@ -39,21 +52,24 @@ double rescaled(double u, double begin, double share) {
 EntrySampler::EntrySampler(const GroupPlan& plan, const DiffuseProfile& profile, const RayScene& rays,
                            double diagonal, EntryStrategy strategy)
     : meshes_(plan.meshes),
-      profile_(profile),
+      profile_(carried_part(profile, diagonal)),
       rays_(rays),
       lines_(rays, plan.meshes),
-      table_(profile, smallest_distance(profile, diagonal), diagonal),
+      table_(profile_, smallest_distance(profile_, diagonal), diagonal),
       reach_(diagonal),
-      strategy_(strategy) {
+      strategy_(strategy),
+      local_(profile.total - profile_.total) {
   for (std::size_t c = 0; c < 3; ++c)
-    if (profile.total[c] > 0) channels_.push_back(c);
+    if (profile_.total[c] > 0) channels_.push_back(c);
   for (const std::size_t c : channels_)
-    inverse_total_[c] = float(1 / (double(channels_.size()) * profile.total[c]));
+    inverse_total_[c] = float(1 / (double(channels_.size()) * profile_.total[c]));
   usual_weight_ = float(max_component(profile.total));
 }
 
 void EntrySampler::sample(const SurfacePoint& exit, const EntryRandom& random, std::vector<Hit>& crossings,
                           std::vector<Entry>& entries) const {
+  if (local_ != RgbF{}) entries.push_back({exit, local_});
+  if (channels_.empty()) return;
   const Line line =
       strategy_ == EntryStrategy::disc_axes ? disc_line(exit, random) : chord_line(exit, random);
   if (line.empty) return;

@@ -34,6 +34,8 @@ struct Entry {
 /// R_d falls with distance and the disc shortens it, so a weight is at most total / (1/4 x 1/sqrt(3) x
 /// 1/channels): no fireflies, nothing cut. `chords`: a random chord of a sphere around the point, see
 /// sample_chord_sphere_radius. Weight 2 x total for one channel, whatever the surface.
+/// Channels whose mean free path is below what places in floats resolve send out light where it enters: the
+/// exit itself is their entry.
 class EntrySampler {
  public:
   EntrySampler(const GroupPlan& plan, const DiffuseProfile& profile, const RayScene& rays, double diagonal,
@@ -60,13 +62,14 @@ class EntrySampler {
   float channel_mean(float r2) const;
 
   std::vector<std::uint32_t> meshes_;
-  DiffuseProfile profile_;
+  DiffuseProfile profile_;  // of channels_ alone
   const RayScene& rays_;
   LineQuery lines_;
   KernelTable table_;
   double reach_;  // no two points of the group are farther apart, mm
   EntryStrategy strategy_;
-  std::vector<std::size_t> channels_;  // that scatter
+  RgbF local_;                         // total of the channels whose light leaves where it enters
+  std::vector<std::size_t> channels_;  // the others that scatter
   float usual_weight_ = 0;
   std::array<float, 3> inverse_total_{};  // 1 / (channels x total)
 };

@@ -23,9 +23,10 @@ Image layered() {
   Image image;
   image.width = 5;
   image.height = 70;
-  image.channels = {"R", "G", "B", "diffuse.R", "N.X", "N.Y", "N.Z", "P.X", "Z", "irradiance.G"};
+  image.channels = {"R",   "G",   "B", "diffuse.R",    "N.X",       "N.Y",
+                    "N.Z", "P.X", "Z", "irradiance.G", "variance.B"};
   image.metadata = {{"opaline:seed", "0"}, {"opaline:scene", "bunny, \"50 mm\"\nsecond line"}, {"note", "-"}};
-  for (int i = 0; i < 5 * 70 * 10; ++i) image.pixels.push_back(0.1f + 0.37f * static_cast<float>(i % 1013));
+  for (int i = 0; i < 5 * 70 * 11; ++i) image.pixels.push_back(0.1f + 0.37f * static_cast<float>(i % 1013));
   return image;
 }
 
@@ -57,15 +58,16 @@ TEST(Exr, FloatRoundTrip) {
 }
 
 // Claim: asked for halves, colour and N are halves within 2^-11 relative (11 significant bits, rounded to
-// nearest); P, Z and irradiance stay exact floats, in the file's types too. Source: image.h. Fails if: one
-// type is used for all channels, or halves are truncated.
+// nearest); P, Z, irradiance and variance stay exact floats, in the file's types too. Source: image.h. Fails
+// if: one type is used for all channels, or halves are truncated.
 TEST(Exr, HalfOnlyWhereItIsEnough) {
   const ScratchFolder folder;
   const Image written = layered();
   write_exr(folder.file("a.exr"), written, true);
   const Image read = read_image(folder.file("a.exr"));
   for (const std::string& channel : written.channels) {
-    const bool exact = channel == "Z" || channel == "P.X" || channel == "irradiance.G";
+    const bool exact =
+        channel == "Z" || channel == "P.X" || channel == "irradiance.G" || channel == "variance.B";
     float worst = 0;
     for (int pixel = 0; pixel < 350; ++pixel)
       worst = std::max(worst, std::abs(value(read, channel, pixel) / value(written, channel, pixel) - 1));
@@ -76,7 +78,7 @@ TEST(Exr, HalfOnlyWhereItIsEnough) {
   ASSERT_TRUE(input);
   for (int c = 0; c < input->spec().nchannels; ++c) {
     const std::string name = input->spec().channel_name(c);
-    const bool exact = name == "Z" || name == "P.X" || name == "irradiance.G";
+    const bool exact = name == "Z" || name == "P.X" || name == "irradiance.G" || name == "variance.B";
     EXPECT_EQ(input->spec().channelformat(c), exact ? OIIO::TypeFloat : OIIO::TypeHalf) << name;
   }
 }

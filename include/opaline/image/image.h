@@ -27,7 +27,7 @@ struct WriteReport {
 };
 
 /// Writes an EXR with all layers and metadata; the bytes depend on the image alone (no time stamp).
-/// Colour and N in half if asked; P and Z always in float.
+/// Colour and N in half if asked; P, Z, irradiance and variance always in float.
 /// error Error{run_failed} naming the file: not writable, disk full; the old file is left as it was
 WriteReport write_exr(const std::string& path, const Image& image, bool half);
 
