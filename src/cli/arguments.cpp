@@ -189,7 +189,7 @@ void add_picture_options(CLI::App& app, Options& options) {
       ->type_name("NAME")
       ->group(group);
   app.add_option("--evaluator", options.evaluator,
-                 "classic: octree traversal; brute_force: the exact sum, slow")
+                 "dual_tree: to settings.tolerance; classic: as published; brute_force: the exact sum, slow")
       ->type_name("NAME")
       ->group(group);
   app.add_option("--entry-samples", options.entry_samples, "direct: places of entry for each pixel")

@@ -34,6 +34,7 @@ Json settings_json(const Scene& scene, const Precompute& precompute) {
                       {"spacing_mm", group.surface.spacing()}});
   Json json{{"method", name_of(settings.method)},
             {"evaluator", name_of(settings.evaluator)},
+            {"tolerance", settings.tolerance},
             {"max_solid_angle", settings.max_solid_angle},
             {"near_field", settings.near_field},
             {"light_samples", settings.light_samples},
@@ -66,7 +67,8 @@ std::string command_line(const std::string& scene, const std::vector<std::string
 }  // namespace
 
 // Lengths go in front: what is hashed can be cut in one way only.
-std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides, const Scene& scene) {
+std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,
+                       const Scene& scene) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return {};
   OIIO::SHA1 hash;

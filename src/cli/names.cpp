@@ -8,7 +8,9 @@ const char* name_of(Method method) {
 }
 
 const char* name_of(EvaluatorKind evaluator) {
-  return evaluator == EvaluatorKind::brute_force ? "brute_force" : "classic";
+  return evaluator == EvaluatorKind::brute_force ? "brute_force"
+         : evaluator == EvaluatorKind::classic   ? "classic"
+                                                 : "dual_tree";
 }
 
 const char* name_of(EntryStrategy strategy) {

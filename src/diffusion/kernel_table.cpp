@@ -4,26 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "diffusion/interpolating_cubic.h"
 
 namespace opaline {
-namespace {
-
-// Coefficients of the cubic through f at the four Chebyshev points of [0, 1].
-std::array<double, 4> interpolating_cubic(const std::array<double, 4>& x, const std::array<double, 4>& f) {
-  std::array<double, 4> difference = f;  // Newton's divided differences
-  for (int order = 1; order < 4; ++order)
-    for (int i = 3; i >= order; --i) difference[i] = (difference[i] - difference[i - 1]) / (x[i] - x[i - order]);
-  std::array<double, 4> c{difference[3], 0, 0, 0};  // nested form, expanded from the innermost term
-  for (int i = 2; i >= 0; --i) {
-    for (int k = 3; k >= 1; --k) c[k] = c[k - 1] - x[i] * c[k];
-    c[0] = difference[i] - x[i] * c[0];
-  }
-  return c;
-}
-
-}  // namespace
-
 KernelTable::KernelTable(const DiffuseProfile& profile, double r_min, double r_max) {
   // One length scale, so that s does not change when everything is scaled by a power of two.
   const double scale = r_max;
@@ -45,8 +29,7 @@ KernelTable::KernelTable(const DiffuseProfile& profile, double r_min, double r_m
   s_min_ = float(std::exp2(low_octave));
   s_max_ = float(std::exp2(high_octave));
   first_ = std::bit_cast<std::uint32_t>(s_min_) >> kFractionBits;
-  std::array<double, 4> nodes{};
-  for (int i = 0; i < 4; ++i) nodes[i] = 0.5 - 0.5 * std::cos(std::numbers::pi * (2 * i + 1) / 8);
+  const std::array<double, 4> nodes = chebyshev_points();
 
   for (int octave = low_octave; octave < high_octave; ++octave)
     for (int part = 0; part < kPerOctave; ++part) {
@@ -56,7 +39,8 @@ KernelTable::KernelTable(const DiffuseProfile& profile, double r_min, double r_m
       for (int c = 0; c < 3; ++c) {
         std::array<double, 4> values{};
         for (int i = 0; i < 4; ++i) values[i] = reflectance(std::size_t(c), start + width * nodes[i]);
-        if (*std::ranges::min_element(values) * scale * scale < 1e-30) continue;  // one channel may end before others
+        if (*std::ranges::min_element(values) * scale * scale < 1e-30)
+          continue;  // one channel may end before others
         const std::array<double, 4> cubic = interpolating_cubic(nodes, values);
         segment.c0[c] = float(cubic[0]);
         segment.c1[c] = float(cubic[1]);

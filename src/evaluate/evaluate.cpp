@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "evaluate/border_share.h"
+#include "evaluate/dual_tree.h"
 #include "evaluate/gather.h"
+#include "evaluate/lane_table.h"
 #include "opaline/core/parallel.h"
 
 namespace opaline {
@@ -55,7 +57,8 @@ double own_share(const ChannelProfile& profile, double h) {
   double flux = 0, moment = 0;
   constexpr int kRings = 1000;
   for (int i = 0; i < kRings; ++i) {
-    const double t = (i + 0.5) / kRings, ring = t * diffuse_reflectance_profile(profile, t * h) * (1 - far_weight(t));
+    const double t = (i + 0.5) / kRings,
+                 ring = t * diffuse_reflectance_profile(profile, t * h) * (1 - far_weight(t));
     flux += ring;
     moment += ring * t * t;
   }
@@ -83,12 +86,15 @@ SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, dou
   // Closer than a quarter of the spacing, R_d w is negligible; without the split R_d is held there.
   const double r_min = spacing / 4, radius = 2.5 * spacing;
   SplitKernel kernel{
-      KernelTable(profile, r_min, std::max(extent, 2 * radius)), split, float(radius), {}, {}, {}};
+      KernelTable(profile, r_min, std::max(extent, 2 * radius)), split, float(radius), {}, {}, {}, {}, {}};
+  kernel.lanes = std::make_shared<const LaneTable>(
+      make_lane_table(profile, radius, std::max(extent, 2 * radius), split));
   if (split) kernel.border = border_shares(profile, radius);
+  for (std::size_t c = 0; c < 3; ++c) kernel.total[c] = float(profile.total[c]);
   for (std::size_t c = 0; split && c < 3; ++c) {
     kernel.near[c] = float(near_field_reflectance(profile.channels[c], radius));
-    // Where little of the light depends on it the irradiance at the point is not worth its shadow rays; faded, for
-    // spacings differ a little with the seed.
+    // Where little of the light depends on it the irradiance at the point is not worth its shadow rays;
+    // faded, for spacings differ a little with the seed.
     const double own = own_share(profile.channels[c], radius), near = double(kernel.near[c]);
     const double weight = near > 0 ? own * near / profile.total[c] : 0,
                  t = std::clamp((weight - 0.02) / 0.02, 0.0, 1.0);
@@ -100,6 +106,10 @@ SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, dou
 std::vector<Exitance> evaluate(const EvaluateInput& input) {
   std::vector<Exitance> result(input.queries.size());
   if (input.octree.nodes.empty()) return result;
+  if (input.evaluator == EvaluatorKind::dual_tree) {
+    evaluate_dual_tree(input, result);
+    return result;
+  }
   parallel_chunks(input.queries.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t q = begin; q < end; ++q) result[q] = evaluate_one(input, q);
     advance(input.monitor, end - begin);

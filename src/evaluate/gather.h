@@ -5,10 +5,9 @@
 #include <emmintrin.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 
+#include "evaluate/point_sums.h"
 #include "opaline/evaluate/evaluate.h"
 #include "opaline/sampling/sample_surface.h"
 
@@ -17,11 +16,11 @@ namespace opaline {
 class Gather {
  public:
   Gather(const EvaluateInput& input, const Query& query)
-      : octree_(input.octree),
+      : input_(input),
+        octree_(input.octree),
         kernel_(input.kernel),
         query_(query),
-        near2_(input.kernel.radius * input.kernel.radius),
-        noise_(float(input.irradiance_noise)) {}
+        near2_(input.kernel.radius * input.kernel.radius) {}
 
   /// A node beyond the near field, lanes of r2 the squared distances of its centroids.
   void add_node(const OctreeNode& node, __m128 r2) {
@@ -48,20 +47,26 @@ class Gather {
     alignas(16) double sum[4];
     _mm_store_pd(sum, low_);
     _mm_store_pd(sum + 2, high_);
-    alignas(16) float flux[4];
-    _mm_store_ps(flux, near_flux_);
-    Exitance out;
-    const float unit = octree_.flux_unit;
-    const std::array<float, 3> share = surface_share();
+    alignas(16) float spread[4], squares[4], flattened[4], near_flux[4], near_squares[4];
+    _mm_store_ps(spread, spread_);
+    _mm_store_ps(squares, squares_);
+    _mm_store_ps(flattened, flattened_);
+    _mm_store_ps(near_flux, near_flux_);
+    _mm_store_ps(near_squares, near_squares_);
+    // A patch of a power law 1/r^3 gives more than its middle by 3/8 of its solid angle; measured on
+    // surfaces: a fifth.
+    constexpr float kFlattened = 0.2f;
+    PointSums sums;
+    sums.near_area = near_weight_;
     for (std::size_t c = 0; c < 3; ++c) {
-      out.irradiance[c] = near_weight_ > 0 ? flux[c] / near_weight_ * unit : 0;
-      const float own = given != nullptr ? kernel_.own_irradiance[c] : 0;
-      const float e = own > 0 ? own * (*given)[c] + (1 - own) * out.irradiance[c] : out.irradiance[c];
-      const float near = kernel_.near[c] * share[c];
-      out.exitance[c] = float(sum[c]) * unit + near * e;
-      out.error[c] = unit * estimated_error(c, near * (1 - own), out.irradiance[c] / unit);
+      sums.far[c] = float(sum[c]);
+      sums.spread[c] = spread[c];
+      sums.squares[c] = squares[c];
+      sums.hierarchy[c] = kFlattened * flattened[c];
+      sums.near_flux[c] = near_flux[c];
+      sums.near_squares[c] = near_squares[c];
     }
-    return out;
+    return exitance_from(sums, input_, given);
   }
 
  private:
@@ -96,54 +101,16 @@ class Gather {
     return kernel_.split ? far_weight(std::sqrt(t2)) : 1;
   }
 
-  // Standard error of a channel, in flux units. near: the near field's share of the kernel that rests on the
-  // interpolated irradiance e.
-  float estimated_error(std::size_t c, float near, float e) const {
-    alignas(16) float spread[4], squares[4], flattened[4], near_squares[4];
-    _mm_store_ps(spread, spread_);
-    _mm_store_ps(squares, squares_);
-    _mm_store_ps(flattened, flattened_);
-    _mm_store_ps(near_squares, near_squares_);
-    // A sample stands off its cell's middle by a fraction of the distance over which neighbours differ.
-    constexpr float kOffset = 0.2f;
-    // Of an irradiance that varies around the point, what its mean misses.
-    constexpr float kVariation = 0.2f;
-    // A quarter of a power law's curvature; a third of it was measured on surfaces.
-    constexpr float kFlattened = 0.3f;
-    const float sampling = kOffset * kOffset * std::max(0.0f, spread[c]);
-    const float variance = near_weight_ > 0 ? std::max(0.0f, near_squares[c] / near_weight_ - e * e) : 0;
-    const float interpolation = kVariation * kVariation * near * near * variance;
-    const float noise = noise_ * noise_ * squares[c];
-    const float hierarchy = kFlattened * flattened[c];
-    return std::sqrt(sampling + interpolation + noise + hierarchy * hierarchy);
-  }
-
-  // The part of the near field that is there. Half of a plane's area or less: a border, a corner; more than
-  // all of it: a crease, whose excess the near field of steep profiles does not see.
-  std::array<float, 3> surface_share() const {
-    const float plane = float(std::numbers::pi) * near2_ / 3;  // integral of the weight (1 - r^2/h^2)^2
-    const float area = near_weight_ / plane;
-    // A few per cent short of a whole plane is the noise of the samples' sum.
-    constexpr float kNoise = 1.03f;
-    const float place =
-        std::clamp((area - 0.5f) * 2 * kNoise, 0.0f, 1.0f) * float(SplitKernel::kBorderRows - 1);
-    const std::size_t row = std::min(std::size_t(place), SplitKernel::kBorderRows - 2);
-    const float t = place - float(row), corner = std::min(1.0f, 2 * area);
-    std::array<float, 3> share;
-    for (std::size_t c = 0; c < 3; ++c)
-      share[c] = corner * ((1 - t) * kernel_.border[row][c] + t * kernel_.border[row + 1][c]);
-    return share;
-  }
-
   void accumulate(__m128 sum) {
     low_ = _mm_add_pd(low_, _mm_cvtps_pd(sum));
     high_ = _mm_add_pd(high_, _mm_cvtps_pd(_mm_movehl_ps(sum, sum)));
   }
 
+  const EvaluateInput& input_;
   const Octree& octree_;
   const SplitKernel& kernel_;
   const Query& query_;
-  float near2_, noise_;
+  float near2_;
   __m128d low_ = _mm_setzero_pd(), high_ = _mm_setzero_pd();
   __m128 near_flux_ = _mm_setzero_ps(), near_squares_ = _mm_setzero_ps();
   __m128 spread_ = _mm_setzero_ps(), squares_ = _mm_setzero_ps(), flattened_ = _mm_setzero_ps();

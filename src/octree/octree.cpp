@@ -20,8 +20,8 @@ struct Keyed {
 };
 
 auto content(const FluxSample& s) {
-  return std::tie(s.position.x, s.position.y, s.position.z, s.area, s.irradiance.x, s.irradiance.y, s.irradiance.z,
-                  s.normal.x, s.normal.y, s.normal.z);
+  return std::tie(s.position.x, s.position.y, s.position.z, s.area, s.irradiance.x, s.irradiance.y,
+                  s.irradiance.z, s.normal.x, s.normal.y, s.normal.z);
 }
 
 // Samples along the Morton curve; equal keys in the order of their content, so that input order has no say.
@@ -40,7 +40,8 @@ std::vector<Keyed> morton_order(std::span<const FluxSample> samples) {
   parallel_chunks(samples.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f& p = samples[i].position;
-      order[i] = {morton_key(integer(p.x, low.x), integer(p.y, low.y), integer(p.z, low.z)), std::uint32_t(i)};
+      order[i] = {morton_key(integer(p.x, low.x), integer(p.y, low.y), integer(p.z, low.z)),
+                  std::uint32_t(i)};
     }
   });
   tbb::parallel_sort(order, [&](const Keyed& a, const Keyed& b) {
@@ -53,12 +54,17 @@ std::vector<Keyed> morton_order(std::span<const FluxSample> samples) {
 struct Sums {
   std::array<double, 4> weight{};
   std::array<Vec3d, 4> moment{};
+  std::array<double, 6> flux_square{}, area_square{};  // second moments: of all channels' flux, of the area
   Vec3f low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
 
   void add(const Sums& other) {
     for (std::size_t c = 0; c < 4; ++c) {
       weight[c] += other.weight[c];
       moment[c] += other.moment[c];
+    }
+    for (std::size_t i = 0; i < 6; ++i) {
+      flux_square[i] += other.flux_square[i];
+      area_square[i] += other.area_square[i];
     }
     low = component_min(low, other.low);
     high = component_max(high, other.high);
@@ -91,7 +97,9 @@ class Builder {
   }
 
  private:
-  unsigned digit(std::uint32_t i, int level) const { return order_[i].key >> (3 * (kLevels - 1 - level)) & 7; }
+  unsigned digit(std::uint32_t i, int level) const {
+    return order_[i].key >> (3 * (kLevels - 1 - level)) & 7;
+  }
 
   static Sums sums_of(const TreeSample& s) {
     Sums sums;
@@ -100,8 +108,33 @@ class Builder {
       sums.weight[c] = double(c < 3 ? s.flux[c] : s.area);
       sums.moment[c] = Vec3d(p) * sums.weight[c];
     }
+    const Vec3d d(p);
+    const double flux = sums.weight[0] + sums.weight[1] + sums.weight[2];
+    const std::array<double, 6> squares{d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.x * d.z, d.y * d.z};
+    for (std::size_t i = 0; i < 6; ++i) {
+      sums.flux_square[i] = flux * squares[i];
+      sums.area_square[i] = sums.weight[3] * squares[i];
+    }
     sums.low = sums.high = p;
     return sums;
+  }
+
+  // About the mean; what rounding leaves below zero on the diagonal is zero.
+  static std::array<float, 6> central_moment(const Sums& sums) {
+    double weight = sums.weight[0] + sums.weight[1] + sums.weight[2];
+    Vec3d first = sums.moment[0] + sums.moment[1] + sums.moment[2];
+    const bool lit = weight > 0;
+    if (!lit) weight = sums.weight[3], first = sums.moment[3];
+    if (!(weight > 0)) return {};
+    const std::array<double, 6>& square = lit ? sums.flux_square : sums.area_square;
+    const Vec3d m = first / weight;
+    const std::array<double, 6> mean{m.x * m.x, m.y * m.y, m.z * m.z, m.x * m.y, m.x * m.z, m.y * m.z};
+    std::array<float, 6> central;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double value = square[i] / weight - mean[i];
+      central[i] = float(i < 3 ? std::max(0.0, value) : value);
+    }
+    return central;
   }
 
   void store(std::size_t index, const Sums& sums, std::uint32_t begin, std::uint32_t end, bool leaf) {
@@ -118,6 +151,7 @@ class Builder {
     node.center = Vec3f(middle);
     // Up to the farther side of the rounded middle.
     node.half = component_max(sums.high - node.center, node.center - sums.low);
+    node.spread = central_moment(sums);
     node.skip = std::uint32_t(tree_.nodes.size());
     node.first = begin;
     node.count = end - begin;

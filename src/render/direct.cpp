@@ -55,7 +55,7 @@ class DirectRenderer {
         shader_(render_input_, samplers_),
         tile_renderer_(render_input_, shader_),
         part_(rendered_part(input.scene.film)),
-        tiles_(tiles_of(part_)) {}
+        tiles_(tiles_of(input.scene.film)) {}
 
   std::size_t pixels() const { return std::size_t(part_.x1 - part_.x0) * std::size_t(part_.y1 - part_.y0); }
   std::size_t work_per_pass() const { return tiles_.size() * std::size_t(scene_.film.samples_per_pixel); }
@@ -114,11 +114,11 @@ class DirectRenderer {
     parallel_chunks(tiles_.size(), 1, [&](std::size_t begin, std::size_t, std::size_t) {
       const Rectangle& tile = tiles_[begin];
       const TileRenderer::Tile rendered = tile_renderer_.render(tile, pass);
-      std::size_t i = 0;
-      for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1 && i < rendered.sums.size(); ++x, ++i)
-          use(std::size_t(y - part_.y0) * std::size_t(part_.x1 - part_.x0) + std::size_t(x - part_.x0),
-              rendered.sums[i]);
+      if (rendered.sums.empty()) return;
+      for_each_pixel(tile, part_, [&](int x, int y, std::size_t i) {
+        use(std::size_t(y - part_.y0) * std::size_t(part_.x1 - part_.x0) + std::size_t(x - part_.x0),
+            rendered.sums[i]);
+      });
     });
   }
 

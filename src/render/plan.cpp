@@ -124,7 +124,9 @@ void list_stages(const Scene& scene, Plan& plan) {
         fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample", scene.lights.size(), rays));
     plan.stages.push_back("octree");
     plan.stages.push_back(
-        scene.settings.evaluator == EvaluatorKind::classic
+        scene.settings.evaluator == EvaluatorKind::dual_tree
+            ? fmt::format("evaluation: dual tree, {:.3g} % of the exact sum", 100 * scene.settings.tolerance)
+        : scene.settings.evaluator == EvaluatorKind::classic
             ? fmt::format("evaluation: classic traversal, {} sr", scene.settings.max_solid_angle)
             : "evaluation: brute force");
   }

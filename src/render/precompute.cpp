@@ -42,8 +42,8 @@ Precompute precompute(const PrecomputeInput& input) {
 
     const Stopwatch irradiance_watch;
     std::vector<LightTransfer> transfers =
-        compute_irradiance({input.rays, surface.samples, lights, profile.eta,
-                            settings.light_samples, hash_bits(settings.seed, g + 1000), input.monitor});
+        compute_irradiance({input.rays, surface.samples, lights, profile.eta, settings.light_samples,
+                            hash_bits(settings.seed, g + 1000), input.monitor});
     std::vector<RgbF> entered = combine_lights(transfers, lights);
     const double noise = combined_noise(transfers, lights);
     add_cost(irradiance, irradiance_watch.cost({}));
@@ -51,8 +51,8 @@ Precompute precompute(const PrecomputeInput& input) {
     const Stopwatch octree_watch;
     SplitKernel kernel =
         make_split_kernel(profile, surface.spacing(), input.world.diagonal, settings.near_field);
-    TranslucentGroup group{
-        plan, profile, std::move(surface), std::move(transfers), std::move(entered), noise, {}, std::move(kernel)};
+    TranslucentGroup group{plan,  profile, std::move(surface), std::move(transfers), std::move(entered),
+                           noise, {},      std::move(kernel)};
     group.octree = build_octree(flux_samples(group));
     add_cost(octree, octree_watch.cost({}));
     result.groups.push_back(std::move(group));
@@ -66,8 +66,14 @@ std::vector<RgbF> radiant_exitance(const TranslucentGroup& group, const World& w
                                    const Settings& settings) {
   std::vector<Query> queries(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) queries[i] = {Vec3f(points[i] - world.origin), normals[i]};
-  const std::vector<Exitance> exitance =
-      evaluate({group.octree, group.kernel, queries, {}, settings.evaluator, settings.max_solid_angle});
+  const std::vector<Exitance> exitance = evaluate({group.octree,
+                                                   group.kernel,
+                                                   queries,
+                                                   {},
+                                                   settings.evaluator,
+                                                   settings.tolerance,
+                                                   settings.max_solid_angle,
+                                                   settings.instruction_set});
   std::vector<RgbF> result(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) result[i] = exitance[i].exitance;
   return result;

@@ -12,14 +12,15 @@ namespace {
 // Pixels without anything stay as they are: zero, and their memory untouched.
 std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, const Scene& scene,
                   Image& image) {
-  std::size_t i = 0, non_finite = 0;
-  for (int y = tile.y0; y < tile.y1; ++y)
-    for (int x = tile.x0; x < tile.x1 && i < sums.size(); ++x, ++i)
-      if (!sums[i].empty()) {
-        const std::size_t row = std::size_t(y - image.crop_y), column = std::size_t(x - image.crop_x);
-        const std::size_t place = (row * std::size_t(image.width) + column) * image.channels.size();
-        non_finite += store_pixel(sums[i], scene.film.samples_per_pixel, scene.settings.method, image.pixels.data() + place);
-      }
+  std::size_t non_finite = 0;
+  if (sums.empty()) return non_finite;
+  for_each_pixel(tile, rendered_part(scene.film), [&](int x, int y, std::size_t i) {
+    if (sums[i].empty()) return;
+    const std::size_t row = std::size_t(y - image.crop_y), column = std::size_t(x - image.crop_x);
+    const std::size_t place = (row * std::size_t(image.width) + column) * image.channels.size();
+    non_finite += store_pixel(sums[i], scene.film.samples_per_pixel, scene.settings.method,
+                              image.pixels.data() + place);
+  });
   return non_finite;
 }
 
@@ -32,7 +33,7 @@ RenderResult render(const RenderInput& input) {
   result.image = empty_image(part, film, layer_names(input.scene.settings.method));
   const Shader shader(input);
   const TileRenderer renderer(input, shader);
-  const std::vector<Rectangle> tiles = tiles_of(part);
+  const std::vector<Rectangle> tiles = tiles_of(film);
   if (input.monitor != nullptr)
     input.monitor->begin("shading", tiles.size() * std::size_t(film.samples_per_pixel));
   std::atomic<std::size_t> queries{0}, non_finite{0};

@@ -125,8 +125,8 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces) const 
   for (const SurfacePoint& point : surfaces.points) queries.push_back({point.position, point.normal});
   const Settings& settings = input_.scene.settings;
   const std::vector<Exitance> exitance =
-      evaluate({group.octree, group.kernel, queries, lit.irradiance, settings.evaluator,
-                settings.max_solid_angle, group.irradiance_noise});
+      evaluate({group.octree, group.kernel, queries, lit.irradiance, settings.evaluator, settings.tolerance,
+                settings.max_solid_angle, settings.instruction_set, group.irradiance_noise});
   const bool interpolated = lit.irradiance.empty();
   for (const Exitance& e : exitance) {
     lit.exitance.push_back(e.exitance);

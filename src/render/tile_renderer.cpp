@@ -15,12 +15,13 @@ Rectangle rendered_part(const Film& film) {
   return {0, 0, film.resolution[0], film.resolution[1]};
 }
 
-std::vector<Rectangle> tiles_of(const Rectangle& part) {
+std::vector<Rectangle> tiles_of(const Film& film) {
+  const Rectangle part = rendered_part(film);
   std::vector<Rectangle> tiles;
   for (int y = part.y0 / kTile * kTile; y < part.y1; y += kTile)
     for (int x = part.x0 / kTile * kTile; x < part.x1; x += kTile)
-      tiles.push_back({std::max(x, part.x0), std::max(y, part.y0), std::min(x + kTile, part.x1),
-                       std::min(y + kTile, part.y1)});
+      tiles.push_back(
+          {x, y, std::min(x + kTile, film.resolution[0]), std::min(y + kTile, film.resolution[1])});
   return tiles;
 }
 

@@ -2,6 +2,7 @@
 // Pictures tile by tile.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "opaline/render/render.h"
@@ -19,8 +20,17 @@ struct Rectangle {
 /// What the film's crop leaves, or all of it.
 Rectangle rendered_part(const Film& film);
 
-/// Tiles lie on a fixed grid of the whole picture: a crop's pixels are those of the whole.
-std::vector<Rectangle> tiles_of(const Rectangle& part);
+/// Tiles lie on a fixed grid of the whole picture and are whole even where a crop shows part of them: points
+/// that are evaluated together are the same, and so are a crop's pixels.
+std::vector<Rectangle> tiles_of(const Film& film);
+
+/// Calls use(x, y, i) for the pixels of a tile that the part has; i: row by row in the tile.
+template <class Use>
+void for_each_pixel(const Rectangle& tile, const Rectangle& part, const Use& use) {
+  for (int y = std::max(tile.y0, part.y0); y < std::min(tile.y1, part.y1); ++y)
+    for (int x = std::max(tile.x0, part.x0); x < std::min(tile.x1, part.x1); ++x)
+      use(x, y, std::size_t(y - tile.y0) * std::size_t(tile.x1 - tile.x0) + std::size_t(x - tile.x0));
+}
 
 /// A picture of the part with these channels, all zero.
 Image empty_image(const Rectangle& part, const Film& film, std::vector<std::string> channels);

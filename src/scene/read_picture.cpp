@@ -9,7 +9,8 @@ namespace {
 constexpr std::array<std::string_view, 2> filter_names{"box", "gaussian"};
 constexpr std::array<std::string_view, 2> pixel_type_names{"half", "float"};
 constexpr std::array<std::string_view, 3> method_names{"hierarchical", "lambert", "direct"};
-constexpr std::array<std::string_view, 2> evaluator_names{"classic", "brute_force"};
+constexpr std::array<std::string_view, 3> evaluator_names{"dual_tree", "classic", "brute_force"};
+constexpr std::array<std::string_view, 4> instruction_set_names{"automatic", "baseline", "avx2", "avx512"};
 constexpr std::array<std::string_view, 2> strategy_names{"disc_axes", "chords"};
 
 constexpr std::uint64_t largest_side = 65536, most_pixels = std::uint64_t{1} << 28;
@@ -81,6 +82,10 @@ Settings read_settings(const Value& value, double mm_per_unit) {
     settings.method = static_cast<Method>(method->choice(method_names));
   if (const auto evaluator = reader.find("evaluator"))
     settings.evaluator = static_cast<EvaluatorKind>(evaluator->choice(evaluator_names));
+  if (const auto tolerance = reader.find("tolerance"))
+    settings.tolerance = tolerance->number({0, 1, true, false});
+  if (const auto set = reader.find("instruction_set"))
+    settings.instruction_set = static_cast<InstructionSet>(set->choice(instruction_set_names));
   if (const auto angle = reader.find("max_solid_angle"))
     settings.max_solid_angle = angle->number({0, 1e30, true, false});
   if (const auto near_field = reader.find("near_field")) settings.near_field = near_field->boolean();
@@ -95,7 +100,8 @@ Settings read_settings(const Value& value, double mm_per_unit) {
     settings.entry_strategy = static_cast<EntryStrategy>(strategy->choice(strategy_names));
   if (const auto samples = reader.find("entry_samples"))
     settings.entry_samples = samples->integer(1, most_samples);
-  if (const auto error = reader.find("until_error")) settings.until_error = error->number({0, 1, true, false});
+  if (const auto error = reader.find("until_error"))
+    settings.until_error = error->number({0, 1, true, false});
   if (const auto seed = reader.find("seed")) settings.seed = seed->integer(0, UINT64_MAX);
   return settings;
 }

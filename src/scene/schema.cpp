@@ -38,8 +38,9 @@ const std::vector<Section>& sections() {
       {"camera", {"position", "look_at", "up", "field_of_view"}},
       {"film", {"resolution", "crop", "samples_per_pixel", "filter", "pixel_type", "exposure"}},
       {"settings",
-       {"method", "evaluator", "max_solid_angle", "near_field", "sample_spacing", "samples", "max_samples",
-        "light_samples", "entry_strategy", "entry_samples", "until_error", "seed"}},
+       {"method", "evaluator", "tolerance", "instruction_set", "max_solid_angle", "near_field",
+        "sample_spacing", "samples", "max_samples", "light_samples", "entry_strategy", "entry_samples",
+        "until_error", "seed"}},
   };
   return table;
 }

@@ -142,6 +142,6 @@ inline bool same_tree(const Octree& a, const Octree& b) {
   return std::memcmp(a.samples.data(), b.samples.data(), a.samples.size() * sizeof(TreeSample)) == 0 &&
          std::memcmp(a.normals.data(), b.normals.data(), a.normals.size() * sizeof(Vec3f)) == 0;
 }
-static_assert(sizeof(TreeSample) == 32 && offsetof(OctreeNode, leaf) == 64 + 24 + 12);
+static_assert(sizeof(TreeSample) == 32 && offsetof(OctreeNode, leaf) == 64 + 24 + 24 + 12);
 
 }  // namespace opaline::test

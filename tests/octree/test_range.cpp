@@ -47,6 +47,7 @@ TEST(OctreeRange, PowersOfTwo) {
       for (float& v : *lanes) v /= 8;
     node.center = node.center / 8;
     node.half = node.half / 8;
+    for (float& v : node.spread) v /= 64;
   }
   for (TreeSample& s : large.samples) s.x /= 8, s.y /= 8, s.z /= 8;
   EXPECT_TRUE(same_tree(large, octree));

@@ -49,7 +49,7 @@ TEST(SceneErrors, NameThePlace) {
       {R"({"settings": {"max_solid_angle": @0}})", {"'settings.max_solid_angle'"}},
       {R"({"settings": {"near_field": @1}})", {"true or false", "got 1"}},
       {R"({"settings": {"near_field": @null}})", {"true or false", "got null"}},
-      {R"({"settings": {"evaluator": @"dual_tree"}})", {"classic, brute_force"}},
+      {R"({"settings": {"evaluator": @"dualtree"}})", {"did you mean 'dual_tree'"}},
       {R"({"settings": {"sample_spacing": @-1}})", {"a length > 0"}},
       {R"({"settings": {"seed": @18446744073709551616}})", {"'settings.seed'", "18446744073709551615"}},
       {R"({"surroundings": @-1})", {"'surroundings'"}},

@@ -71,6 +71,7 @@ inline std::vector<Exitance> brute_force(const Octree& octree, const SplitKernel
 inline std::vector<Exitance> classic(const Octree& octree, const SplitKernel& kernel,
                                      const std::vector<Query>& queries, double max_solid_angle) {
   EvaluateInput input{octree, kernel, queries};
+  input.evaluator = EvaluatorKind::classic;
   input.max_solid_angle = max_solid_angle;
   return evaluate(input);
 }

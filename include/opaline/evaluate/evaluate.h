@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -14,22 +15,27 @@
 
 namespace opaline {
 
-/// The kernel split near the shading point: R_d = R_near + R_far with R_far = R_d w(r/h). The far part is summed
-/// over the samples; the near part, too steep for them, is an integral times the irradiance around the point.
+struct LaneTable;
+
+/// The kernel split near the shading point: R_d = R_near + R_far with R_far = R_d w(r/h). The far part is
+/// summed over the samples; the near part, too steep for them, is an integral times the irradiance around the
+/// point.
 struct SplitKernel {
   KernelTable table;
   bool split = true;
-  float radius = 0;                    ///< h, 2.5 sample spacings, mm
-  std::array<float, 3> near{};         ///< integral of R_near over the plane
-  /// Near a border of the surface only part of the near field is there. Rows: how much of a plane's area lies around
-  /// the point, from 1/2 (on the border) to 1, weighted by (1 - r^2/h^2)^2; values: the share of `near` that a half
-  /// plane with that much area gives, per channel.
+  float radius = 0;              ///< h, 2.5 sample spacings, mm
+  std::array<float, 3> near{};   ///< integral of R_near over the plane
+  std::array<float, 3> total{};  ///< of the profile
+  /// Near a border of the surface only part of the near field is there. Rows: how much of a plane's area lies
+  /// around the point, from 1/2 (on the border) to 1, weighted by (1 - r^2/h^2)^2; values: the share of
+  /// `near` that a half plane with that much area gives, per channel.
   static constexpr std::size_t kBorderRows = 65;
   std::array<std::array<float, 3>, kBorderRows> border{};
-  /// How much of the irradiance of the near field is the one at the point itself; the samples' mean around it alone
-  /// would blur shadows. So much that both together have the near kernel's mean square radius: 1 for a vanishing mean
-  /// free path, about .45 (dipole) or .65 (normalized diffusion) where it is the sample spacing; 0 where less than 2 %
-  /// of the light depends on it.
+  std::shared_ptr<const LaneTable> lanes;  ///< the far kernel for dual_tree
+  /// How much of the irradiance of the near field is the one at the point itself; the samples' mean around it
+  /// alone would blur shadows. So much that both together have the near kernel's mean square radius: 1 for a
+  /// vanishing mean free path, about .45 (dipole) or .65 (normalized diffusion) where it is the sample
+  /// spacing; 0 where less than 2 % of the light depends on it.
   std::array<float, 3> own_irradiance{};
   bool needs_irradiance() const { return own_irradiance[0] + own_irradiance[1] + own_irradiance[2] > 0; }
 };
@@ -45,9 +51,10 @@ struct Query {
 struct Exitance {
   RgbF exitance;    ///< M_o, W/mm^2
   RgbF irradiance;  ///< E interpolated from the samples within h, W/mm^2
-  /// Estimated standard error of the exitance against the converged diffusion of the same scene, W/mm^2: from the
-  /// spread of neighbouring samples, the variation of E nearby, the solid angles of the nodes taken as points, and the
-  /// irradiance's noise. Its mean over a picture is within a factor 3 of the measured one (test_error_estimate).
+  /// Estimated standard error of the exitance against the converged diffusion of the same scene, W/mm^2: from
+  /// the spread of neighbouring samples, the variation of E nearby, the solid angles of the nodes taken as
+  /// points, and the irradiance's noise. Its mean over a picture is within a factor 3 of the measured one
+  /// (test_error_estimate).
   RgbF error{};
 };
 
@@ -57,17 +64,22 @@ struct EvaluateInput {
   std::span<const Query> queries;
   /// Entered irradiance at each query, for the channels that need it; empty: interpolated ones everywhere.
   std::span<const RgbF> irradiance = {};
-  EvaluatorKind evaluator = EvaluatorKind::classic;
-  double max_solid_angle = 0.1;
+  EvaluatorKind evaluator = EvaluatorKind::dual_tree;
+  double tolerance = 0.005;                                    ///< dual_tree
+  double max_solid_angle = 0.05;                               ///< classic, sr
+  InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
   double irradiance_noise = 0;  ///< relative standard error of the samples' irradiance
   Monitor* monitor = nullptr;
 };
 
 /// Radiant exitance at each query point, in their order; finite and >= 0.
-/// `classic`: each query walks the tree from its root and takes a node as one flux at its centroid when the node's
-/// area over its squared distance is at most max_solid_angle and it lies wholly beyond h; leaves are summed sample
-/// by sample. `brute_force`: every sample, the limit of max_solid_angle -> 0 but for the order of sums.
-/// from  Jensen & Buhler 2002 sec. 3; near field: see SplitKernel
+/// `dual_tree`: clusters of queries walk the tree together; a node stands as its centroid and second moment
+/// when a bound on what that leaves out is below a share of the cluster's exitance, in each channel. p99 of
+/// |result - brute force| / max(|brute force|, 1e-3 of the p99 of all) <= tolerance, per channel
+/// (test_dual_tree). `classic`: each query walks the tree from its root and takes a node as one flux at its
+/// centroid when the node's area over its squared distance is at most max_solid_angle and it lies wholly
+/// beyond h; leaves are summed sample by sample. `brute_force`: every sample, the limit of max_solid_angle ->
+/// 0 but for the order of sums. from  Jensen & Buhler 2002 sec. 3; near field: see SplitKernel
 std::vector<Exitance> evaluate(const EvaluateInput& input);
 
 /// Kernel evaluations and nodes visited by one classic query: what its time is made of.

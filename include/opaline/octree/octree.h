@@ -13,18 +13,21 @@ namespace opaline {
 
 /// One point of the cloud: what evaluation needs of a surface sample.
 struct FluxSample {
-  Vec3f position;    ///< mm, recentred
-  float area = 0;    ///< mm^2
-  RgbF irradiance;   ///< entered, W/mm^2
+  Vec3f position;   ///< mm, recentred
+  float area = 0;   ///< mm^2
+  RgbF irradiance;  ///< entered, W/mm^2
   Vec3f normal;
 };
 
-/// Nodes stand in depth-first order: the first child follows its parent, `skip` is the next node past a subtree.
-/// Arrays have lanes R, G, B and, last, area: each channel has its own flux-weighted centroid.
+/// Nodes stand in depth-first order: the first child follows its parent, `skip` is the next node past a
+/// subtree. Arrays have lanes R, G, B and, last, area: each channel has its own flux-weighted centroid.
 struct alignas(64) OctreeNode {
   std::array<float, 4> x{}, y{}, z{};  ///< centroids, mm; without flux: the area's centroid
-  std::array<float, 4> flux{};         ///< sum of area x irradiance / Octree::flux_unit; last: sum of areas, mm^2
-  Vec3f center{}, half{};              ///< tight box around the node's samples
+  std::array<float, 4> flux{};  ///< sum of area x irradiance / Octree::flux_unit; last: sum of areas, mm^2
+  Vec3f center{}, half{};       ///< tight box around the node's samples
+  /// Second central moment of the flux of all channels together (without flux: of the area), mm^2: xx yy zz
+  /// xy xz yz.
+  std::array<float, 6> spread{};
   std::uint32_t skip = 0;
   std::uint32_t first = 0, count = 0;  ///< its samples
   bool leaf = false;
@@ -39,8 +42,9 @@ struct alignas(32) TreeSample {
 struct Octree {
   std::vector<OctreeNode> nodes;  ///< empty without samples
   std::vector<TreeSample> samples;
-  std::vector<Vec3f> normals;     ///< of the samples
-  /// Power of two that brings the largest irradiance to [1/2, 1): neither 1e-30 nor 1e30 W leave float's range.
+  std::vector<Vec3f> normals;  ///< of the samples
+  /// Power of two that brings the largest irradiance to [1/2, 1): neither 1e-30 nor 1e30 W leave float's
+  /// range.
   float flux_unit = 1;
   std::size_t bytes() const;
 };

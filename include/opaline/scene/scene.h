@@ -3,8 +3,8 @@
 //
 // Conventions, everywhere in the project: right-handed coordinates, +y up, normals outward, directions point
 // away from the surface, lengths in mm, coefficients in 1/mm, irradiance and radiant exitance in W/mm^2,
-// radiance in W/(mm^2 sr), colours linear Rec.709, eta = index of refraction inside / outside. Loading a scene
-// converts its units to mm once (mm_per_unit); nothing after it converts again.
+// radiance in W/(mm^2 sr), colours linear Rec.709, eta = index of refraction inside / outside. Loading a
+// scene converts its units to mm once (mm_per_unit); nothing after it converts again.
 #pragma once
 
 #include <array>
@@ -99,7 +99,8 @@ struct Shape {
   /// Index into Scene::media, or none for an opaque Lambert surface of `reflectance`.
   std::optional<std::size_t> medium;
   Rgb reflectance{0.5, 0.5, 0.5};
-  /// Translucent shapes with the same non-empty group blend as one object; others never bleed into each other.
+  /// Translucent shapes with the same non-empty group blend as one object; others never bleed into each
+  /// other.
   std::string group;
 };
 
@@ -143,12 +144,13 @@ struct Camera {
 enum class PixelFilter { box, gaussian };
 
 struct Film {
-  std::array<int, 2> resolution{512, 512};   ///< width, height
-  std::optional<std::array<int, 4>> crop;    ///< x0, y0, x1, y1 in pixels, upper ends excluded; from top left
+  std::array<int, 2> resolution{512, 512};  ///< width, height
+  std::optional<std::array<int, 4>> crop;   ///< x0, y0, x1, y1 in pixels, upper ends excluded; from top left
   int samples_per_pixel = 1;
-  PixelFilter filter = PixelFilter::box;     ///< box of one pixel; gaussian of standard deviation 0.5, radius 1.5
-  bool half = true;                          ///< 16-bit EXR; false: 32-bit
-  double exposure = 0;                       ///< stops, for PNG only
+  PixelFilter filter =
+      PixelFilter::box;  ///< box of one pixel; gaussian of standard deviation 0.5, radius 1.5
+  bool half = true;      ///< 16-bit EXR; false: 32-bit
+  double exposure = 0;   ///< stops, for PNG only
 };
 
 enum class Method {
@@ -156,7 +158,13 @@ enum class Method {
   lambert,       ///< translucent surfaces as plain paint: the floor of all costs
   direct         ///< the BSSRDF sampled at random: the reference of `hierarchical`, noisy instead of biased
 };
-enum class EvaluatorKind { classic, brute_force };
+enum class EvaluatorKind {
+  dual_tree,   ///< clusters of points against nodes, to a tolerance
+  classic,     ///< each point walks the tree, as published
+  brute_force  ///< every sample
+};
+/// Of the dual tree's inner loops; automatic: the widest that the machine has.
+enum class InstructionSet { automatic, baseline, avx2, avx512 };
 enum class EntryStrategy { disc_axes, chords };
 
 /// Of `direct`, where neither Settings::entry_samples nor Settings::until_error says.
@@ -164,13 +172,15 @@ inline constexpr std::size_t kDefaultEntrySamples = 256;
 
 struct Settings {
   Method method = Method::hierarchical;
-  EvaluatorKind evaluator = EvaluatorKind::classic;
-  double max_solid_angle = 0.1;        ///< classic: open a node when area / distance^2 exceeds it, sr
-  bool near_field = true;              ///< split the kernel near the shading point
+  EvaluatorKind evaluator = EvaluatorKind::dual_tree;
+  double tolerance = 0.005;  ///< dual_tree: p99 of its relative error against the exact sum
+  InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
+  double max_solid_angle = 0.05;         ///< classic: open a node when area / distance^2 exceeds it, sr
+  bool near_field = true;                ///< split the kernel near the shading point
   std::optional<double> sample_spacing;  ///< sqrt(area / samples), mm; none: from the mean free path
-  std::optional<std::size_t> samples;  ///< per group; none: from the spacing
-  std::size_t max_samples = 2000000;   ///< per group
-  int light_samples = 64;              ///< shadow rays per sample (opaque: pixel) and light with an area
+  std::optional<std::size_t> samples;    ///< per group; none: from the spacing
+  std::size_t max_samples = 2000000;     ///< per group
+  int light_samples = 64;                ///< shadow rays per sample (opaque: pixel) and light with an area
   EntryStrategy entry_strategy = EntryStrategy::disc_axes;  ///< direct: how entry points are drawn
   std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
   std::optional<double> until_error;         ///< direct: stop at this estimated relative error of the pixels

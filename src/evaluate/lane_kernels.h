@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sums over nodes and samples at sixteen query points at once, for whatever vector registers the machine has.
+#pragma once
+
+#include <cstdint>
+
+#include "evaluate/lane_table.h"
+#include "opaline/octree/octree.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+inline constexpr int kLanes = 16;
+
+struct alignas(64) Packet {
+  float x[kLanes], y[kLanes], z[kLanes];     ///< positions, mm; lanes beyond the last query repeat it
+  float nx[kLanes], ny[kLanes], nz[kLanes];  ///< shading normals
+};
+
+/// Sums at a packet's points, in flux units per mm^2; channel by channel.
+struct alignas(64) PacketSums {
+  float exitance[3][kLanes];  ///< far kernel times flux
+  float spread[3][kLanes];    ///< of the samples of each leaf around their mean, squared
+  float squares[3][kLanes];   ///< of the samples' contributions
+  /// Samples of the same sheet within h, weighted by (1 - r^2/h^2)^2: area, flux, flux^2 / area.
+  float near_area[kLanes], near_flux[3][kLanes], near_squares[3][kLanes];
+};
+
+struct LaneInput {
+  const LaneTable& table;
+  const OctreeNode* nodes;
+  const TreeSample* samples;
+  const Vec3f* normals;
+  float near2;  ///< h^2
+};
+
+/// Kernels of one instruction set: the same operations on each lane, a*b+c rounded once where the set can
+/// (the results of two sets differ by 1e-6 or so).
+struct LaneKernels {
+  const char* name;
+  /// Adds nodes as points at their centroids with their second moment.
+  void (*add_nodes)(const LaneInput& input, const std::uint32_t* list, std::size_t count,
+                    const Packet& packet, PacketSums& sums);
+  /// Adds all samples of leaves one by one. `whole` collects the pairs (sample, lane bits) closer than h on
+  /// another sheet, which the table's kernel is not meant for; it has room for every sample of the leaves.
+  std::size_t (*add_leaves)(const LaneInput& input, const std::uint32_t* list, std::size_t count,
+                            const Packet& packet, PacketSums& sums, std::uint32_t (*whole)[2]);
+};
+
+extern const LaneKernels kBaselineKernels, kAvx2Kernels, kAvx512Kernels;
+
+/// Of the instruction set asked for; automatic: the widest that this machine has.
+/// error Error{bad_input}: this machine has not got it
+const LaneKernels& lane_kernels(InstructionSet wanted);
+
+}  // namespace opaline

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The loops of lane_kernels.h on vectors of LANES floats: included once for each instruction set, which defines LANES,
+// TARGET (a function attribute), the vectors V (float) and I (32-bit integers), and lookup, lookup_low (of the first 32
+// segments), any and bits. No function
+// here may be one of another file: the linker would keep one of them for all machines.
+
+TARGET static inline V splat(float f) { return V{} + f; }
+TARGET static inline V load(const float* p) {
+  V v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+TARGET static inline void store(float* p, V v) { __builtin_memcpy(p, &v, sizeof v); }
+TARGET static inline void add_to(float* p, V v) { store(p, load(p) + v); }
+TARGET static inline V larger(V a, V b) { return a > b ? a : b; }
+TARGET static inline V smaller(V a, V b) { return a < b ? a : b; }
+
+// Where q falls in the table.
+struct Place {
+  I segment;
+  V t;               // of the way through it
+  V inverse_width;   // of the segment, in q
+};
+
+TARGET static inline Place find(V q) {
+  constexpr std::int32_t kOne = 0x3F800000, kFraction = 0x003FFFFF;
+  const I bits = (I)q;
+  const I segment = (bits - kOne) >> 22, last = I{} + (LaneTable::kSegments - 1);
+  const I octave = bits & 0x7F800000;
+  return {segment > last ? last : segment, __builtin_convertvector(bits & kFraction, V) * 0x1p-22f,
+          (V)(0x7F800000 - octave)};
+}
+
+using Channel = std::array<std::array<float, LaneTable::kSegments>, 4>;
+
+// Of places in the first half of the table.
+TARGET static inline V near_kernel(const Channel& channel, const Place& at) {
+  const V c0 = lookup_low(channel[0].data(), at.segment), c1 = lookup_low(channel[1].data(), at.segment),
+          c2 = lookup_low(channel[2].data(), at.segment), c3 = lookup_low(channel[3].data(), at.segment);
+  return c0 + at.t * (c1 + at.t * (c2 + at.t * c3));
+}
+
+TARGET static inline V kernel(const Channel& channel, const Place& at) {
+  const V c0 = lookup(channel[0].data(), at.segment), c1 = lookup(channel[1].data(), at.segment),
+          c2 = lookup(channel[2].data(), at.segment), c3 = lookup(channel[3].data(), at.segment);
+  return c0 + at.t * (c1 + at.t * (c2 + at.t * c3));
+}
+
+// The kernel's sum over a node of second moment C around its centroid at d: F(s) + F' tr C + 2 F'' d'Cd, s = d'd. Kept
+// within a quarter and four times of F: close by, and far down an exponential, the series means nothing.
+TARGET static inline V node_kernel(const Channel& channel, const Place& at, V first, V second) {
+  const V c0 = lookup(channel[0].data(), at.segment), c1 = lookup(channel[1].data(), at.segment),
+          c2 = lookup(channel[2].data(), at.segment), c3 = lookup(channel[3].data(), at.segment);
+  const V value = c0 + at.t * (c1 + at.t * (c2 + at.t * c3));
+  const V slope = (c1 + at.t * (2 * c2 + 3 * at.t * c3)) * at.inverse_width;
+  const V curvature = (2 * c2 + 6 * at.t * c3) * (at.inverse_width * at.inverse_width);
+  const V corrected = value + slope * first + curvature * second;
+  return smaller(larger(corrected, 0.25f * value), 4.0f * value);
+}
+
+struct Offset {
+  V x, y, z;
+};
+
+TARGET static inline V square(const Offset& d) { return d.x * d.x + (d.y * d.y + d.z * d.z); }
+
+TARGET static inline V second_moment(const std::array<float, 6>& c, const Offset& d) {
+  return (c[0] * (d.x * d.x) + (c[1] * (d.y * d.y) + c[2] * (d.z * d.z))) +
+         2 * (c[3] * (d.x * d.y) + (c[4] * (d.x * d.z) + c[5] * (d.y * d.z)));
+}
+
+TARGET static void add_nodes_block(const LaneInput& input, const std::uint32_t* list, std::size_t count,
+                                   const Packet& packet, PacketSums& sums, int block) {
+  const V px = load(packet.x + block), py = load(packet.y + block), pz = load(packet.z + block);
+  const float unit = input.table.inverse_scale2;
+  V sum0{}, sum1{}, sum2{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const OctreeNode& node = input.nodes[list[i]];
+    const float trace = (node.spread[0] + node.spread[1] + node.spread[2]) * unit;
+    const bool one_centroid = node.x[0] == node.x[1] && node.x[0] == node.x[2] && node.y[0] == node.y[1] &&
+                              node.y[0] == node.y[2] && node.z[0] == node.z[1] && node.z[0] == node.z[2];
+    if (one_centroid) {
+      const Offset d{node.x[0] - px, node.y[0] - py, node.z[0] - pz};
+      const Place at = find(1 + square(d) * unit);
+      const V first = splat(trace), second = (2 * unit * unit) * second_moment(node.spread, d);
+      sum0 += node.flux[0] * node_kernel(input.table.coefficients[0], at, first, second);
+      sum1 += node.flux[1] * node_kernel(input.table.coefficients[1], at, first, second);
+      sum2 += node.flux[2] * node_kernel(input.table.coefficients[2], at, first, second);
+      continue;
+    }
+    V* const channel_sums[3] = {&sum0, &sum1, &sum2};
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (node.flux[c] == 0) continue;
+      const Offset d{node.x[c] - px, node.y[c] - py, node.z[c] - pz};
+      const Place at = find(1 + square(d) * unit);
+      const V second = (2 * unit * unit) * second_moment(node.spread, d);
+      *channel_sums[c] += node.flux[c] * node_kernel(input.table.coefficients[c], at, splat(trace), second);
+    }
+  }
+  add_to(sums.exitance[0] + block, sum0);
+  add_to(sums.exitance[1] + block, sum1);
+  add_to(sums.exitance[2] + block, sum2);
+}
+
+struct NearSums {
+  V area{}, flux0{}, flux1{}, flux2{}, squares0{}, squares1{}, squares2{};
+};
+
+// Notes a sample within h of some lanes; returns the lanes for which it is on another sheet.
+TARGET static inline std::uint32_t add_near(const LaneInput& input, const TreeSample& s, const Vec3f& normal,
+                                            const Packet& packet, int block, V s2, NearSums& near) {
+  const V facing = load(packet.nx + block) * normal.x +
+                   (load(packet.ny + block) * normal.y + load(packet.nz + block) * normal.z);
+  const I within = s2 < splat(input.near2), same = facing > splat(-0.5f);
+  const V rest = 1 - s2 * (1 / input.near2), zero{};
+  const V weight = (within & same) != 0 ? rest * rest : zero;
+  near.area += weight * s.area;
+  near.flux0 += weight * s.flux[0];
+  near.flux1 += weight * s.flux[1];
+  near.flux2 += weight * s.flux[2];
+  const V per_area = weight * (1 / s.area);
+  near.squares0 += per_area * (s.flux[0] * s.flux[0]);
+  near.squares1 += per_area * (s.flux[1] * s.flux[1]);
+  near.squares2 += per_area * (s.flux[2] * s.flux[2]);
+  return bits(within & ~same);
+}
+
+TARGET static std::size_t add_leaves_block(const LaneInput& input, const std::uint32_t* list, std::size_t count,
+                                           const Packet& packet, PacketSums& sums, int block,
+                                           std::uint32_t (*whole)[2], std::size_t wholes) {
+  const V px = load(packet.x + block), py = load(packet.y + block), pz = load(packet.z + block);
+  const float unit = input.table.inverse_scale2;
+  const auto& table = input.table.coefficients;
+  V all0{}, all1{}, all2{}, squares0{}, squares1{}, squares2{}, spread0{}, spread1{}, spread2{};
+  NearSums near;
+  for (std::size_t i = 0; i < count; ++i) {
+    const OctreeNode& leaf = input.nodes[list[i]];
+    V sum0{}, sum1{}, sum2{}, own0{}, own1{}, own2{};
+    for (std::uint32_t k = leaf.first; k < leaf.first + leaf.count; ++k) {
+      const TreeSample& s = input.samples[k];
+      const Offset d{s.x - px, s.y - py, s.z - pz};
+      const V s2 = square(d);
+      const Place at = find(1 + s2 * unit);
+      V c0, c1, c2;
+      if (any(at.segment > (LaneTable::kSegments / 2 - 1))) {
+        c0 = s.flux[0] * kernel(table[0], at);
+        c1 = s.flux[1] * kernel(table[1], at);
+        c2 = s.flux[2] * kernel(table[2], at);
+      } else {
+        c0 = s.flux[0] * near_kernel(table[0], at);
+        c1 = s.flux[1] * near_kernel(table[1], at);
+        c2 = s.flux[2] * near_kernel(table[2], at);
+      }
+      sum0 += c0;
+      sum1 += c1;
+      sum2 += c2;
+      own0 += c0 * c0;
+      own1 += c1 * c1;
+      own2 += c2 * c2;
+      if (!any(s2 < splat(input.near2))) continue;
+      const std::uint32_t other = add_near(input, s, input.normals[k], packet, block, s2, near);
+      if (other != 0) {
+        whole[wholes][0] = k;
+        whole[wholes++][1] = other << block;
+      }
+    }
+    const float inverse = 1 / float(leaf.count);
+    all0 += sum0;
+    all1 += sum1;
+    all2 += sum2;
+    squares0 += own0;
+    squares1 += own1;
+    squares2 += own2;
+    spread0 += own0 - sum0 * sum0 * inverse;
+    spread1 += own1 - sum1 * sum1 * inverse;
+    spread2 += own2 - sum2 * sum2 * inverse;
+  }
+  add_to(sums.exitance[0] + block, all0);
+  add_to(sums.exitance[1] + block, all1);
+  add_to(sums.exitance[2] + block, all2);
+  add_to(sums.squares[0] + block, squares0);
+  add_to(sums.squares[1] + block, squares1);
+  add_to(sums.squares[2] + block, squares2);
+  add_to(sums.spread[0] + block, spread0);
+  add_to(sums.spread[1] + block, spread1);
+  add_to(sums.spread[2] + block, spread2);
+  add_to(sums.near_area + block, near.area);
+  add_to(sums.near_flux[0] + block, near.flux0);
+  add_to(sums.near_flux[1] + block, near.flux1);
+  add_to(sums.near_flux[2] + block, near.flux2);
+  add_to(sums.near_squares[0] + block, near.squares0);
+  add_to(sums.near_squares[1] + block, near.squares1);
+  add_to(sums.near_squares[2] + block, near.squares2);
+  return wholes;
+}
+
+TARGET static void add_nodes(const LaneInput& input, const std::uint32_t* list, std::size_t count,
+                             const Packet& packet, PacketSums& sums) {
+  for (int block = 0; block < kLanes; block += LANES)
+    add_nodes_block(input, list, count, packet, sums, block);
+}
+
+TARGET static std::size_t add_leaves(const LaneInput& input, const std::uint32_t* list, std::size_t count,
+                                     const Packet& packet, PacketSums& sums, std::uint32_t (*whole)[2]) {
+  std::size_t wholes = 0;
+  for (int block = 0; block < kLanes; block += LANES)
+    wholes = add_leaves_block(input, list, count, packet, sums, block, whole, wholes);
+  return wholes;
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <emmintrin.h>
+
+#include "evaluate/lane_kernels.h"
+#include "opaline/core/error.h"
+
+#define LANES 4
+#define TARGET
+
+namespace opaline {
+namespace {
+
+typedef float V __attribute__((vector_size(16)));
+typedef std::int32_t I __attribute__((vector_size(16)));
+
+inline V lookup(const float* table, I segment) {
+  return V{table[segment[0]], table[segment[1]], table[segment[2]], table[segment[3]]};
+}
+inline V lookup_low(const float* table, I segment) {
+  return lookup(table, segment);
+}
+inline std::uint32_t bits(I mask) {
+  return std::uint32_t(_mm_movemask_ps((__m128)mask));
+}
+inline bool any(I mask) {
+  return bits(mask) != 0;
+}
+
+#include "evaluate/lane_kernels.inl"
+
+}  // namespace
+
+const LaneKernels kBaselineKernels{"baseline", add_nodes, add_leaves};
+
+const LaneKernels& lane_kernels(InstructionSet wanted) {
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"),
+             avx512 = avx2 && __builtin_cpu_supports("avx512f");
+  const auto missing = [](const char* name) {
+    return Error(ErrorKind::bad_input, {}, 0, 0, "settings.instruction_set: this machine has not got it",
+                 "\"automatic\"", name);
+  };
+  switch (wanted) {
+    case InstructionSet::baseline:
+      return kBaselineKernels;
+    case InstructionSet::avx2:
+      if (!avx2) throw missing("avx2");
+      return kAvx2Kernels;
+    case InstructionSet::avx512:
+      if (!avx512) throw missing("avx512");
+      return kAvx512Kernels;
+    case InstructionSet::automatic:
+      break;
+  }
+  return avx512 ? kAvx512Kernels : avx2 ? kAvx2Kernels : kBaselineKernels;
+}
+
+}  // namespace opaline

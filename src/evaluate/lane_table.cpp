@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluate/lane_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diffusion/interpolating_cubic.h"
+
+namespace opaline {
+namespace {
+
+double decay_of(const ChannelProfile& profile) {
+  if (const auto* dipole = std::get_if<Dipole>(&profile)) return dipole->sigma_tr;
+  if (const auto* normalized = std::get_if<NormalizedDiffusion>(&profile))
+    return normalized->d > 0 ? 1 / (3 * normalized->d) : 0;
+  return 0;
+}
+
+}  // namespace
+
+LaneTable make_lane_table(const DiffuseProfile& profile, double h, double r_max, bool split) {
+  LaneTable table;
+  const double scale = h / 4;
+  table.inverse_scale2 = float(1 / (scale * scale));
+  const std::array<double, 4> nodes = chebyshev_points();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const ChannelProfile& channel = profile.channels[c];
+    table.decay[c] = float(decay_of(channel));
+    const auto far_kernel = [&](double q) {
+      const double r = std::sqrt(std::max(0.0, q - 1)) * scale;
+      if (!split) return diffuse_reflectance_profile(channel, std::max(r, h / 10));
+      return r > 0 ? diffuse_reflectance_profile(channel, r) * far_weight(r / h) : 0;
+    };
+    for (int segment = 0; segment + 1 < LaneTable::kSegments; ++segment) {
+      const double octave = std::exp2(segment / 2), width = octave / 2,
+                   start = octave + (segment % 2) * width;
+      std::array<double, 4> values{};
+      for (std::size_t i = 0; i < 4; ++i) values[i] = far_kernel(start + width * nodes[i]);
+      const bool underflows = start > 32 && *std::ranges::min_element(values) * r_max * r_max < 1e-30;
+      const std::array<double, 4> cubic = interpolating_cubic(nodes, values);
+      for (std::size_t power = 0; power < 4 && !underflows; ++power)
+        table.coefficients[c][power][std::size_t(segment)] = float(cubic[power]);
+    }
+  }
+  return table;
+}
+
+}  // namespace opaline

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The far kernel as a small table that vector registers can look up.
+#pragma once
+
+#include <array>
+
+#include "opaline/diffusion/diffuse_profile.h"
+
+namespace opaline {
+
+/// R_far(r) = R_d w(r/h) as cubics in q = 1 + (r / r_0)^2, two segments an octave of q, found from the bits
+/// of q. The near field's radius h is where R_far is R_d again; r_0 = h/4 puts eight segments below it. Error
+/// under 1e-3 of R_far beyond h/8, and there on the sums over a surface under 1e-4; exactly 0 beyond 2^32
+/// r_0^2 or below 1e-30 of 1/r_max^2.
+struct alignas(64) LaneTable {
+  static constexpr int kSegments = 64;
+  /// [channel][power][segment]: coefficients of the fraction t in [0, 1) of the way through the segment.
+  std::array<std::array<std::array<float, kSegments>, 4>, 3> coefficients{};
+  float inverse_scale2 = 1;  ///< 1 / r_0^2
+  /// About -d ln R_d / dr far out, 1/mm: what an exponential adds to a power law.
+  std::array<float, 3> decay{};
+};
+
+/// h: near-field radius, mm; split: false for R_d itself, held constant below h/10.
+LaneTable make_lane_table(const DiffuseProfile& profile, double h, double r_max, bool split);
+
+}  // namespace opaline
