@@ -95,7 +95,7 @@ void fresnel(benchmark::State& state) {
 }
 BENCHMARK(fresnel);
 
-/// A sphere of some ten thousand triangles, the same for all.
+/// A sphere of some eighty thousand triangles, the same for all.
 struct Ball {
   World world;
   std::unique_ptr<RayScene> rays;
