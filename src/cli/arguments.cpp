@@ -15,6 +15,7 @@
 #include <set>
 #include <sstream>
 
+#include "cli/metadata.h"
 #include "opaline/core/error.h"
 #include "scene/json_tree.h"
 #include "scene/schema.h"
@@ -30,6 +31,7 @@ constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
   opaline render bunny.json -o bunny.exr --log json --threads 4
   opaline compare bunny.exr reference.exr --fail-above 1%
+  opaline bench bunny.json --csv bunny.csv --resolution 256x256
 
 Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the run failed (I/O, memory), 130 interrupted (Ctrl-C; old files stay).)";
 
@@ -66,6 +68,25 @@ Examples:
 
 Exit codes: 0 done, 1 above the bound or not finite, 2 bad input, 3 the error picture cannot be written.)";
 
+constexpr const char* kBenchNotes =
+    R"(For each scene: lambert, hierarchical and direct at several settings, each run a process of its own, the
+repeats of all taking turns. Prints medians, and ratios to lambert (CPU of the whole job, of the shading pass)
+of one round each; the CSV has all figures with their smallest and largest values, and the machine.
+
+error     rms relative error against two halves of a reference (compare --halves), worst channel;
+          "< 2": what could be told from the noise of the halves begins at 2 %
+p99       against the mean of the halves; in brackets the p99 of that mean's own noise
+
+Halves that the bench renders are kept (--reference-dir) and used again while scene, meshes and settings are
+the same; delete them when `direct` itself has changed. An interrupted one goes on where it stopped.
+
+Examples:
+  opaline bench bunny.json --csv bunny.csv --quick
+  opaline bench bunny.json ball.json --csv all.csv --resolution 256x256 --repeats 5
+  opaline bench bunny.json --csv bunny.csv --halves seed1.exr seed2.exr --rung near_field=false
+
+Exit codes: 0 done, 2 bad input, 3 a rung failed (its row says why) or the run did, 130 interrupted.)";
+
 /// What the options of render and info write to, before it becomes overrides.
 struct Options {
   std::string method, evaluator, resolution, crop;
@@ -78,6 +99,8 @@ struct Options {
   std::string log = "text";
   std::string fail_above;
   bool json = false;
+  std::string reference_error;
+  std::vector<std::string> rungs;
 };
 
 struct WholeRange {
@@ -86,7 +109,7 @@ struct WholeRange {
 
 // As the scene's check has them: here the message can name the option.
 constexpr WholeRange kSpp{1, 65536}, kSide{1, 65536}, kPixel{0, 65536}, kSeed{0, UINT64_MAX},
-    kThreads{1, 4096}, kEntrySamples{1, 1000000000};
+    kThreads{1, 4096}, kEntrySamples{1, 1000000000}, kRepeats{3, 1000};
 
 /// "640x480" -> "[640,480]"; empty if it is not `count` whole numbers in the range with the separator between
 /// them.
@@ -271,6 +294,51 @@ void add_compare_options(CLI::App& app, CompareArguments& compare, Options& opti
   app.footer(kCompareNotes);
 }
 
+std::string positive_share_check(const std::string& text) {
+  const std::optional<double> share = share_of(text);
+  return share && *share > 0 && *share <= 1 ? std::string()
+                                            : "expected a share such as 2% or .02, got " + text;
+}
+
+std::string rung_check(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  return equals != std::string::npos && equals > 0 && equals + 1 < text.size()
+             ? std::string()
+             : "expected a setting such as near_field=false, got " + text;
+}
+
+void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
+  app.add_option("SCENE", bench.scenes, "scene files (JSON with comments)")->required()->type_name("FILE");
+  app.add_option("--csv", bench.csv, "where to write all figures")->required()->type_name("FILE");
+  app.add_option("--resolution", options.resolution, "width and height of all pictures, e.g. 256x256")
+      ->check(list_check(resolution_json, "WIDTHxHEIGHT, each 1 to 65536, such as 640x480"))
+      ->type_name("WxH");
+  add_repeatable(app, "--set", options.sets, "change any value of the scenes; repeatable")
+      ->type_name("KEY=VALUE");
+  add_repeatable(app, "--rung", options.rungs,
+                 "one more hierarchical rung, with this one of the scene's settings; repeatable")
+      ->check(CLI::Validator([](std::string& text) { return rung_check(text); }, {}))
+      ->type_name("NAME=VALUE");
+  app.add_option("--repeats", bench.repeats, "runs of each rung, at least 3 (default 3)")
+      ->transform(whole_number(kRepeats))
+      ->type_name("N");
+  app.add_option("--threads", bench.threads, "of each run (default 1)")
+      ->transform(whole_number(kThreads))
+      ->type_name("N");
+  app.add_option("--halves", bench.halves, "two references with independent noise, of a single scene")
+      ->expected(2)
+      ->type_name("FILE");
+  app.add_option("--reference-error", options.reference_error,
+                 "noise of each half that the bench renders (default 2%)")
+      ->check(CLI::Validator([](std::string& text) { return positive_share_check(text); }, {}))
+      ->type_name("SHARE");
+  app.add_option("--reference-dir", bench.reference_dir,
+                 "keeps these halves; default: references beside the CSV")
+      ->type_name("FOLDER");
+  app.add_flag("--quick", bench.quick, "to try it: few rungs, 128 pixels wide");
+  app.footer(kBenchNotes);
+}
+
 std::vector<std::string> overrides_of(const Options& options) {
   std::vector<std::string> overrides;
   const auto add = [&](const char* key, const std::string& value) {
@@ -321,6 +389,22 @@ CompareArguments checked(CompareArguments compare, const Options& options) {
   return compare;
 }
 
+BenchArguments checked(BenchArguments bench, const Options& options) {
+  if (!bench.halves.empty() && bench.scenes.size() > 1)
+    throw usage_error("--halves are the reference of one scene", "a single scene",
+                      std::to_string(bench.scenes.size()));
+  if (!bench.halves.empty() && !(options.reference_error.empty() && bench.reference_dir.empty()))
+    throw usage_error(
+        "with --halves no reference is rendered: leave --reference-error and --reference-dir out");
+  if (!options.reference_error.empty()) bench.reference_error = *share_of(options.reference_error);
+  for (const std::string& text : options.rungs) {
+    const std::size_t equals = text.find('=');
+    bench.rungs.push_back({"hierarchical", "", text.substr(0, equals), text.substr(equals + 1)});
+  }
+  bench.overrides = overrides_of(options);
+  return bench;
+}
+
 /// Help and version are exceptions of CLI11 too.
 ShowText shown_text(CLI::App& app, const CLI::ParseError& request) {
   std::ostringstream out, error;
@@ -340,7 +424,7 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
   const std::vector<std::string> extras = app.remaining();
   if (!app.get_subcommands().empty() || extras.empty() || extras.front().starts_with('-'))
     return usage_error(failure.what() + hint(app));
-  constexpr std::array<std::string_view, 2> commands{"render", "info"};
+  constexpr std::array<std::string_view, 4> commands{"render", "info", "compare", "bench"};
   const std::string near = did_you_mean(extras.front(), commands);
   return usage_error("unknown command '" + printable(extras.front()) + "'" + near,
                      near.empty() ? "one of " + join(commands) : "");
@@ -361,6 +445,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   RenderArguments render;
   InfoArguments info;
   CompareArguments compare;
+  BenchArguments bench;
   Options options;
   CLI::App app("opaline renders translucent things fast, and says how accurate the picture is.", "opaline");
   app.get_formatter()->column_width(34);
@@ -372,10 +457,13 @@ Command parse_arguments(int argc, const char* const* argv) {
   CLI::App& info_command =
       *app.add_subcommand("info", "print what a scene requires and why; nothing is rendered");
   CLI::App& compare_command = *app.add_subcommand("compare", "print how far a picture is from a reference");
+  CLI::App& bench_command =
+      *app.add_subcommand("bench", "measure what scenes cost and how far off they are, at many settings");
   add_render_options(render_command, render, options);
   add_common_options(info_command, info.scene, options);
   add_picture_options(info_command, options);
   add_compare_options(compare_command, compare, options);
+  add_bench_options(bench_command, bench, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& failure) {
@@ -383,8 +471,12 @@ Command parse_arguments(int argc, const char* const* argv) {
     throw parse_error(app, failure);
   }
   if (app.get_subcommands().empty())
-    throw usage_error("no command given: render, info or compare" + hint(app));
+    throw usage_error("no command given: render, info, compare or bench" + hint(app));
   if (compare_command.parsed()) return checked(std::move(compare), options);
+  if (bench_command.parsed()) {
+    for (int i = 1; i < argc; ++i) bench.command_line += ' ' + shell_quoted(argv[i]);
+    return checked(std::move(bench), options);
+  }
   const LogFormat format = options.log == "json" ? LogFormat::json : LogFormat::text;
   info.log.format = render.log.format = format;
   info.overrides = render.overrides = overrides_of(options);

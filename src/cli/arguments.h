@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/log.h"
+#include "opaline/report/ladder.h"
 
 namespace opaline {
 
@@ -39,12 +40,26 @@ struct CompareArguments {
   Log log;
 };
 
+struct BenchArguments {
+  std::vector<std::string> scenes;     ///< at least one
+  std::vector<std::string> overrides;  ///< as RenderArguments
+  std::string csv;
+  std::vector<std::string> halves;  ///< none, or two with a single scene
+  double reference_error = .02;
+  std::string reference_dir;  ///< empty: beside the CSV
+  std::vector<Rung> rungs;    ///< more than the ladder has
+  int repeats = 3, threads = 1;
+  bool quick = false;
+  std::string command_line;
+  Log log;
+};
+
 /// --help or --version: text to print, and done.
 struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments>;
+using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments>;
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case

@@ -19,4 +19,10 @@ void info_command(const InfoArguments& arguments);
 ///       Error{run_failed}: stdout or the error picture cannot be written
 int compare_command(const CompareArguments& arguments);
 
+/// Measures each scene's rungs, prints a table and writes the CSV; the exit code: 0, or 3 where a rung
+/// failed.
+/// error Error{bad_input}: a scene or half that cannot be used; Error{run_failed}: the reference cannot be
+///       made, the CSV or stdout not be written; Error{interrupted}: the old CSV stays
+int bench_command(const BenchArguments& arguments);
+
 }  // namespace opaline

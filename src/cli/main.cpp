@@ -12,6 +12,8 @@ int run(const opaline::Command& command) {
   if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) opaline::info_command(*info);
   if (const auto* compare = std::get_if<opaline::CompareArguments>(&command))
     return opaline::compare_command(*compare);
+  if (const auto* bench = std::get_if<opaline::BenchArguments>(&command))
+    return opaline::bench_command(*bench);
   return 0;
 }
 
@@ -19,6 +21,7 @@ opaline::Log log_of(const opaline::Command& command) {
   if (const auto* render = std::get_if<opaline::RenderArguments>(&command)) return render->log;
   if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) return info->log;
   if (const auto* compare = std::get_if<opaline::CompareArguments>(&command)) return compare->log;
+  if (const auto* bench = std::get_if<opaline::BenchArguments>(&command)) return bench->log;
   return {};
 }
 

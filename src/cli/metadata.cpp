@@ -50,14 +50,6 @@ Json settings_json(const Scene& scene, const Precompute& precompute) {
   return json;
 }
 
-std::string shell_quoted(const std::string& argument) {
-  const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=,:+-%@";
-  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) return argument;
-  std::string quoted = "'";
-  for (const char c : argument) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string command_line(const std::string& scene, const std::vector<std::string>& overrides) {
   std::string line = "opaline render " + shell_quoted(scene);
   for (const std::string& text : overrides) line += " --set " + shell_quoted(text);
@@ -65,6 +57,14 @@ std::string command_line(const std::string& scene, const std::vector<std::string
 }
 
 }  // namespace
+
+std::string shell_quoted(const std::string& argument) {
+  const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=,:+-%@";
+  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos) return argument;
+  std::string quoted = "'";
+  for (const char c : argument) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
 
 // Lengths go in front: what is hashed can be cut in one way only.
 std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,

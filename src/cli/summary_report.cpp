@@ -78,7 +78,11 @@ Json done_json(const Summary& summary) {
 }  // namespace
 
 Json stage_json(const StageCost& cost) {
-  return {{"stage", cost.stage}, {"wall_seconds", cost.wall_seconds}, {"cpu_seconds", cost.cpu_seconds}};
+  return {{"stage", cost.stage},
+          {"wall_seconds", cost.wall_seconds},
+          {"cpu_seconds", cost.cpu_seconds},
+          {"system_seconds", cost.system_seconds},
+          {"peak_memory_bytes", cost.peak_memory}};
 }
 
 void print_stage(const Log& log, const StageCost& cost) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/render/precompute.h"
 
+#include <algorithm>
+
 #include "opaline/core/random.h"
 #include "opaline/irradiance/light_sampling.h"
 
@@ -19,6 +21,8 @@ std::vector<FluxSample> flux_samples(const TranslucentGroup& group) {
 void add_cost(StageCost& total, const StageCost& part) {
   total.wall_seconds += part.wall_seconds;
   total.cpu_seconds += part.cpu_seconds;
+  total.system_seconds += part.system_seconds;
+  total.peak_memory = std::max(total.peak_memory, part.peak_memory);
 }
 
 }  // namespace

@@ -68,6 +68,11 @@ class Child {
     return within(seconds, [&] { return bytes_of(prints_.file("out")).find(text) != std::string::npos; });
   }
 
+  /// The same of its standard error.
+  bool complains(const std::string& text, double seconds = 60) const {
+    return within(seconds, [&] { return bytes_of(prints_.file("err")).find(text) != std::string::npos; });
+  }
+
   /// Its end; killed (signal SIGKILL) if it takes longer.
   Outcome wait(double seconds = 120) {
     int status = 0;

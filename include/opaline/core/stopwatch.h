@@ -11,7 +11,9 @@ namespace opaline {
 struct StageCost {
   std::string stage;
   double wall_seconds = 0;
-  double cpu_seconds = 0;  ///< user and system, all threads
+  double cpu_seconds = 0;       ///< user and system, all threads
+  double system_seconds = 0;    ///< the system's part of it; the kernel tells the two apart by its ticks
+  std::size_t peak_memory = 0;  ///< of the process up to the end of the stage, bytes
 };
 
 /// Starts at construction.
@@ -22,7 +24,7 @@ class Stopwatch {
 
  private:
   std::chrono::steady_clock::time_point wall_;
-  double cpu_;
+  double user_, system_;
 };
 
 /// Largest resident set of this process so far, bytes.

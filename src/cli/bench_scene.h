@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene of a benchmark: its rungs, its reference.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "opaline/core/monitor.h"
+#include "opaline/report/ladder.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// Two pictures with independent noise.
+struct BenchReference {
+  std::array<std::string, 2> halves;  ///< file names
+  std::array<std::string, 2> seeds;   ///< "unknown" where a file does not say
+  std::string made;                   ///< in words
+};
+
+struct BenchScene {
+  std::string file;
+  std::vector<std::string> overrides;  ///< of every run, before a rung's own
+  Scene scene;                         ///< without its meshes
+  std::vector<Rung> rungs;
+  BenchReference reference;
+  std::uint64_t direct_seed = 0;  ///< of the direct rungs: not one of the reference's
+};
+
+/// Its settings and rungs; the plan is asked of a child process.
+/// error Error{bad_input} as load_scene and make_plan
+BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& file, Monitor& monitor);
+
+/// The user's halves, or two direct renderings, kept in and taken from `folder` under names that hold their
+/// key. error Error{bad_input}: halves of another size; Error{run_failed}: a rendering failed
+void prepare_reference(const BenchArguments& arguments, const std::string& folder, BenchScene& scene,
+                       Monitor& monitor);
+
+/// Command line of a rung's run, for run_own_child.
+std::vector<std::string> render_arguments(const BenchArguments& arguments, const BenchScene& scene,
+                                          const Rung& rung, const std::string& output);
+
+}  // namespace opaline

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where and with what a benchmark ran.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace opaline {
+
+/// version, date, cpu, cores, load (of the last minute, before the benchmark), system, compiler, build.
+std::vector<std::pair<std::string, std::string>> machine_notes();
+
+}  // namespace opaline
