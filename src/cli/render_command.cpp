@@ -139,6 +139,7 @@ Summary summarize(const Scene& scene, const Precompute& samples, const Shading& 
   Summary summary;
   summary.peak_memory = peak_memory();
   summary.queries = shading.picture.queries;
+  summary.estimated_error = estimated_relative_error(shading.picture.image);
   if (shading.direct) {
     summary.entry_samples = shading.direct->entry_samples;
     summary.direct_error = shading.direct->relative_error;

@@ -26,6 +26,7 @@ struct Summary {
   std::size_t peak_memory = 0;  ///< bytes
   std::size_t samples = 0, queries = 0;
   std::vector<LightNoise> noise;
+  double estimated_error = 0;     ///< of `hierarchical`, see estimated_relative_error; 0: there is none
   std::size_t entry_samples = 0;  ///< of `direct`, a pixel
   double direct_error = 0;        ///< its relative_noise
   /// Of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.

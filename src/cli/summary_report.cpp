@@ -43,6 +43,9 @@ void print_text(const Summary& summary) {
     row("samples",
         fmt::format("{} entry samples a pixel; noise {:.3g} % (standard error, rms over the pixels)",
                     grouped(summary.entry_samples), 100 * summary.direct_error));
+  if (summary.estimated_error > 0)
+    row("error", fmt::format("estimated {:.2g} % (mean relative error of the diffuse light, worst channel)",
+                             100 * summary.estimated_error));
   for (const LightNoise& noise : summary.noise)
     row("noise", fmt::format("irradiance from {} on {}: {:.2g} % (standard error at a sample)", noise.light,
                              noise.group, 100 * noise.relative_error));
@@ -67,6 +70,7 @@ Json done_json(const Summary& summary) {
           {"samples", summary.samples},
           {"queries", summary.queries},
           {"irradiance_noise", noise},
+          {"estimated_error", summary.estimated_error},
           {"entry_samples", summary.entry_samples},
           {"direct_noise", summary.direct_error},
           {"shading_rays", summary.rays},

@@ -65,6 +65,15 @@ double own_share(const ChannelProfile& profile, double h) {
   return flux > 0 ? std::clamp(1 - 4 * moment / flux, 0.0, 1.0) : 0;
 }
 
+// SplitKernel::own_irradiance; near: the near field's share of the total.
+float own_irradiance(const ChannelProfile& profile, double h, double near, NearIrradiance wanted) {
+  if (wanted != NearIrradiance::mixed) return wanted == NearIrradiance::point ? 1.0f : 0.0f;
+  // Where little of the light depends on it the irradiance at the point is not worth its shadow rays; faded, for
+  // spacings differ a little with the seed.
+  const double own = own_share(profile, h), t = std::clamp((own * near - 0.02) / 0.02, 0.0, 1.0);
+  return float(own * t * t * (3 - 2 * t));
+}
+
 struct NoCount {
   void node() {}
   void kernels(std::size_t) {}
@@ -82,7 +91,8 @@ Exitance evaluate_one(const EvaluateInput& input, std::size_t q) {
 
 }  // namespace
 
-SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, double extent, bool split) {
+SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, double extent, bool split,
+                              NearIrradiance near_irradiance) {
   // Closer than a quarter of the spacing, R_d w is negligible; without the split R_d is held there.
   const double r_min = spacing / 4, radius = 2.5 * spacing;
   SplitKernel kernel{
@@ -93,12 +103,9 @@ SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, dou
   for (std::size_t c = 0; c < 3; ++c) kernel.total[c] = float(profile.total[c]);
   for (std::size_t c = 0; split && c < 3; ++c) {
     kernel.near[c] = float(near_field_reflectance(profile.channels[c], radius));
-    // Where little of the light depends on it the irradiance at the point is not worth its shadow rays;
-    // faded, for spacings differ a little with the seed.
-    const double own = own_share(profile.channels[c], radius), near = double(kernel.near[c]);
-    const double weight = near > 0 ? own * near / profile.total[c] : 0,
-                 t = std::clamp((weight - 0.02) / 0.02, 0.0, 1.0);
-    kernel.own_irradiance[c] = float(own * t * t * (3 - 2 * t));
+    if (kernel.near[c] > 0)
+      kernel.own_irradiance[c] = own_irradiance(profile.channels[c], radius,
+                                                double(kernel.near[c]) / profile.total[c], near_irradiance);
   }
   return kernel;
 }

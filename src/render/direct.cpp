@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -166,11 +167,21 @@ DirectResult render_direct(const DirectInput& input, DirectState& state) {
     return settings.until_error && state.passes >= kFewestPasses &&
            relative_noise(state) <= *settings.until_error;
   };
-  if (input.monitor != nullptr)  // the picture of the other layers is one pass more
-    input.monitor->begin("shading",
-                         (std::max(passes, state.passes) - state.passes + 1) * renderer.work_per_pass());
+  const std::size_t first = state.passes;
+  // The picture of the other layers is one pass more.
+  const auto expect = [&](std::size_t all) {
+    if (input.monitor != nullptr)
+      input.monitor->total = (std::max(all, state.passes) - first + 1) * renderer.work_per_pass();
+  };
+  if (input.monitor != nullptr) input.monitor->begin("shading", 0);
+  expect(settings.until_error ? 0 : passes);
   while (state.passes < passes && !good_enough()) {
     renderer.add_pass(state);
+    // How many it takes is guessed anew each time that the passes have doubled: noise falls with their root.
+    if (settings.until_error && state.passes >= kFewestPasses && std::has_single_bit(state.passes)) {
+      const double ratio = relative_noise(state) / *settings.until_error;
+      expect(std::size_t(std::min(double(passes), double(state.passes) * ratio * ratio)));
+    }
     if (input.after_pass) input.after_pass(state);
   }
   DirectResult result;

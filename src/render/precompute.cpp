@@ -54,7 +54,8 @@ Precompute precompute(const PrecomputeInput& input) {
 
     const Stopwatch octree_watch;
     SplitKernel kernel =
-        make_split_kernel(profile, surface.spacing(), input.world.diagonal, settings.near_field);
+        make_split_kernel(profile, surface.spacing(), input.world.diagonal, settings.near_field,
+                          settings.near_irradiance);
     TranslucentGroup group{plan,  profile, std::move(surface), std::move(transfers), std::move(entered),
                            noise, {},      std::move(kernel)};
     group.octree = build_octree(flux_samples(group));

@@ -22,9 +22,10 @@ std::vector<Series> all_series(std::size_t samples) {
                     fourfold = scaled(samples, 4);
   return {
       {"lambert", "", "", {""}, {""}},
+      {"hierarchical", "dual_tree", "tolerance", {"0.1", "0.02", "0.005", "0.001"}, {"0.02"}},
       {"hierarchical", "classic", "max_solid_angle", {"0.4", "0.1", "0.05", "0.02"}, {"0.4", "0.1"}},
       {"hierarchical", "brute_force", "", {""}, {}},
-      {"hierarchical", "classic", "samples", {quarter, planned, fourfold}, {quarter}},
+      {"hierarchical", "dual_tree", "samples", {quarter, planned, fourfold}, {quarter}},
       {"direct", "", "entry_samples", {"16", "64", "256"}, {"16"}},
   };
 }

@@ -11,6 +11,7 @@ constexpr std::array<std::string_view, 2> pixel_type_names{"half", "float"};
 constexpr std::array<std::string_view, 3> method_names{"hierarchical", "lambert", "direct"};
 constexpr std::array<std::string_view, 3> evaluator_names{"dual_tree", "classic", "brute_force"};
 constexpr std::array<std::string_view, 4> instruction_set_names{"automatic", "baseline", "avx2", "avx512"};
+constexpr std::array<std::string_view, 3> near_irradiance_names{"mixed", "samples", "point"};
 constexpr std::array<std::string_view, 2> strategy_names{"disc_axes", "chords"};
 
 constexpr std::uint64_t largest_side = 65536, most_pixels = std::uint64_t{1} << 28;
@@ -89,6 +90,8 @@ Settings read_settings(const Value& value, double mm_per_unit) {
   if (const auto angle = reader.find("max_solid_angle"))
     settings.max_solid_angle = angle->number({0, 1e30, true, false});
   if (const auto near_field = reader.find("near_field")) settings.near_field = near_field->boolean();
+  if (const auto near_irradiance = reader.find("near_irradiance"))
+    settings.near_irradiance = static_cast<NearIrradiance>(near_irradiance->choice(near_irradiance_names));
   if (const auto spacing = reader.find("sample_spacing"))
     settings.sample_spacing = spacing->length(mm_per_unit);
   if (const auto samples = reader.find("samples")) settings.samples = samples->integer(1, most_samples);

@@ -38,7 +38,7 @@ const std::vector<Section>& sections() {
       {"camera", {"position", "look_at", "up", "field_of_view"}},
       {"film", {"resolution", "crop", "samples_per_pixel", "filter", "pixel_type", "exposure"}},
       {"settings",
-       {"method", "evaluator", "tolerance", "instruction_set", "max_solid_angle", "near_field",
+       {"method", "evaluator", "tolerance", "instruction_set", "max_solid_angle", "near_field", "near_irradiance",
         "sample_spacing", "samples", "max_samples", "light_samples", "entry_strategy", "entry_samples",
         "until_error", "seed"}},
   };

@@ -41,7 +41,8 @@ struct SplitKernel {
 };
 
 /// in    spacing: sqrt(area / samples), mm; extent: largest distance between a query and a sample, mm
-SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, double extent, bool split);
+SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, double extent, bool split,
+                              NearIrradiance near_irradiance = NearIrradiance::mixed);
 
 struct Query {
   Vec3f position;  ///< mm, recentred as the samples are

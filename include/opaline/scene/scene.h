@@ -163,6 +163,8 @@ enum class EvaluatorKind {
   classic,     ///< each point walks the tree, as published
   brute_force  ///< every sample
 };
+/// Where the irradiance of the near field is taken from; mixed: as much of each as keeps the kernel's width.
+enum class NearIrradiance { mixed, samples, point };
 /// Of the dual tree's inner loops; automatic: the widest that the machine has.
 enum class InstructionSet { automatic, baseline, avx2, avx512 };
 enum class EntryStrategy { disc_axes, chords };
@@ -177,6 +179,7 @@ struct Settings {
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
   double max_solid_angle = 0.05;         ///< classic: open a node when area / distance^2 exceeds it, sr
   bool near_field = true;                ///< split the kernel near the shading point
+  NearIrradiance near_irradiance = NearIrradiance::mixed;
   std::optional<double> sample_spacing;  ///< sqrt(area / samples), mm; none: from the mean free path
   std::optional<std::size_t> samples;    ///< per group; none: from the spacing
   std::size_t max_samples = 2000000;     ///< per group

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "opaline/render/render.h"
+
+namespace opaline {
+namespace {
+
+// One channel of a layer, lit pixels only.
+struct Pixels {
+  std::vector<double> diffuse, error;
+};
+
+Pixels lit_pixels(const Image& image, std::size_t diffuse, std::size_t error) {
+  Pixels lit;
+  for (std::size_t at = 0; at < image.pixels.size(); at += image.channels.size())
+    if (image.pixels[at + diffuse] > 0) {
+      lit.diffuse.push_back(double(image.pixels[at + diffuse]));
+      lit.error.push_back(double(image.pixels[at + error]));
+    }
+  return lit;
+}
+
+double mean_relative(const Pixels& lit) {
+  if (lit.diffuse.empty()) return 0;
+  std::vector<double> sorted = lit.diffuse;
+  const auto p99 = sorted.begin() + std::ptrdiff_t(double(sorted.size() - 1) * 0.99);
+  std::ranges::nth_element(sorted, p99);
+  const double floor = 1e-3 * *p99;
+  double sum = 0;
+  for (std::size_t i = 0; i < lit.error.size(); ++i) sum += lit.error[i] / std::max(lit.diffuse[i], floor);
+  // Standard errors; a normal distribution's mean deviation is sqrt(2/pi) of that.
+  return sum / double(lit.error.size()) * std::sqrt(2 * std::numbers::inv_pi);
+}
+
+}  // namespace
+
+double estimated_relative_error(const Image& image) {
+  const auto place = [&](const std::string& name) {
+    return std::size_t(std::ranges::find(image.channels, name) - image.channels.begin());
+  };
+  double worst = 0;
+  for (const char* part : {".R", ".G", ".B"}) {
+    const std::size_t diffuse = place(std::string("diffuse") + part), error = place(std::string("error") + part);
+    if (diffuse < image.channels.size() && error < image.channels.size())
+      worst = std::max(worst, mean_relative(lit_pixels(image, diffuse, error)));
+  }
+  return worst;
+}
+
+}  // namespace opaline
