@@ -27,6 +27,36 @@ std::vector<Bisector> bisectors(const Vec3f& p, std::span<const SurfaceSample> s
   return all;
 }
 
+// A sample's triangle, and places on it from places in its plane.
+class OwnTriangle {
+ public:
+  OwnTriangle(const RayScene& rays, const SurfaceSample& s) : hit_{} {
+    const Vec3f a = rays.surface_point(s.mesh, s.triangle, 0, 0).position;
+    const Vec3f ab = rays.surface_point(s.mesh, s.triangle, 1, 0).position - a,
+                ac = rays.surface_point(s.mesh, s.triangle, 0, 1).position - a, normal = cross(ab, ac);
+    const float scale = 1 / dot(normal, normal);
+    along_u_ = cross(ac, normal) * scale;
+    along_v_ = cross(normal, ab) * scale;
+    hit_.mesh = s.mesh;
+    hit_.triangle = s.triangle;
+    hit_.u = s.u;
+    hit_.v = s.v;
+  }
+
+  /// The place at d from the sample as a hit, of Hit::kMiss where it is outside.
+  Hit at(const Vec3f& d) const {
+    Hit hit = hit_;
+    hit.u += dot(d, along_u_);
+    hit.v += dot(d, along_v_);
+    if (!(hit.u >= 0 && hit.v >= 0 && hit.u + hit.v <= 1)) hit.mesh = Hit::kMiss;
+    return hit;
+  }
+
+ private:
+  Hit hit_;
+  Vec3f along_u_, along_v_;  // u and v of d are its products with these
+};
+
 }  // namespace
 
 std::vector<bool> meshes_of(std::span<const SurfaceSample> samples) {
@@ -50,6 +80,7 @@ CellPoints::Range CellPoints::add(std::uint32_t index, std::span<const std::uint
   Vec3f x, y;
   tangent_frame(normal, x, y);
   const std::vector<Bisector> sides = bisectors(s.position, samples_, neighbours);
+  const OwnTriangle own(rays_, s);
   const std::array<double, 2> shift = {unit_double(hash_bits(0, 2 * std::uint64_t(index))),
                                        unit_double(hash_bits(0, 2 * std::uint64_t(index) + 1))};
   Range range{std::uint32_t(traced_.size()), 0};
@@ -59,9 +90,11 @@ CellPoints::Range CellPoints::add(std::uint32_t index, std::span<const std::uint
     const float distance2 = dot(d, d);
     if (distance2 > radius_ * radius_) continue;
     if (std::ranges::any_of(sides, [&](const Bisector& b) { return dot(d, b.away) > b.half2; })) continue;
-    const float distance = std::sqrt(distance2);
-    traced_.push_back({Ray(s.position + d + normal * distance, -normal, 2 * distance), {}});
-    lengths_.push_back(2 * distance);
+    const Hit on_own = own.at(d);
+    // No ray finds the own triangle more surely; Embree leaves rays that end before they begin alone.
+    const float distance = std::sqrt(distance2), end = on_own.mesh == Hit::kMiss ? 2 * distance : -1;
+    traced_.push_back({Ray(s.position + d + normal * distance, -normal, end), on_own});
+    lengths_.push_back(end);
     ++range.count;
   }
   return range;

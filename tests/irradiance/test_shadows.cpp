@@ -10,8 +10,9 @@ namespace {
 using namespace test;
 
 // Claim: a 4 x 4 lid at half height under a point light shades the 8 x 8 square below it exactly, whichever
-// side of the lid is up, and nothing else. Source: similar triangles. Tolerance: none beyond a cell's reach, a
-// spacing, inside the shadow's edge, and .01 mm outside of it. Fails if: shadow rays are not traced, run past the light, or cull back faces.
+// side of the lid is up, and nothing else. Source: similar triangles. Tolerance: none beyond a cell's reach,
+// a spacing, inside the shadow's edge, and .01 mm outside of it. Fails if: shadow rays are not traced, run
+// past the light, or cull back faces.
 TEST(Shadows, OfALidAreSharp) {
   for (const bool up : {false, true}) {
     const Vec3d u{4, 0, 0}, v{0, 0, 4};
