@@ -159,7 +159,8 @@ TEST(ShadowEdges, UnderAThingThatStandsOnTheSurface) {
 }
 
 // Claim: the same bytes for one thread and two (a power of two times all lengths: WeightBytes). Source: the
-// project's promise. Tolerance: none. Fails if: averages are written while neighbours are read.
+// project's promise. Tolerance: none. Fails if: points are drawn from a generator that all
+// threads share.
 TEST(ShadowEdges, SameBytes) {
   const HalfPlane scene(3);
   for (const EdgeCase& c : edge_cases()) {
