@@ -25,7 +25,9 @@ struct IrradianceInput {
 /// E(x) = integral of L_i Ft(omega_i) cos d omega is linear in each light's colour, and Ft is the same for all
 /// channels: one number a sample and light is enough, and recolouring a light traces no ray.
 struct LightTransfer {
-  std::vector<float> weights;  ///< one a sample: E per unit emission, >= 0
+  /// One a sample: E per unit emission, >= 0, at the sample's point; beside the edge of this light's shadow the mean
+  /// over its Voronoi cell (an area light then has twice the rays, and relative_error does not know of them).
+  std::vector<float> weights;
   /// RMS over the samples of the estimated standard error, over the mean; 0 for point and
   /// directional lights, and for a single light sample, which cannot tell.
   double relative_error = 0;

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shadow rays of many points towards one light, traced together.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "opaline/core/random.h"
+#include "opaline/diffusion/fresnel.h"
+#include "opaline/geometry/world.h"
+#include "opaline/irradiance/light_sampling.h"
+
+namespace opaline {
+
+/// Points whose rays are traced at once: enough for coherent batches, few enough to bound their memory.
+inline std::size_t batch_points(int light_samples) {
+  return std::clamp<std::size_t>(16384 / std::size_t(light_samples), 1, 256);
+}
+
+/// Shadow rays of a batch of points towards one light, with what each carries if nothing blocks it.
+class ShadowBatch {
+ public:
+  /// samples: rays a point; 1 for lights without an area, whatever is asked.
+  ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
+      : rays_(rays), light_(light), eta_(float(eta)), samples_(is_delta(light) ? 1 : samples), seed_(seed) {}
+
+  int samples() const { return samples_; }
+
+  void reserve(std::size_t points) {
+    carried_.reserve(points * std::size_t(samples_));
+    shadow_.reserve(points * std::size_t(samples_));
+  }
+
+  /// Adds all rays of one point; `index` chooses its rotation of the low-discrepancy points, `first` where
+  /// among them it begins.
+  void add(const SurfacePoint& point, std::uint64_t index, std::uint64_t first = 0) {
+    std::array<double, 2> shift{};
+    if (!is_delta(light_))
+      shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
+    for (int s = 0; s < samples_; ++s) {
+      const LightSample sample = sample_light(light_, point.position, point.normal,
+                                              r2_point(first + std::uint64_t(s), shift), samples_);
+      const float cosine = dot(point.normal, sample.direction);
+      float carried = 0;
+      if (sample.weight > 0 && cosine > 0 && dot(point.geometric, sample.direction) > 0) {
+        carried =
+            sample.weight * cosine * (eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f);
+      }
+      carried_.push_back(carried);
+      if (carried > 0) {
+        const Vec3f origin = point.position + point.geometric * rays_.offset(point);
+        shadow_.push_back({origin, sample.direction, sample.distance * 0.9999f});
+      }
+    }
+  }
+
+  /// Calls use(point in batch, sample, contribution, contribution were nothing in the way) for each ray in
+  /// order, then forgets them.
+  template <class Use>
+  void trace(const Use& use) {
+    rays_.occluded(shadow_);
+    std::size_t ray = 0;
+    for (std::size_t i = 0; i < carried_.size(); ++i) {
+      const bool lit = carried_[i] > 0 && shadow_[ray++].far >= 0;
+      use(i / std::size_t(samples_), int(i % std::size_t(samples_)), lit ? carried_[i] : 0.0f, carried_[i]);
+    }
+    carried_.clear();
+    shadow_.clear();
+  }
+
+ private:
+  const RayScene& rays_;
+  const Light& light_;
+  float eta_;
+  int samples_;
+  std::uint64_t seed_;
+  std::vector<float> carried_;
+  std::vector<Ray> shadow_;
+};
+
+}  // namespace opaline
