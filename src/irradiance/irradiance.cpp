@@ -12,6 +12,26 @@
 namespace opaline {
 namespace {
 
+// The first and the second half of the low-discrepancy points, each such a set itself, estimate the error of
+// their mean: its variance is (difference of the halves' means)^2 times n0 n1 / n^2.
+class Halves {
+ public:
+  explicit Halves(int samples) : first_(samples / 2) {
+    const double n0 = double(first_), n1 = double(samples - first_);
+    weight0_ = first_ > 0 ? std::sqrt(n1 / n0) : 0;
+    weight1_ = std::sqrt(n0 / n1);
+  }
+  std::size_t of(int sample) const { return sample < first_ ? 0 : 1; }
+  double variance(const std::array<double, 2>& sums) const {
+    const double difference = weight0_ * sums[0] - weight1_ * sums[1];
+    return difference * difference;
+  }
+
+ private:
+  int first_;
+  double weight0_, weight1_;
+};
+
 struct ErrorSums {
   double variance = 0, sum = 0;
 };
@@ -24,33 +44,28 @@ LightTransfer transfer_from(const IrradianceInput& input, const Light& light, st
   unblocked.resize(input.samples.size());
   const std::size_t batch_size = batch_points(input.light_samples);
   std::vector<ErrorSums> errors(chunk_count(input.samples.size(), batch_size));
-  parallel_chunks(
-      input.samples.size(), batch_size, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        ShadowBatch batch(input.rays, light, input.eta, input.light_samples, seed);
-        batch.reserve(end - begin);
-        for (std::size_t i = begin; i < end; ++i) {
-          const SurfaceSample& s = input.samples[i];
-          batch.add(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v), i);
-        }
-        // The first and the second half of the low-discrepancy points, each such a set itself, estimate the
-        // error of their mean: its variance is (difference of the halves' means)^2 times n0 n1 / n^2.
-        const int first_half = batch.samples() / 2;
-        const double n0 = double(first_half), n1 = double(batch.samples() - first_half);
-        const double weight0 = first_half > 0 ? std::sqrt(n1 / n0) : 0, weight1 = std::sqrt(n0 / n1);
-        std::vector<std::array<double, 2>> halves(end - begin);
-        batch.trace([&](std::size_t p, int s, float e, float free) {
-          halves[p][s < first_half ? 0 : 1] += double(e);
-          unblocked[begin + p] += free;
-        });
-        for (std::size_t p = 0; p < halves.size(); ++p) {
-          const double sum = halves[p][0] + halves[p][1],
-                       difference = weight0 * halves[p][0] - weight1 * halves[p][1];
-          transfer.weights[begin + p] = float(sum);
-          errors[chunk].variance += difference * difference;
-          errors[chunk].sum += sum;
-        }
-        advance(input.monitor, end - begin);
-      });
+  parallel_chunks(input.samples.size(), batch_size,
+                  [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                    ShadowBatch batch(input.rays, light, input.eta, input.light_samples, seed);
+                    batch.reserve(end - begin);
+                    for (std::size_t i = begin; i < end; ++i) {
+                      const SurfaceSample& s = input.samples[i];
+                      batch.add(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v), i);
+                    }
+                    const Halves halves(batch.samples());
+                    std::vector<std::array<double, 2>> sums(end - begin);
+                    batch.trace([&](std::size_t p, int s, float e, float free) {
+                      sums[p][halves.of(s)] += double(e);
+                      unblocked[begin + p] += free;
+                    });
+                    for (std::size_t p = 0; p < sums.size(); ++p) {
+                      const double sum = sums[p][0] + sums[p][1];
+                      transfer.weights[begin + p] = float(sum);
+                      errors[chunk].variance += halves.variance(sums[p]);
+                      errors[chunk].sum += sum;
+                    }
+                    advance(input.monitor, end - begin);
+                  });
   if (is_delta(light) || input.light_samples < 2) return transfer;
   ErrorSums all;
   for (const ErrorSums& e : errors) {
@@ -106,7 +121,17 @@ std::vector<RgbF> irradiance_at(const PointIrradianceInput& input) {
     for (std::size_t begin = 0; begin < input.points.size(); begin += batch_size) {
       const std::size_t end = std::min(input.points.size(), begin + batch_size);
       for (std::size_t i = begin; i < end; ++i) batch.add(input.points[i], input.keys[i]);
-      batch.trace([&](std::size_t p, int, float e, float) { irradiance[begin + p] += colour * e; });
+      if (input.variance.empty() || batch.samples() < 2) {
+        batch.trace([&](std::size_t p, int, float e, float) { irradiance[begin + p] += colour * e; });
+        continue;
+      }
+      const Halves halves(batch.samples());
+      std::vector<std::array<double, 2>> sums(end - begin);
+      batch.trace([&](std::size_t p, int s, float e, float) { sums[p][halves.of(s)] += double(e); });
+      for (std::size_t p = 0; p < sums.size(); ++p) {
+        irradiance[begin + p] += colour * float(sums[p][0] + sums[p][1]);
+        input.variance[begin + p] += colour * colour * float(halves.variance(sums[p]));
+      }
     }
   }
   return irradiance;

@@ -13,7 +13,7 @@ std::vector<FluxSample> flux_samples(const TranslucentGroup& group) {
   std::vector<FluxSample> flux(group.surface.samples.size());
   for (std::size_t i = 0; i < flux.size(); ++i) {
     const SurfaceSample& s = group.surface.samples[i];
-    flux[i] = {s.position, s.area, group.irradiance.empty() ? RgbF{} : group.irradiance[i], s.normal};
+    flux[i] = {s.centroid, s.area, group.irradiance.empty() ? RgbF{} : group.irradiance[i], s.normal};
   }
   return flux;
 }
@@ -53,9 +53,8 @@ Precompute precompute(const PrecomputeInput& input) {
     add_cost(irradiance, irradiance_watch.cost({}));
 
     const Stopwatch octree_watch;
-    SplitKernel kernel =
-        make_split_kernel(profile, surface.spacing(), input.world.diagonal, settings.near_field,
-                          settings.near_irradiance);
+    SplitKernel kernel = make_split_kernel(profile, surface.spacing(), input.world.diagonal,
+                                           settings.near_field, settings.near_irradiance);
     TranslucentGroup group{plan,  profile, std::move(surface), std::move(transfers), std::move(entered),
                            noise, {},      std::move(kernel)};
     group.octree = build_octree(flux_samples(group));

@@ -68,7 +68,7 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
   const std::vector<Surfaces> surfaces = collect(rays, keys, out);
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
     if (surfaces[k].points.empty()) continue;
-    write(surfaces[k], light(kinds_[k], surfaces[k], pass), rays, out);
+    write(surfaces[k], light(kinds_[k], surfaces[k], rays, pass), rays, out);
     if (kinds_[k].eta > 0 && has_visible_lights()) add_mirrored_lights(surfaces[k], rays, out);
     if (kinds_[k].group != nullptr) queries += surfaces[k].points.size();
   }
@@ -109,11 +109,23 @@ std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
   return surfaces;
 }
 
-Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, const Pass& pass) const {
+Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
+                          const Pass& pass) const {
   if (kind.group != nullptr) return evaluated(kind, surfaces);
   if (kind.entries != nullptr)
     return {direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}), {}, {}};
-  return {{}, irradiance_at(lighting_of(surfaces, kind.eta)), {}};
+  PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
+  if (input_.scene.settings.method != Method::hierarchical) return {{}, irradiance_at(lighting), {}};
+  Lit lit;
+  lit.error.resize(surfaces.points.size());  // as variance at first
+  lighting.variance = lit.error;
+  lit.irradiance = irradiance_at(lighting);
+  for (std::size_t i = 0; i < lit.error.size(); ++i) {
+    const RgbF v = lit.error[i];
+    const std::uint32_t mesh = rays[surfaces.rays[i]].hit.mesh;
+    lit.error[i] = appearances_[mesh].albedo * RgbF{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)};
+  }
+  return lit;
 }
 
 Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces) const {

@@ -64,7 +64,8 @@ class Shader {
 
   std::vector<Surfaces> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                 std::span<PixelSample> out) const;
-  Lit light(const Kind& kind, const Surfaces& surfaces, const Pass& pass) const;
+  Lit light(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
+            const Pass& pass) const;
   Lit evaluated(const Kind& kind, const Surfaces& surfaces) const;
   PointIrradianceInput lighting_of(const Surfaces& surfaces, float eta) const;
   void write(const Surfaces& surfaces, const Lit& lit, std::span<const TracedRay> rays,

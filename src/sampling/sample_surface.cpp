@@ -173,10 +173,13 @@ Vec3f lowest_corner(const World& world, std::span<const std::uint32_t> meshes) {
   return Vec3f(low);
 }
 
-SurfaceSample make_sample(const TriangleList& triangles, const SampleGrid::Place& place, double area) {
+SurfaceSample make_sample(const TriangleList& triangles, const SampleGrid::Place& place,
+                          const SurfaceShare& share) {
   const TriangleId id = triangles.id(place.triangle);
   const SurfacePoint point = surface_point(triangles.mesh(id), id.triangle, place.u, place.v);
-  return {id.mesh, id.triangle, place.u, place.v, point.position, point.normal, float(area)};
+  const Vec3f offset = share.area > 0 ? Vec3f(share.moment / share.area) : Vec3f{};
+  return {id.mesh,        id.triangle,  place.u,           place.v,
+          point.position, point.normal, float(share.area), point.position + offset};
 }
 
 }  // namespace
@@ -204,7 +207,7 @@ SurfaceSamples sample_surface(const SamplingInput& input) {
   poisson.cover_centroids(input.monitor);
 
   const SampleGrid& grid = poisson.grid();
-  const std::vector<double> areas = surface_shares(triangles, grid, radius, input.monitor);
+  const std::vector<SurfaceShare> shares = surface_shares(triangles, grid, radius, input.monitor);
   std::vector<std::uint32_t> order(grid.size());
   std::iota(order.begin(), order.end(), 0u);
   tbb::parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) {
@@ -214,7 +217,7 @@ SurfaceSamples sample_surface(const SamplingInput& input) {
   result.samples.resize(order.size());
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i)
-      result.samples[i] = make_sample(triangles, grid.place(order[i]), areas[order[i]]);
+      result.samples[i] = make_sample(triangles, grid.place(order[i]), shares[order[i]]);
   });
   return result;
 }

@@ -53,12 +53,20 @@ class Polygon {
   void clear() { size_ = 0; }
   bool empty() const { return size_ < 3; }
 
-  double area() const {
-    double twice = 0;
-    for (int i = 1; i + 1 < size_; ++i)
-      twice += (corner_[i].x - corner_[0].x) * (corner_[i + 1].y - corner_[0].y) -
-               (corner_[i].y - corner_[0].y) * (corner_[i + 1].x - corner_[0].x);
-    return 0.5 * std::abs(twice);
+  // Area, and area times centroid.
+  struct Moments {
+    double area = 0, x = 0, y = 0;
+  };
+  Moments moments() const {
+    Moments sum;
+    for (int i = 1; i + 1 < size_; ++i) {
+      const Point2 &a = corner_[0], &b = corner_[i], &c = corner_[i + 1];
+      const double area = 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+      sum.area += area;
+      sum.x += area * (a.x + b.x + c.x) / 3;
+      sum.y += area * (a.y + b.y + c.y) / 3;
+    }
+    return sum.area < 0 ? Moments{-sum.area, -sum.x, -sum.y} : sum;
   }
 
  private:
@@ -69,6 +77,7 @@ class Polygon {
 struct Share {
   std::uint32_t sample;
   double area;
+  Vec3d moment;
 };
 
 // A sample that may own part of a piece.
@@ -139,7 +148,7 @@ class TriangleDivider {
   void divide_small(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Ball& piece, std::size_t first) {
     const std::size_t count = owners_.size() - first;
     if (count == 1) {
-      out_.push_back({owners_[first].sample, 0.5 * length(cross(b - a, c - a))});
+      add(owners_[first].sample, 0.5 * length(cross(b - a, c - a)), (a + b + c) / 3.0);
     } else if (count <= kClippedOwners || piece.extent < 0.25f * radius_) {
       clip_cells(a, b, c, first);
     } else {
@@ -190,6 +199,10 @@ class TriangleDivider {
     return std::sqrt(nearest2) * 1.0001f + 2 * piece.extent;
   }
 
+  void add(std::uint32_t sample, double area, const Vec3d& centroid) {
+    out_.push_back({sample, area, (centroid - Vec3d(grid_.position(sample))) * area});
+  }
+
   static float distance2(const Vec3f& a, const Vec3f& b) { return dot(a - b, a - b); }
 
   void clip_cells(const Vec3d& a, const Vec3d& b, const Vec3d& c, std::size_t first) {
@@ -215,7 +228,9 @@ class TriangleDivider {
         polygon_.clip(nx, ny, 0.5 * (other.power - site.power));
         if (polygon_.empty()) break;
       }
-      if (!polygon_.empty()) out_.push_back({site.sample, polygon_.area()});
+      if (polygon_.empty()) continue;
+      const Polygon::Moments part = polygon_.moments();
+      if (part.area > 0) add(site.sample, part.area, a + (x_axis * part.x + y_axis * part.y) / part.area);
     }
   }
 
@@ -233,9 +248,9 @@ class TriangleDivider {
 
 }  // namespace
 
-std::vector<double> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
-                                   Monitor* monitor) {
-  std::vector<double> areas(grid.size());
+std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
+                                         Monitor* monitor) {
+  std::vector<SurfaceShare> shares(grid.size());
   // Blocks bound the memory of the pieces; within one, chunks are summed in order, whatever the threads.
   constexpr std::size_t kBlock = 1 << 16, kChunk = 256;
   std::vector<std::vector<Share>> chunks(chunk_count(kBlock, kChunk));
@@ -248,9 +263,12 @@ std::vector<double> surface_shares(const TriangleList& triangles, const SampleGr
       advance(monitor, last - first);
     });
     for (std::size_t c = 0; c < chunk_count(n, kChunk); ++c)
-      for (const Share& share : chunks[c]) areas[share.sample] += share.area;
+      for (const Share& share : chunks[c]) {
+        shares[share.sample].area += share.area;
+        shares[share.sample].moment += share.moment;
+      }
   }
-  return areas;
+  return shares;
 }
 
 }  // namespace opaline

@@ -10,10 +10,16 @@
 
 namespace opaline {
 
-/// Area of the part of the surface that is nearer to each sample than to any other sample of the same sheet,
-/// mm^2, in the grid's order. Triangles are halved until they are no larger than the spacing and then clipped
-/// by the bisecting planes: the cells are exact and sum to the surface's area.
-std::vector<double> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
-                                   Monitor* monitor);
+/// The part of the surface that is nearer to a sample than to any other sample of the same sheet.
+struct SurfaceShare {
+  double area = 0;  ///< mm^2
+  Vec3d moment{};   ///< integral over it of the position relative to the sample, mm^3: area x offset of the
+                    ///< centroid
+};
+
+/// Each sample's share, in the grid's order. Triangles are halved until they are no larger than the spacing
+/// and then clipped by the bisecting planes: the cells are exact and sum to the surface's area.
+std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
+                                         Monitor* monitor);
 
 }  // namespace opaline

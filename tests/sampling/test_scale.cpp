@@ -22,6 +22,7 @@ TEST(SampleScale, ByAPowerOfTwoIsExact) {
       EXPECT_EQ(surface.area, plain.area * k * k);
       for (SurfaceSample& s : surface.samples) {
         s.position *= float(1 / k);
+        s.centroid *= float(1 / k);
         s.area *= float(1 / k / k);
       }
       EXPECT_TRUE(same_bytes(plain.samples, surface.samples));

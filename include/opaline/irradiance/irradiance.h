@@ -22,19 +22,20 @@ struct IrradianceInput {
   Monitor* monitor = nullptr;
 };
 
-/// E(x) = integral of L_i Ft(omega_i) cos d omega is linear in each light's colour, and Ft is the same for all
-/// channels: one number a sample and light is enough, and recolouring a light traces no ray.
+/// E(x) = integral of L_i Ft(omega_i) cos d omega is linear in each light's colour, and Ft is the same for
+/// all channels: one number a sample and light is enough, and recolouring a light traces no ray.
 struct LightTransfer {
-  /// One a sample: E per unit emission, >= 0, at the sample's point; beside the edge of this light's shadow the mean
-  /// over its Voronoi cell (an area light then has twice the rays, and relative_error does not know of them).
+  /// One a sample: E per unit emission, >= 0, at the sample's point; beside the edge of this light's shadow
+  /// the mean over its Voronoi cell (an area light then has twice the rays, and relative_error does not know
+  /// of them).
   std::vector<float> weights;
   /// RMS over the samples of the estimated standard error, over the mean; 0 for point and
   /// directional lights, and for a single light sample, which cannot tell.
   double relative_error = 0;
 };
 
-/// One transfer per light. Cosines and Ft use the shading normal; which side a light is on, the geometric one.
-/// Everything in the scene casts full shadows.
+/// One transfer per light. Cosines and Ft use the shading normal; which side a light is on, the geometric
+/// one. Everything in the scene casts full shadows.
 std::vector<LightTransfer> compute_irradiance(const IrradianceInput& input);
 
 /// E per sample, W/mm^2, per unit area of the surface: the sum over lights of emission x weight.
@@ -51,9 +52,12 @@ struct PointIrradianceInput {
   double eta = 0;                       ///< inside / outside; 0: no boundary, Ft = 1 (opaque surfaces)
   int light_samples = 64;
   std::uint64_t seed = 0;
+  /// If not empty: one a point, to which the estimated variance of its irradiance is added, per channel.
+  std::span<RgbF> variance = {};
 };
 
-/// Irradiance at arbitrary points, all lights together: for shading where samples are not wanted or too coarse.
+/// Irradiance at arbitrary points, all lights together: for shading where samples are not wanted or too
+/// coarse.
 std::vector<RgbF> irradiance_at(const PointIrradianceInput& input);
 
 }  // namespace opaline

@@ -17,16 +17,19 @@ struct SurfaceSample {
   Vec3f position;                        ///< mm, recentred
   Vec3f normal;                          ///< shading normal
   float area = 0;                        ///< its Voronoi cell on the surface, mm^2
+  /// Middle of the cell: flux that stands there instead of at the sample makes sums over the surface second
+  /// order.
+  Vec3f centroid{};
 };
 
 struct SamplingInput {
   const World& world;
   std::span<const std::uint32_t> meshes;  ///< which meshes of the world to cover as one surface
-  /// Samples wanted, >= 1. About 3 % more or fewer come out; more where parts are thinner than the spacing, up to
-  /// candidate_rounds x count + triangles.
+  /// Samples wanted, >= 1. About 3 % more or fewer come out; more where parts are thinner than the spacing,
+  /// up to candidate_rounds x count + triangles.
   std::size_t count = 0;
   std::uint64_t seed = 0;
-  int candidate_rounds = 6;               ///< candidates tried = rounds x count; more: fuller, slower
+  int candidate_rounds = 6;  ///< candidates tried = rounds x count; more: fuller, slower
   Monitor* monitor = nullptr;
 };
 
@@ -38,13 +41,15 @@ struct SurfaceSamples {
   double spacing() const;
 };
 
-/// Two surface normals belong to one sheet unless they face away from each other: the two faces of a thin plate
-/// are sampled as if alone, a crease is not. cos 120 degrees.
-inline bool same_sheet(const Vec3f& a, const Vec3f& b) { return dot(a, b) > -0.5f; }
+/// Two surface normals belong to one sheet unless they face away from each other: the two faces of a thin
+/// plate are sampled as if alone, a crease is not. cos 120 degrees.
+inline bool same_sheet(const Vec3f& a, const Vec3f& b) {
+  return dot(a, b) > -0.5f;
+}
 
-/// Samples whose places depend on the surface and the seed alone: not on the view, the lights, or the threads.
-/// out   every triangle's centroid has a sample of its sheet within two radii
-/// from  dart throwing in phase groups (Wei 2008) over a hash grid; shares: surface_shares
+/// Samples whose places depend on the surface and the seed alone: not on the view, the lights, or the
+/// threads. out   every triangle's centroid has a sample of its sheet within two radii from  dart throwing in
+/// phase groups (Wei 2008) over a hash grid; shares: surface_shares
 SurfaceSamples sample_surface(const SamplingInput& input);
 
 }  // namespace opaline
