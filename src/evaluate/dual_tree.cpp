@@ -147,6 +147,24 @@ class Chunk {
       const float relative = size * (3 / distance + lane_input_.table.decay[c]);
       if (node.flux[c] * kernel[c] * relative * relative * relative > allowed[c]) return false;
     }
+    const bool one_colour = node.x[0] == node.x[1] && node.x[0] == node.x[2];
+    return one_colour || is_accepted_in_colour(node, distance, kernel, allowed);
+  }
+
+  // The second moment is that of all channels together: wrong by the second order for one that lies aside.
+  bool is_accepted_in_colour(const OctreeNode& node, float distance, const float* kernel,
+                             const RgbF& allowed) const {
+    const std::array<float, 4>& flux = node.flux;
+    const float share = 1 / (flux[0] + flux[1] + flux[2]);
+    const auto mean = [&](const std::array<float, 4>& p) {
+      return (flux[0] * p[0] + flux[1] * p[1] + flux[2] * p[2]) * share;
+    };
+    const Vec3f middle{mean(node.x), mean(node.y), mean(node.z)};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3f aside = Vec3f{node.x[c], node.y[c], node.z[c]} - middle;
+      const float rate = 3 / distance + lane_input_.table.decay[c];
+      if (flux[c] * kernel[c] * dot(aside, aside) * rate * rate > allowed[c]) return false;
+    }
     return true;
   }
 
