@@ -273,21 +273,26 @@ void sort_into_packets(std::span<std::uint32_t> order, std::span<const Query> qu
   sort_into_packets(order.subspan(half), queries);
 }
 
-// Queries along the Morton curve of their box.
+// Queries along the Morton curve of their box; those that are not finite are left out: nothing reaches them.
 std::vector<std::uint32_t> nearby_order(std::span<const Query> queries) {
-  Vec3f low = queries[0].position, high = low;
-  for (const Query& q : queries) {
-    low = component_min(low, q.position);
-    high = component_max(high, q.position);
+  std::vector<std::uint32_t> order;
+  order.reserve(queries.size());
+  Vec3f low(std::numeric_limits<float>::max()), high = -low;
+  for (std::uint32_t i = 0; i < queries.size(); ++i) {
+    if (!is_finite(queries[i].position)) continue;
+    order.push_back(i);
+    low = component_min(low, queries[i].position);
+    high = component_max(high, queries[i].position);
   }
-  const float side = max_component(high - low), scale = side > 0 ? 1023.999f / side : 0;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(queries.size());
-  for (std::size_t i = 0; i < queries.size(); ++i) {
+  const float side = max_component(high - low);
+  const float scale = side > 0 ? 1023.999f / side : 0;
+  if (scale == 0) return order;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(order.size());
+  std::ranges::transform(order, keyed.begin(), [&](std::uint32_t i) {
     const Vec3f p = (queries[i].position - low) * scale;
-    keyed[i] = {morton_key(std::uint64_t(p.x), std::uint64_t(p.y), std::uint64_t(p.z)), std::uint32_t(i)};
-  }
+    return std::pair{morton_key(std::uint64_t(p.x), std::uint64_t(p.y), std::uint64_t(p.z)), i};
+  });
   std::ranges::sort(keyed);
-  std::vector<std::uint32_t> order(queries.size());
   std::ranges::transform(keyed, order.begin(), [](const auto& k) { return k.second; });
   return order;
 }
@@ -295,9 +300,9 @@ std::vector<std::uint32_t> nearby_order(std::span<const Query> queries) {
 }  // namespace
 
 void evaluate_dual_tree(const EvaluateInput& input, std::span<Exitance> result) {
-  if (input.queries.empty()) return;
   const LaneKernels& kernels = lane_kernels(input.instruction_set);
   std::vector<std::uint32_t> order = nearby_order(input.queries);
+  if (order.empty()) return;
   parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
     const std::span<std::uint32_t> own = std::span(order).subspan(begin, end - begin);
     sort_into_packets(own, input.queries);
