@@ -20,8 +20,9 @@ constexpr float kCoarseSolidAngle = 2;  // of the first guess of the exitance, s
 // Third-order terms of a node's series that the second moment leaves, for the shapes that nodes have, and how
 // the errors of many nodes add up: measured, so that the promise holds (test_dual_tree).
 constexpr float kErrorShare = 1.0f;
-// Of the brightest possible exitance; below it a relative error is not asked for.
-constexpr float kDarkest = 2e-4f;
+// Below this share of the p99 of all queries' exitance (under the promise's, for guesses run high), or this
+// one of the brightest possible, a relative error is not asked for.
+constexpr float kDark = 2e-4f, kDarkest = 1e-8f;
 
 struct Sphere {
   Vec3f center{}, half{};  // of the box
@@ -50,10 +51,17 @@ class Chunk {
         lane_input_{*input.kernel.lanes, input.octree.nodes.data(), input.octree.samples.data(),
                     input.octree.normals.data(), input.kernel.radius * input.kernel.radius} {}
 
-  void evaluate(std::span<const std::uint32_t> order, std::span<Exitance> result) {
-    const Sphere all = bounds_of(order);
+  // A coarse exitance at one point of each packet.
+  void guess(std::span<const std::uint32_t> order, std::span<RgbF> guesses) {
     fill_packets(order);
-    guess_exitance(all);
+    guess_exitance(bounds_of(order), guesses);
+  }
+
+  // guesses: of its packets; dark: exitance below which errors are absolute
+  void evaluate(std::span<const std::uint32_t> order, std::span<const RgbF> guesses, const RgbF& dark,
+                std::span<Exitance> result) {
+    fill_packets(order);
+    for (std::size_t p = 0; p < packet_count_; ++p) guess_[p] = component_max(guesses[p], dark);
     const std::vector<std::uint32_t> root{0};
     refine(0, packet_count_, root);
     for (std::size_t i = 0; i < order.size(); ++i) result[order[i]] = result_of(order[i], i);
@@ -94,7 +102,7 @@ class Chunk {
 
   // A coarse sum at one point of each packet: what errors are measured against. The near field is guessed
   // from the far one, as if the irradiance were even.
-  void guess_exitance(const Sphere& all) {
+  void guess_exitance(const Sphere& all, std::span<RgbF> guesses) {
     far_.clear();
     const float fine = all.radius / 8;
     for (std::uint32_t i = 0; i < nodes_.size();) {
@@ -113,7 +121,7 @@ class Chunk {
     for (std::size_t c = 0; c < 3; ++c) {
       const float total = input_.kernel.total[c], rest = total - input_.kernel.near[c];
       const float with_near = total > 0 ? std::min(2.0f, total / std::max(rest, 0.5f * total)) : 1;
-      for (std::size_t p = 0; p < packet_count_; ++p) guess_[p][c] = with_near * sums.exitance[c][p];
+      for (std::size_t p = 0; p < packet_count_; ++p) guesses[p][c] = with_near * sums.exitance[c][p];
     }
   }
 
@@ -129,10 +137,7 @@ class Chunk {
   RgbF allowed_error(std::size_t first, std::size_t last) const {
     RgbF least(std::numeric_limits<float>::infinity());
     for (std::size_t p = first; p < last; ++p) least = component_min(least, guess_[p]);
-    const float share = float(input_.tolerance) * kErrorShare;
-    for (std::size_t c = 0; c < 3; ++c)
-      least[c] = share * std::max(least[c], kDarkest * input_.kernel.total[c]);
-    return least;
+    return least * (float(input_.tolerance) * kErrorShare);
   }
 
   bool is_accepted(const OctreeNode& node, const Sphere& cluster, const RgbF& allowed) const {
@@ -297,16 +302,36 @@ std::vector<std::uint32_t> nearby_order(std::span<const Query> queries) {
   return order;
 }
 
+// Exitance, per channel, below which errors are held against it instead of the query's own.
+RgbF darkest(const EvaluateInput& input, std::span<const RgbF> guesses) {
+  RgbF dark;
+  std::vector<float> values(guesses.size());
+  const std::size_t p99 = (values.size() * 99 + 99) / 100 - 1;
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::ranges::transform(guesses, values.begin(), [&](const RgbF& guess) { return guess[c]; });
+    std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(p99));
+    dark[c] = std::max(kDark * values[p99], kDarkest * input.kernel.total[c]);
+  }
+  return dark;
+}
+
 }  // namespace
 
 void evaluate_dual_tree(const EvaluateInput& input, std::span<Exitance> result) {
   const LaneKernels& kernels = lane_kernels(input.instruction_set);
   std::vector<std::uint32_t> order = nearby_order(input.queries);
   if (order.empty()) return;
+  std::vector<RgbF> guesses(chunk_count(order.size(), kLanes));
+  const auto packets = [&](std::size_t begin) { return std::span(guesses).subspan(begin / kLanes); };
   parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
     const std::span<std::uint32_t> own = std::span(order).subspan(begin, end - begin);
     sort_into_packets(own, input.queries);
-    Chunk(input, kernels).evaluate(own, result);
+    Chunk(input, kernels).guess(own, packets(begin));
+  });
+  const RgbF dark = darkest(input, guesses);
+  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    const std::span<const std::uint32_t> own = std::span(order).subspan(begin, end - begin);
+    Chunk(input, kernels).evaluate(own, packets(begin), dark, result);
     advance(input.monitor, end - begin);
   });
 }
