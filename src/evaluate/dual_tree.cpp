@@ -20,8 +20,9 @@ constexpr float kCoarseSolidAngle = 2;  // of the first guess of the exitance, s
 // Third-order terms of a node's series that the second moment leaves, for the shapes that nodes have, and how
 // the errors of many nodes add up: measured, so that the promise holds (test_dual_tree).
 constexpr float kErrorShare = 1.0f;
-// Of the brightest possible exitance; below it a relative error is not asked for.
-constexpr float kDarkest = 2e-4f;
+// Below this share of the p99 of all queries' exitance (under the promise's, for guesses run high), or this
+// one of the brightest possible, a relative error is not asked for.
+constexpr float kDark = 2e-4f, kDarkest = 1e-8f;
 
 struct Sphere {
   Vec3f center{}, half{};  // of the box
@@ -50,10 +51,17 @@ class Chunk {
         lane_input_{*input.kernel.lanes, input.octree.nodes.data(), input.octree.samples.data(),
                     input.octree.normals.data(), input.kernel.radius * input.kernel.radius} {}
 
-  void evaluate(std::span<const std::uint32_t> order, std::span<Exitance> result) {
-    const Sphere all = bounds_of(order);
+  // A coarse exitance at one point of each packet.
+  void guess(std::span<const std::uint32_t> order, std::span<RgbF> guesses) {
     fill_packets(order);
-    guess_exitance(all);
+    guess_exitance(bounds_of(order), guesses);
+  }
+
+  // guesses: of its packets; dark: exitance below which errors are absolute
+  void evaluate(std::span<const std::uint32_t> order, std::span<const RgbF> guesses, const RgbF& dark,
+                std::span<Exitance> result) {
+    fill_packets(order);
+    for (std::size_t p = 0; p < packet_count_; ++p) guess_[p] = component_max(guesses[p], dark);
     const std::vector<std::uint32_t> root{0};
     refine(0, packet_count_, root);
     for (std::size_t i = 0; i < order.size(); ++i) result[order[i]] = result_of(order[i], i);
@@ -94,7 +102,7 @@ class Chunk {
 
   // A coarse sum at one point of each packet: what errors are measured against. The near field is guessed
   // from the far one, as if the irradiance were even.
-  void guess_exitance(const Sphere& all) {
+  void guess_exitance(const Sphere& all, std::span<RgbF> guesses) {
     far_.clear();
     const float fine = all.radius / 8;
     for (std::uint32_t i = 0; i < nodes_.size();) {
@@ -113,7 +121,7 @@ class Chunk {
     for (std::size_t c = 0; c < 3; ++c) {
       const float total = input_.kernel.total[c], rest = total - input_.kernel.near[c];
       const float with_near = total > 0 ? std::min(2.0f, total / std::max(rest, 0.5f * total)) : 1;
-      for (std::size_t p = 0; p < packet_count_; ++p) guess_[p][c] = with_near * sums.exitance[c][p];
+      for (std::size_t p = 0; p < packet_count_; ++p) guesses[p][c] = with_near * sums.exitance[c][p];
     }
   }
 
@@ -129,10 +137,7 @@ class Chunk {
   RgbF allowed_error(std::size_t first, std::size_t last) const {
     RgbF least(std::numeric_limits<float>::infinity());
     for (std::size_t p = first; p < last; ++p) least = component_min(least, guess_[p]);
-    const float share = float(input_.tolerance) * kErrorShare;
-    for (std::size_t c = 0; c < 3; ++c)
-      least[c] = share * std::max(least[c], kDarkest * input_.kernel.total[c]);
-    return least;
+    return least * (float(input_.tolerance) * kErrorShare);
   }
 
   bool is_accepted(const OctreeNode& node, const Sphere& cluster, const RgbF& allowed) const {
@@ -146,6 +151,24 @@ class Chunk {
     for (std::size_t c = 0; c < 3; ++c) {
       const float relative = size * (3 / distance + lane_input_.table.decay[c]);
       if (node.flux[c] * kernel[c] * relative * relative * relative > allowed[c]) return false;
+    }
+    const bool one_colour = node.x[0] == node.x[1] && node.x[0] == node.x[2];
+    return one_colour || is_accepted_in_colour(node, distance, kernel, allowed);
+  }
+
+  // The second moment is that of all channels together: wrong by the second order for one that lies aside.
+  bool is_accepted_in_colour(const OctreeNode& node, float distance, const float* kernel,
+                             const RgbF& allowed) const {
+    const std::array<float, 4>& flux = node.flux;
+    const float share = 1 / (flux[0] + flux[1] + flux[2]);
+    const auto mean = [&](const std::array<float, 4>& p) {
+      return (flux[0] * p[0] + flux[1] * p[1] + flux[2] * p[2]) * share;
+    };
+    const Vec3f middle{mean(node.x), mean(node.y), mean(node.z)};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3f aside = Vec3f{node.x[c], node.y[c], node.z[c]} - middle;
+      const float rate = 3 / distance + lane_input_.table.decay[c];
+      if (flux[c] * kernel[c] * dot(aside, aside) * rate * rate > allowed[c]) return false;
     }
     return true;
   }
@@ -255,35 +278,60 @@ void sort_into_packets(std::span<std::uint32_t> order, std::span<const Query> qu
   sort_into_packets(order.subspan(half), queries);
 }
 
-// Queries along the Morton curve of their box.
+// Queries along the Morton curve of their box; those that are not finite are left out: nothing reaches them.
 std::vector<std::uint32_t> nearby_order(std::span<const Query> queries) {
-  Vec3f low = queries[0].position, high = low;
-  for (const Query& q : queries) {
-    low = component_min(low, q.position);
-    high = component_max(high, q.position);
+  std::vector<std::uint32_t> order;
+  order.reserve(queries.size());
+  Vec3f low(std::numeric_limits<float>::max()), high = -low;
+  for (std::uint32_t i = 0; i < queries.size(); ++i) {
+    if (!is_finite(queries[i].position)) continue;
+    order.push_back(i);
+    low = component_min(low, queries[i].position);
+    high = component_max(high, queries[i].position);
   }
-  const float side = max_component(high - low), scale = side > 0 ? 1023.999f / side : 0;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(queries.size());
-  for (std::size_t i = 0; i < queries.size(); ++i) {
+  const float side = max_component(high - low);
+  const float scale = side > 0 ? 1023.999f / side : 0;
+  if (scale == 0) return order;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(order.size());
+  std::ranges::transform(order, keyed.begin(), [&](std::uint32_t i) {
     const Vec3f p = (queries[i].position - low) * scale;
-    keyed[i] = {morton_key(std::uint64_t(p.x), std::uint64_t(p.y), std::uint64_t(p.z)), std::uint32_t(i)};
-  }
+    return std::pair{morton_key(std::uint64_t(p.x), std::uint64_t(p.y), std::uint64_t(p.z)), i};
+  });
   std::ranges::sort(keyed);
-  std::vector<std::uint32_t> order(queries.size());
   std::ranges::transform(keyed, order.begin(), [](const auto& k) { return k.second; });
   return order;
+}
+
+// Exitance, per channel, below which errors are held against it instead of the query's own.
+RgbF darkest(const EvaluateInput& input, std::span<const RgbF> guesses) {
+  RgbF dark;
+  std::vector<float> values(guesses.size());
+  const std::size_t p99 = (values.size() * 99 + 99) / 100 - 1;
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::ranges::transform(guesses, values.begin(), [&](const RgbF& guess) { return guess[c]; });
+    std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(p99));
+    dark[c] = std::max(kDark * values[p99], kDarkest * input.kernel.total[c]);
+  }
+  return dark;
 }
 
 }  // namespace
 
 void evaluate_dual_tree(const EvaluateInput& input, std::span<Exitance> result) {
-  if (input.queries.empty()) return;
   const LaneKernels& kernels = lane_kernels(input.instruction_set);
   std::vector<std::uint32_t> order = nearby_order(input.queries);
+  if (order.empty()) return;
+  std::vector<RgbF> guesses(chunk_count(order.size(), kLanes));
+  const auto packets = [&](std::size_t begin) { return std::span(guesses).subspan(begin / kLanes); };
   parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
     const std::span<std::uint32_t> own = std::span(order).subspan(begin, end - begin);
     sort_into_packets(own, input.queries);
-    Chunk(input, kernels).evaluate(own, result);
+    Chunk(input, kernels).guess(own, packets(begin));
+  });
+  const RgbF dark = darkest(input, guesses);
+  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    const std::span<const std::uint32_t> own = std::span(order).subspan(begin, end - begin);
+    Chunk(input, kernels).evaluate(own, packets(begin), dark, result);
     advance(input.monitor, end - begin);
   });
 }

@@ -49,8 +49,14 @@ struct LaneKernels {
 
 extern const LaneKernels kBaselineKernels, kAvx2Kernels, kAvx512Kernels;
 
-/// Of the instruction set asked for; automatic: the widest that this machine has.
-/// error Error{bad_input}: this machine has not got it
-const LaneKernels& lane_kernels(InstructionSet wanted);
+/// What a machine has beyond the baseline.
+struct MachineSets {
+  bool avx2 = false, avx512 = false;  ///< avx2 with fma; avx512f besides
+};
+MachineSets this_machine();
+
+/// Of the instruction set asked for; automatic: the widest that the machine has.
+/// error Error{bad_input}: the machine has not got it
+const LaneKernels& lane_kernels(InstructionSet wanted, const MachineSets& machine = this_machine());
 
 }  // namespace opaline

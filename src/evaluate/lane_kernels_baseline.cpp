@@ -32,9 +32,12 @@ inline bool any(I mask) {
 
 const LaneKernels kBaselineKernels{"baseline", add_nodes, add_leaves};
 
-const LaneKernels& lane_kernels(InstructionSet wanted) {
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"),
-             avx512 = avx2 && __builtin_cpu_supports("avx512f");
+MachineSets this_machine() {
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return {avx2, avx2 && __builtin_cpu_supports("avx512f")};
+}
+
+const LaneKernels& lane_kernels(InstructionSet wanted, const MachineSets& machine) {
   const auto missing = [](const char* name) {
     return Error(ErrorKind::bad_input, {}, 0, 0, "settings.instruction_set: this machine has not got it",
                  "\"automatic\"", name);
@@ -43,15 +46,15 @@ const LaneKernels& lane_kernels(InstructionSet wanted) {
     case InstructionSet::baseline:
       return kBaselineKernels;
     case InstructionSet::avx2:
-      if (!avx2) throw missing("avx2");
+      if (!machine.avx2) throw missing("avx2");
       return kAvx2Kernels;
     case InstructionSet::avx512:
-      if (!avx512) throw missing("avx512");
+      if (!machine.avx512) throw missing("avx512");
       return kAvx512Kernels;
     case InstructionSet::automatic:
       break;
   }
-  return avx512 ? kAvx512Kernels : avx2 ? kAvx2Kernels : kBaselineKernels;
+  return machine.avx512 ? kAvx512Kernels : machine.avx2 ? kAvx2Kernels : kBaselineKernels;
 }
 
 }  // namespace opaline

@@ -12,9 +12,9 @@ struct LitSphere {
   std::vector<Query> queries = Cloud(SphereShape{{}, 5}, 300, 3).queries();
   SplitKernel kernel = cloud.kernel(make_diffuse_profile(marble()));
 
-  std::vector<Exitance> lit(const RgbF& factor, bool tree) const {
+  std::vector<Exitance> lit(const RgbF& factor, EvaluatorKind evaluator) const {
     const Octree octree = cloud.tree([&](const SurfaceSample& s) { return coloured_light(s) * factor; });
-    return tree ? classic(octree, kernel, queries, .1) : brute_force(octree, kernel, queries);
+    return evaluated_by(evaluator, octree, kernel, queries, .1);
   }
 };
 
@@ -22,14 +22,14 @@ struct LitSphere {
 // 1e-5, float. Fails if: a flux below float's smallest number is flushed, or a threshold stands in W.
 TEST(LightRange, IsLinear) {
   const LitSphere setup;
-  for (const bool tree : {false, true}) {
-    const std::vector<Exitance> reference = setup.lit(RgbF(1), tree);
+  for (const EvaluatorKind evaluator : kEvaluators) {
+    const std::vector<Exitance> reference = setup.lit(RgbF(1), evaluator);
     for (const float k : {1e12f, 1e-12f, 1e-30f}) {
-      const std::vector<Exitance> scaled = setup.lit(RgbF(k), tree);
+      const std::vector<Exitance> scaled = setup.lit(RgbF(k), evaluator);
       for (std::size_t i = 0; i < scaled.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c) {
           EXPECT_NEAR(double(scaled[i].exitance[c]) / (double(k) * double(reference[i].exitance[c])), 1, 1e-5)
-              << k;
+              << k << ", " << name_of(evaluator);
           EXPECT_NEAR(double(scaled[i].irradiance[c]), double(k) * double(reference[i].irradiance[c]),
                       1e-5 * double(k));
         }
@@ -39,14 +39,15 @@ TEST(LightRange, IsLinear) {
 
 // Claim: pure red irradiance gives exactly 0 in green and blue, and red does not depend on the other
 // channels. Source: channels are independent. Tolerance: none for the zeros and for red in brute force; 1 %
-// for red through the tree, which opens a node for all channels when one asks. Fails if: one weight serves
+// for red through the trees, which open a node for all channels when one asks. Fails if: one weight serves
 // all channels.
 TEST(LightRange, RedStaysRed) {
   const LitSphere setup;
-  for (const bool tree : {false, true}) {
-    const std::vector<Exitance> white = setup.lit(RgbF(1), tree), red = setup.lit({1, 0, 0}, tree);
+  for (const EvaluatorKind evaluator : kEvaluators) {
+    const std::vector<Exitance> white = setup.lit(RgbF(1), evaluator), red = setup.lit({1, 0, 0}, evaluator);
     for (std::size_t i = 0; i < red.size(); ++i) {
-      EXPECT_NEAR(red[i].exitance.x / white[i].exitance.x, 1, tree ? .01 : 0);
+      EXPECT_NEAR(red[i].exitance.x / white[i].exitance.x, 1,
+                  evaluator == EvaluatorKind::brute_force ? 0 : .01);
       EXPECT_GT(red[i].exitance.x, 0);
       EXPECT_EQ(red[i].exitance.y, 0);
       EXPECT_EQ(red[i].exitance.z, 0);
@@ -58,29 +59,31 @@ TEST(LightRange, RedStaysRed) {
 // interpolation.
 TEST(LightRange, NoLight) {
   const LitSphere setup;
-  for (const bool tree : {false, true})
-    for (const Exitance& e : setup.lit(RgbF(0), tree)) {
+  for (const EvaluatorKind evaluator : kEvaluators)
+    for (const Exitance& e : setup.lit(RgbF(0), evaluator)) {
       EXPECT_EQ(e.exitance, RgbF(0));
       EXPECT_EQ(e.irradiance, RgbF(0));
     }
 }
 
 // Claim: one channel without coefficients stays exactly 0 and leaves the others' bits. Source: a peer's NaN
-// picture. Tolerance: none. Fails if: a 0 mean free path spreads through a shared radius.
+// picture. Tolerance: none but for the dual tree, .5 %: it opens a node for all channels when one asks. Fails
+// if: a 0 mean free path spreads through a shared radius.
 TEST(LightRange, EmptyChannel) {
   const LitSphere setup;
   const Octree octree = setup.cloud.tree(coloured_light);
   const SplitKernel part = setup.cloud.kernel(make_diffuse_profile(
       {"m", PhysicalMedium{{.0021, 0, .0071}, {2.19, 0, 3.00}}, 1.5, ProfileKind::dipole}));
-  for (const bool tree : {false, true}) {
+  for (const EvaluatorKind evaluator : kEvaluators) {
     const auto run = [&](const SplitKernel& kernel) {
-      return tree ? classic(octree, kernel, setup.queries, .1) : brute_force(octree, kernel, setup.queries);
+      return evaluated_by(evaluator, octree, kernel, setup.queries, .1);
     };
     const std::vector<Exitance> whole = run(setup.kernel), rest = run(part);
     for (std::size_t i = 0; i < whole.size(); ++i) {
-      EXPECT_EQ(rest[i].exitance.x, whole[i].exitance.x);
+      const double bar = evaluator == EvaluatorKind::dual_tree ? .005 : 0;
+      EXPECT_NEAR(rest[i].exitance.x / whole[i].exitance.x, 1, bar) << name_of(evaluator);
       EXPECT_EQ(rest[i].exitance.y, 0);
-      EXPECT_EQ(rest[i].exitance.z, whole[i].exitance.z);
+      EXPECT_NEAR(rest[i].exitance.z / whole[i].exitance.z, 1, bar) << name_of(evaluator);
     }
   }
 }

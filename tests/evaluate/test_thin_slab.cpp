@@ -37,14 +37,18 @@ TEST(ThinSlab, FarFaceAdds) {
   for (const double mean_free_path : {.1, .5, 2.}) {
     const DiffuseProfile profile = make_diffuse_profile(grey_medium(mean_free_path, .05, 1.3));
     const SplitKernel kernel = cloud.kernel(profile);
-    const Difference d = difference(brute_force(octree, kernel, places()), [&](std::size_t i) {
-      return expected_at(profile.channels[0], places()[i].position);
-    });
-    report("mean free path " + std::to_string(mean_free_path) + ", bias %", 100 * d.bias);
-    report("mean free path " + std::to_string(mean_free_path) + ", mean %", 100 * d.mean);
-    report("mean free path " + std::to_string(mean_free_path) + ", largest %", 100 * d.largest);
-    EXPECT_LT(d.mean, .01) << mean_free_path;
-    EXPECT_LT(d.largest, .04) << mean_free_path;
+    for (const EvaluatorKind evaluator : {EvaluatorKind::brute_force, EvaluatorKind::dual_tree}) {
+      const Difference d =
+          difference(evaluated_by(evaluator, octree, kernel, places(), .01),
+                     [&](std::size_t i) { return expected_at(profile.channels[0], places()[i].position); });
+      const std::string name =
+          name_of(evaluator) + std::string(", mean free path ") + std::to_string(mean_free_path);
+      report(name + ", bias %", 100 * d.bias);
+      report(name + ", mean %", 100 * d.mean);
+      report(name + ", largest %", 100 * d.largest);
+      EXPECT_LT(d.mean, .01) << name;
+      EXPECT_LT(d.largest, .04) << name;
+    }
   }
 }
 
@@ -62,16 +66,18 @@ TEST(ThinSlab, FromBehind) {
     front.push_back(q);
   }
   const DiffuseProfile profile = make_diffuse_profile(grey_medium(.3, .05, 1.3));
-  const std::vector<Exitance> values = brute_force(octree, cloud.kernel(profile), front);
-  for (const Exitance& e : values) ASSERT_LT(e.irradiance.x, 1e-3f);
-  const Difference d = difference(values, [&](std::size_t i) {
-    const double x = double(front[i].position.x), z = double(front[i].position.z);
-    return rectangle_integral([&](double r) { return diffuse_reflectance_within(profile.channels[0], r); },
-                              {20 - x, 20 - z, 20 + x, 20 + z}, .5);
-  });
-  report("from behind, bias %", 100 * d.bias);
-  report("from behind, largest %", 100 * d.largest);
-  EXPECT_LT(d.mean, .02);
+  for (const EvaluatorKind evaluator : {EvaluatorKind::brute_force, EvaluatorKind::dual_tree}) {
+    const std::vector<Exitance> values = evaluated_by(evaluator, octree, cloud.kernel(profile), front, .01);
+    for (const Exitance& e : values) ASSERT_LT(e.irradiance.x, 1e-3f);
+    const Difference d = difference(values, [&](std::size_t i) {
+      const double x = double(front[i].position.x), z = double(front[i].position.z);
+      return rectangle_integral([&](double r) { return diffuse_reflectance_within(profile.channels[0], r); },
+                                {20 - x, 20 - z, 20 + x, 20 + z}, .5);
+    });
+    report(name_of(evaluator) + std::string(", from behind, bias %"), 100 * d.bias);
+    report(name_of(evaluator) + std::string(", from behind, largest %"), 100 * d.largest);
+    EXPECT_LT(d.mean, .02) << name_of(evaluator);
+  }
 }
 
 // Claim: 30,000 samples agree with 300,000. Source: convergence. Tolerance: 2 % mean. Fails if: the answer

@@ -24,26 +24,26 @@ TEST(Underflow, DoesNotStall) {
                              ? std::sqrt(1.5) / .01
                              : 1 / (3 * std::get<NormalizedDiffusion>(profile.channels[0]).d);
     const SplitKernel kernel = make_split_kernel(profile, cloud.surface.spacing(), 1e4 / decay + 1, true);
-    const auto seconds = [&](double distance, bool tree, RgbF& out) {
+    const auto seconds = [&](double distance, EvaluatorKind evaluator, RgbF& out) {
       const std::vector<Query> queries(100, Query{{float(distance), 0, 0}, {1, 0, 0}});
       double best = 1e9;
       for (int run = 0; run < 9; ++run) {
         const std::clock_t start = std::clock();
-        out = (tree ? classic(octree, kernel, queries, 1e-6) : brute_force(octree, kernel, queries))[0]
-                  .exitance;
+        out = evaluated_by(evaluator, octree, kernel, queries, 1e-6, 1e-7)[0].exitance;
         best = std::min(best, double(std::clock() - start) / CLOCKS_PER_SEC);
       }
       return best;
     };
     with_threads(1, [&] {
-      for (const bool tree : {false, true}) {
+      for (const EvaluatorKind evaluator : kEvaluators) {
         RgbF moderate, denormal, nothing;
-        const double usual = seconds(radius + 5 / decay, tree, moderate);
-        const double slow = seconds(radius + 88 / decay, tree, denormal);
-        const double far = seconds(1e4 / decay, tree, nothing);
-        const std::string name = kind == ProfileKind::dipole ? "dipole" : "normalized diffusion";
-        report(name + (tree ? ", classic" : ", brute force") + ": denormal / moderate time", slow / usual);
-        report(name + (tree ? ", classic" : ", brute force") + ": underflow / moderate time", far / usual);
+        const double usual = seconds(radius + 5 / decay, evaluator, moderate);
+        const double slow = seconds(radius + 88 / decay, evaluator, denormal);
+        const double far = seconds(1e4 / decay, evaluator, nothing);
+        const std::string name = (kind == ProfileKind::dipole ? "dipole, " : "normalized diffusion, ") +
+                                 std::string(name_of(evaluator));
+        report(name + ": denormal / moderate time", slow / usual);
+        report(name + ": underflow / moderate time", far / usual);
         EXPECT_GT(moderate.x, 1e-6f);
         EXPECT_LT(denormal.x, 1e-30f);
         EXPECT_LT(nothing.x, 1e-30f);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdio>
 #include <functional>
 #include <string>
@@ -74,6 +75,43 @@ inline std::vector<Exitance> classic(const Octree& octree, const SplitKernel& ke
   input.evaluator = EvaluatorKind::classic;
   input.max_solid_angle = max_solid_angle;
   return evaluate(input);
+}
+
+inline std::vector<Exitance> dual_tree(const Octree& octree, const SplitKernel& kernel,
+                                       const std::vector<Query>& queries, double tolerance = .005) {
+  EvaluateInput input{octree, kernel, queries};
+  input.evaluator = EvaluatorKind::dual_tree;
+  input.tolerance = tolerance;
+  return evaluate(input);
+}
+
+/// The evaluators, for claims that hold for each.
+inline constexpr std::array kEvaluators = {EvaluatorKind::brute_force, EvaluatorKind::classic,
+                                           EvaluatorKind::dual_tree};
+
+inline const char* name_of(EvaluatorKind evaluator) {
+  switch (evaluator) {
+    case EvaluatorKind::classic:
+      return "classic";
+    case EvaluatorKind::dual_tree:
+      return "dual tree";
+    default:
+      return "brute force";
+  }
+}
+
+/// max_solid_angle: of the classic one; tolerance: of the dual tree.
+inline std::vector<Exitance> evaluated_by(EvaluatorKind evaluator, const Octree& octree,
+                                          const SplitKernel& kernel, const std::vector<Query>& queries,
+                                          double max_solid_angle, double tolerance = .005) {
+  switch (evaluator) {
+    case EvaluatorKind::classic:
+      return classic(octree, kernel, queries, max_solid_angle);
+    case EvaluatorKind::dual_tree:
+      return dual_tree(octree, kernel, queries, tolerance);
+    default:
+      return brute_force(octree, kernel, queries);
+  }
 }
 
 inline bool finite_and_not_negative(const Exitance& e) {
