@@ -8,9 +8,19 @@ const char* name_of(Method method) {
 }
 
 const char* name_of(EvaluatorKind evaluator) {
-  return evaluator == EvaluatorKind::brute_force ? "brute_force"
-         : evaluator == EvaluatorKind::classic   ? "classic"
-                                                 : "dual_tree";
+  switch (evaluator) {
+    case EvaluatorKind::automatic:
+      return "automatic";
+    case EvaluatorKind::dual_tree:
+      return "dual_tree";
+    case EvaluatorKind::surface_cache:
+      return "surface_cache";
+    case EvaluatorKind::classic:
+      return "classic";
+    case EvaluatorKind::brute_force:
+      return "brute_force";
+  }
+  return "";
 }
 
 const char* name_of(EntryStrategy strategy) {

@@ -113,7 +113,7 @@ SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, dou
 std::vector<Exitance> evaluate(const EvaluateInput& input) {
   std::vector<Exitance> result(input.queries.size());
   if (input.octree.nodes.empty()) return result;
-  if (input.evaluator == EvaluatorKind::dual_tree) {
+  if (input.evaluator != EvaluatorKind::classic && input.evaluator != EvaluatorKind::brute_force) {
     evaluate_dual_tree(input, result);
     return result;
   }

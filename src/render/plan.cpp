@@ -114,6 +114,25 @@ std::string shading_stage(const Settings& settings) {
                      settings.entry_samples.value_or(kDefaultEntrySamples));
 }
 
+std::string evaluation_stage(const Settings& settings) {
+  const std::string promise = fmt::format("{:.3g} % of the exact sum", 100 * settings.tolerance);
+  switch (settings.evaluator) {
+    case EvaluatorKind::automatic:
+      return "evaluation: dual tree, at the points of the picture or, where those are fewer, places of the "
+             "surface; " +
+             promise;
+    case EvaluatorKind::dual_tree:
+      return "evaluation: dual tree, " + promise;
+    case EvaluatorKind::surface_cache:
+      return "evaluation: dual tree at places of the surface, " + promise;
+    case EvaluatorKind::classic:
+      return fmt::format("evaluation: classic traversal, {} sr", settings.max_solid_angle);
+    case EvaluatorKind::brute_force:
+      return "evaluation: brute force";
+  }
+  return "";
+}
+
 void list_stages(const Scene& scene, Plan& plan) {
   if (scene.settings.method == Method::hierarchical && !plan.groups.empty()) {
     plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
@@ -123,12 +142,7 @@ void list_stages(const Scene& scene, Plan& plan) {
     plan.stages.push_back(
         fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample", scene.lights.size(), rays));
     plan.stages.push_back("octree");
-    plan.stages.push_back(
-        scene.settings.evaluator == EvaluatorKind::dual_tree
-            ? fmt::format("evaluation: dual tree, {:.3g} % of the exact sum", 100 * scene.settings.tolerance)
-        : scene.settings.evaluator == EvaluatorKind::classic
-            ? fmt::format("evaluation: classic traversal, {} sr", scene.settings.max_solid_angle)
-            : "evaluation: brute force");
+    plan.stages.push_back(evaluation_stage(scene.settings));
   }
   plan.stages.push_back(shading_stage(scene.settings));
 }

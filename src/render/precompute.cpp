@@ -5,6 +5,7 @@
 
 #include "opaline/core/random.h"
 #include "opaline/irradiance/light_sampling.h"
+#include "render/surface_caches.h"
 
 namespace opaline {
 namespace {
@@ -62,6 +63,8 @@ Precompute precompute(const PrecomputeInput& input) {
     result.groups.push_back(std::move(group));
   }
   result.costs = {sampling, irradiance, octree};
+  const Stopwatch exitance_watch;
+  if (make_surface_caches(input, result.groups)) result.costs.push_back(exitance_watch.cost("exitance"));
   return result;
 }
 

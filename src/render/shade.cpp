@@ -115,7 +115,7 @@ std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
 
 Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
                           const Pass& pass) const {
-  if (kind.group != nullptr) return evaluated(kind, surfaces);
+  if (kind.group != nullptr) return evaluated(kind, surfaces, rays);
   if (kind.entries != nullptr)
     return {direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}), {}, {}};
   PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
@@ -132,27 +132,46 @@ Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<
   return lit;
 }
 
-Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces) const {
+Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces,
+                              std::span<const TracedRay> rays) const {
   Lit lit;
   const TranslucentGroup& group = *kind.group;
   const PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
   if (group.kernel.needs_irradiance()) lit.irradiance = irradiance_at(lighting);
+  std::vector<Exitance> exitance = group.surface_cache
+                                       ? interpolated(*group.surface_cache, surfaces, lit, rays)
+                                       : summed(group, surfaces, lit);
+  const auto& near_field = near_fields_[std::size_t(&group - input_.groups.data())];
+  if (near_field) near_field->refine(lighting, lit.irradiance, exitance);
+  const bool traced = !lit.irradiance.empty();
+  for (const Exitance& e : exitance) {
+    lit.exitance.push_back(e.exitance);
+    lit.error.push_back(e.error);
+    if (!traced) lit.irradiance.push_back(e.irradiance);
+  }
+  return lit;
+}
+
+std::vector<Exitance> Shader::summed(const TranslucentGroup& group, const Surfaces& surfaces,
+                                     const Lit& lit) const {
   std::vector<Query> queries;
   queries.reserve(surfaces.points.size());
   for (const SurfacePoint& point : surfaces.points) queries.push_back({point.position, point.normal});
   const Settings& settings = input_.scene.settings;
-  std::vector<Exitance> exitance =
-      evaluate({group.octree, group.kernel, queries, lit.irradiance, settings.evaluator, settings.tolerance,
-                settings.max_solid_angle, settings.instruction_set, group.irradiance_noise});
-  const auto& near_field = near_fields_[std::size_t(&group - input_.groups.data())];
-  if (near_field) near_field->refine(lighting, lit.irradiance, exitance);
-  const bool interpolated = lit.irradiance.empty();
-  for (const Exitance& e : exitance) {
-    lit.exitance.push_back(e.exitance);
-    lit.error.push_back(e.error);
-    if (interpolated) lit.irradiance.push_back(e.irradiance);
+  return evaluate({group.octree, group.kernel, queries, lit.irradiance, settings.evaluator,
+                   settings.tolerance, settings.max_solid_angle, settings.instruction_set,
+                   group.irradiance_noise});
+}
+
+std::vector<Exitance> Shader::interpolated(const SurfaceCache& cache, const Surfaces& surfaces,
+                                           const Lit& lit, std::span<const TracedRay> rays) {
+  std::vector<Exitance> exitance(surfaces.rays.size());
+  for (std::size_t i = 0; i < exitance.size(); ++i) {
+    const Hit& hit = rays[surfaces.rays[i]].hit;
+    exitance[i] =
+        cache.at(hit.mesh, hit.triangle, hit.u, hit.v, lit.irradiance.empty() ? nullptr : &lit.irradiance[i]);
   }
-  return lit;
+  return exitance;
 }
 
 void Shader::write(const Surfaces& surfaces, const Lit& lit, std::span<const TracedRay> rays,

@@ -68,7 +68,10 @@ class Shader {
                                 std::span<PixelSample> out) const;
   Lit light(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
             const Pass& pass) const;
-  Lit evaluated(const Kind& kind, const Surfaces& surfaces) const;
+  Lit evaluated(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays) const;
+  std::vector<Exitance> summed(const TranslucentGroup& group, const Surfaces& surfaces, const Lit& lit) const;
+  static std::vector<Exitance> interpolated(const SurfaceCache& cache, const Surfaces& surfaces,
+                                            const Lit& lit, std::span<const TracedRay> rays);
   PointIrradianceInput lighting_of(const Surfaces& surfaces, float eta) const;
   void write(const Surfaces& surfaces, const Lit& lit, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;

@@ -9,7 +9,8 @@ namespace {
 constexpr std::array<std::string_view, 2> filter_names{"box", "gaussian"};
 constexpr std::array<std::string_view, 2> pixel_type_names{"half", "float"};
 constexpr std::array<std::string_view, 3> method_names{"hierarchical", "lambert", "direct"};
-constexpr std::array<std::string_view, 3> evaluator_names{"dual_tree", "classic", "brute_force"};
+constexpr std::array<std::string_view, 5> evaluator_names{"automatic", "dual_tree", "surface_cache",
+                                                          "classic", "brute_force"};
 constexpr std::array<std::string_view, 4> instruction_set_names{"automatic", "baseline", "avx2", "avx512"};
 constexpr std::array<std::string_view, 3> near_irradiance_names{"mixed", "samples", "point"};
 constexpr std::array<std::string_view, 2> strategy_names{"disc_axes", "chords"};

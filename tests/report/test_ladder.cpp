@@ -27,7 +27,7 @@ TEST(Ladder, OfATranslucentScene) {
   const std::set<std::string> names = names_of(rungs);
   for (const char* name :
        {"hierarchical brute_force", "hierarchical classic max_solid_angle=0.4",
-        "hierarchical classic max_solid_angle=0.02", "hierarchical dual_tree samples=250",
+        "hierarchical classic max_solid_angle=0.02", "hierarchical surface_cache tolerance=0.02", "hierarchical dual_tree samples=250",
         "hierarchical dual_tree samples=1000", "hierarchical dual_tree samples=4000", "direct entry_samples=64"})
     EXPECT_TRUE(names.contains(name)) << name;
 }

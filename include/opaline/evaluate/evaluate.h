@@ -66,7 +66,7 @@ struct EvaluateInput {
   std::span<const Query> queries;
   /// Entered irradiance at each query, for the channels that need it; empty: interpolated ones everywhere.
   std::span<const RgbF> irradiance = {};
-  EvaluatorKind evaluator = EvaluatorKind::dual_tree;
+  EvaluatorKind evaluator = EvaluatorKind::dual_tree;  ///< automatic, surface_cache: dual_tree too
   double tolerance = 0.005;                                    ///< dual_tree
   double max_solid_angle = 0.05;                               ///< classic, sr
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree

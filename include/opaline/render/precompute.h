@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a plan to trees of entered flux, one a group: all of a translucent picture that does not depend on the camera.
+// From a plan to trees of entered flux, one a group: all of a translucent picture that does not depend on the
+// camera.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +11,7 @@
 #include "opaline/core/stopwatch.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/evaluate/evaluate.h"
+#include "opaline/evaluate/surface_cache.h"
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/octree/octree.h"
 #include "opaline/render/plan.h"
@@ -25,6 +28,8 @@ struct TranslucentGroup {
   double irradiance_noise = 0;           ///< relative standard error at a sample, all lights
   Octree octree;
   SplitKernel kernel;
+  std::optional<SurfaceCache> surface_cache = {};  ///< the exitance everywhere, where that is cheaper than at
+                                                   ///< the points of the picture
 };
 
 struct PrecomputeInput {
@@ -37,15 +42,15 @@ struct PrecomputeInput {
 
 struct Precompute {
   std::vector<TranslucentGroup> groups;
-  std::vector<StageCost> costs;  ///< sampling, irradiance, octree
+  std::vector<StageCost> costs;  ///< sampling, irradiance, octree, and exitance if a surface cache was made
 };
 
 Precompute precompute(const PrecomputeInput& input);
 
-/// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free path is
-/// below the sample spacing, `render` traces shadow rays for the irradiance at its points; this interpolates it.
-/// in    points: world space, mm; normals: unit, outward, one a point
-/// out   M_o in W/mm^2 per point, in their order
+/// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free
+/// path is below the sample spacing, `render` traces shadow rays for the irradiance at its points; this
+/// interpolates it. in    points: world space, mm; normals: unit, outward, one a point out   M_o in W/mm^2
+/// per point, in their order
 std::vector<RgbF> radiant_exitance(const TranslucentGroup& group, const World& world,
                                    std::span<const Vec3d> points, std::span<const Vec3f> normals,
                                    const Settings& settings);

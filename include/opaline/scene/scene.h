@@ -159,9 +159,11 @@ enum class Method {
   direct         ///< the BSSRDF sampled at random: the reference of `hierarchical`, noisy instead of biased
 };
 enum class EvaluatorKind {
-  dual_tree,   ///< clusters of points against nodes, to a tolerance
-  classic,     ///< each point walks the tree, as published
-  brute_force  ///< every sample
+  automatic,      ///< surface_cache where a picture has many more points than it needs, else dual_tree
+  dual_tree,      ///< clusters of points against nodes, to a tolerance
+  surface_cache,  ///< the same at places all over the surface, interpolated for each point
+  classic,        ///< each point walks the tree, as published
+  brute_force     ///< every sample
 };
 /// Where the irradiance of the near field is taken from; mixed: as much of each as keeps the kernel's width.
 enum class NearIrradiance { mixed, samples, point };
@@ -174,8 +176,8 @@ inline constexpr std::size_t kDefaultEntrySamples = 256;
 
 struct Settings {
   Method method = Method::hierarchical;
-  EvaluatorKind evaluator = EvaluatorKind::dual_tree;
-  double tolerance = 0.005;  ///< dual_tree: p99 of its relative error against the exact sum
+  EvaluatorKind evaluator = EvaluatorKind::automatic;
+  double tolerance = 0.005;  ///< dual_tree, surface_cache: p99 of the relative error against the exact sum
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
   double max_solid_angle = 0.05;         ///< classic: open a node when area / distance^2 exceeds it, sr
   bool near_field = true;                ///< split the kernel near the shading point

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// When the exitance is evaluated all over a surface instead of at the points of the picture.
+#include <gtest/gtest.h>
+
+#include "opaline/image/metrics.h"
+#include "support/scenes.h"
+
+namespace opaline::test {
+namespace {
+
+Scene torus_scene(int side, int samples_per_pixel) {
+  Scene scene = single_shape(TorusShape{{}, 20, 8}, marble(), 8000);
+  scene.lights = {point_light({30, 60, 40}, {9000, 8000, 7000})};
+  scene.camera.position = {0, 50, 90};
+  scene.film.resolution = {side, side};
+  scene.film.samples_per_pixel = samples_per_pixel;
+  return scene;
+}
+
+bool has_cache(const Scene& scene) {
+  return Prepared(scene).pre.groups.at(0).surface_cache.has_value();
+}
+
+// Claim: left to itself a picture of many points has a surface cache and one of few has none, by pixels and
+// by samples a pixel; other evaluators have none, `surface_cache` always. A crop decides as the whole
+// picture. Source: evaluator `automatic` in scenes/README.md. Fails if: samples a pixel or the crop's size
+// are looked at wrongly.
+TEST(SurfaceCaches, WhereManyPointsAskForThem) {
+  EXPECT_FALSE(has_cache(torus_scene(64, 1)));
+  EXPECT_TRUE(has_cache(torus_scene(2500, 1)));
+  EXPECT_TRUE(has_cache(torus_scene(625, 16)));
+  Scene scene = torus_scene(2500, 1);
+  scene.film.crop = {{0, 0, 8, 8}};
+  EXPECT_TRUE(has_cache(scene));
+  scene.settings.evaluator = EvaluatorKind::dual_tree;
+  EXPECT_FALSE(has_cache(scene));
+  scene = torus_scene(16, 1);
+  scene.settings.evaluator = EvaluatorKind::surface_cache;
+  EXPECT_TRUE(has_cache(scene));
+}
+
+// Claim: the picture through a surface cache is that of the exact sum within the tolerance, mean over the
+// object's pixels; shadow edges in the near field are as sharp, for the irradiance at the points is traced as
+// ever. Source: the promise of surface_cache.h. Tolerance: the setting's, .5 %. Fails if: the cache's own
+// part is interpolated too.
+TEST(SurfaceCaches, PictureOfTheExactSum) {
+  Scene scene = torus_scene(64, 1);
+  scene.settings.evaluator = EvaluatorKind::surface_cache;
+  const Image interpolated = Prepared(scene).picture();
+  scene.settings.evaluator = EvaluatorKind::brute_force;
+  const Image exact = Prepared(scene).picture();
+  const RelativeErrors errors = relative_errors(extract_layer(interpolated, "diffuse"),
+                                                extract_layer(exact, "diffuse"), object_pixels(exact));
+  for (const std::vector<double>& channel : errors.channels) {
+    EXPECT_LT(error_statistics(channel).mean, .005);
+    EXPECT_LT(error_statistics(channel).p99, .02);
+  }
+}
+
+}  // namespace
+}  // namespace opaline::test
