@@ -8,18 +8,18 @@
 
 #include "evaluate/lane_kernels.h"
 #include "evaluate/point_sums.h"
-#include "opaline/core/morton.h"
+#include "evaluate/query_order.h"
 #include "opaline/core/parallel.h"
 
 namespace opaline {
 namespace {
 
-constexpr std::size_t kChunk = 256;  // queries that walk the tree together at first
 constexpr std::size_t kPackets = kChunk / kLanes;
-constexpr float kCoarseSolidAngle = 2;  // of the first guess of the exitance, sr
+constexpr float kCoarseSolidAngle = 4;  // of the first guess of the exitance, sr
+constexpr float kCoarseSize = 4;        // and how many of its nodes the size of a cluster holds
 // Third-order terms of a node's series that the second moment leaves, for the shapes that nodes have, and how
 // the errors of many nodes add up: measured, so that the promise holds (test_dual_tree).
-constexpr float kErrorShare = 1.0f;
+constexpr float kErrorShare = 0.9f;
 // Below this share of the p99 of all queries' exitance (under the promise's, for guesses run high), or this
 // one of the brightest possible, a relative error is not asked for.
 constexpr float kDark = 2e-4f, kDarkest = 1e-8f;
@@ -32,13 +32,6 @@ struct Sphere {
 Sphere around(const Vec3f& low, const Vec3f& high) {
   const Vec3f center = (low + high) * 0.5f, half = (high - low) * 0.5f;
   return {center, half, length(half)};
-}
-
-float gap2(const Sphere& a, const Vec3f& center, const Vec3f& half) {
-  const Vec3f d = a.center - center;
-  const Vec3f gap =
-      component_max(Vec3f{std::abs(d.x), std::abs(d.y), std::abs(d.z)} - half - a.half, Vec3f{});
-  return dot(gap, gap);
 }
 
 // Up to kChunk queries that lie near each other.
@@ -62,8 +55,9 @@ class Chunk {
                 std::span<Exitance> result) {
     fill_packets(order);
     for (std::size_t p = 0; p < packet_count_; ++p) guess_[p] = component_max(guesses[p], dark);
-    const std::vector<std::uint32_t> root{0};
-    refine(0, packet_count_, root);
+    gather(nodes_.data(), std::array{std::uint32_t(0)}, block_);
+    const SourceBlock root = block_;
+    refine(0, 0, packet_count_, {&root, 1}, 1, {}, {});
     for (std::size_t i = 0; i < order.size(); ++i) result[order[i]] = result_of(order[i], i);
   }
 
@@ -100,11 +94,11 @@ class Chunk {
     }
   }
 
-  // A coarse sum at one point of each packet: what errors are measured against. The near field is guessed
-  // from the far one, as if the irradiance were even.
-  void guess_exitance(const Sphere& all, std::span<RgbF> guesses) {
+  // A coarse sum at the points of a packet, which lie within `all`. The near field is guessed from the far
+  // one, as if the irradiance were even.
+  PacketSums coarse_sums(const Sphere& all, const Packet& points) {
     far_.clear();
-    const float fine = all.radius / 8;
+    const float fine = all.radius / kCoarseSize;
     for (std::uint32_t i = 0; i < nodes_.size();) {
       const OctreeNode& node = nodes_[i];
       const float distance = length(Vec3f{node.x[3], node.y[3], node.z[3]} - all.center) - all.radius;
@@ -117,11 +111,26 @@ class Chunk {
       }
     }
     PacketSums sums{};
-    kernels_.add_nodes(lane_input_, far_.data(), far_.size(), middles_, sums);
+    kernels_.add_nodes(lane_input_, far_.data(), far_.size(), points, sums);
     for (std::size_t c = 0; c < 3; ++c) {
       const float total = input_.kernel.total[c], rest = total - input_.kernel.near[c];
       const float with_near = total > 0 ? std::min(2.0f, total / std::max(rest, 0.5f * total)) : 1;
-      for (std::size_t p = 0; p < packet_count_; ++p) guesses[p][c] = with_near * sums.exitance[c][p];
+      for (float& exitance : sums.exitance[c]) exitance *= with_near;
+    }
+    return sums;
+  }
+
+  // What errors are measured against: the exitance at the middle of each packet, or the least of its points'
+  // where they lie so far apart that one does not speak for the others.
+  void guess_exitance(const Sphere& all, std::span<RgbF> guesses) {
+    const std::array<float, 3>& decay = lane_input_.table.decay;
+    const float rate = std::max({decay[0], decay[1], decay[2]}) + 0.25f / input_.kernel.radius;
+    const PacketSums middles = coarse_sums(all, middles_);
+    for (std::size_t p = 0; p < packet_count_; ++p) {
+      for (std::size_t c = 0; c < 3; ++c) guesses[p][c] = middles.exitance[c][p];
+      if (spheres_[p].radius * rate < 1) continue;
+      const PacketSums points = coarse_sums(spheres_[p], packets_[p]);
+      for (std::size_t c = 0; c < 3; ++c) guesses[p][c] = std::ranges::min(points.exitance[c]);
     }
   }
 
@@ -140,73 +149,87 @@ class Chunk {
     return least * (float(input_.tolerance) * kErrorShare);
   }
 
-  bool is_accepted(const OctreeNode& node, const Sphere& cluster, const RgbF& allowed) const {
-    if (gap2(cluster, node.center, node.half) < lane_input_.near2) return false;
-    const float distance = length(Vec3f{node.x[3], node.y[3], node.z[3]} - cluster.center) - cluster.radius;
-    if (!(distance > 0)) return false;
-    const float trace = node.spread[0] + node.spread[1] + node.spread[2], size = std::sqrt(trace);
-    if (size > 0.5f * distance) return false;
-    alignas(16) float kernel[4];
-    _mm_store_ps(kernel, input_.kernel.table(distance * distance));
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float relative = size * (3 / distance + lane_input_.table.decay[c]);
-      if (node.flux[c] * kernel[c] * relative * relative * relative > allowed[c]) return false;
+  Cluster cluster_of(std::size_t first, std::size_t last) const {
+    Vec3f low = spheres_[first].center - spheres_[first].half,
+          high = spheres_[first].center + spheres_[first].half;
+    for (std::size_t p = first + 1; p < last; ++p) {
+      low = component_min(low, spheres_[p].center - spheres_[p].half);
+      high = component_max(high, spheres_[p].center + spheres_[p].half);
     }
-    const bool one_colour = node.x[0] == node.x[1] && node.x[0] == node.x[2];
-    return one_colour || is_accepted_in_colour(node, distance, kernel, allowed);
+    Cluster cluster;
+    cluster.center = (low + high) * 0.5f;
+    cluster.half = (high - low) * 0.5f;
+    for (std::size_t p = first; p < last; ++p)
+      cluster.radius =
+          std::max(cluster.radius, length(spheres_[p].center - cluster.center) + spheres_[p].radius);
+    cluster.radius = std::min(cluster.radius, length(cluster.half));
+    cluster.allowed = allowed_error(first, last);
+    return cluster;
   }
 
-  // The second moment is that of all channels together: wrong by the second order for one that lies aside.
-  bool is_accepted_in_colour(const OctreeNode& node, float distance, const float* kernel,
-                             const RgbF& allowed) const {
-    const std::array<float, 4>& flux = node.flux;
-    const float share = 1 / (flux[0] + flux[1] + flux[2]);
-    const auto mean = [&](const std::array<float, 4>& p) {
-      return (flux[0] * p[0] + flux[1] * p[1] + flux[2] * p[2]) * share;
-    };
-    const Vec3f middle{mean(node.x), mean(node.y), mean(node.z)};
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3f aside = Vec3f{node.x[c], node.y[c], node.z[c]} - middle;
-      const float rate = 3 / distance + lane_input_.table.decay[c];
-      if (flux[c] * kernel[c] * dot(aside, aside) * rate * rate > allowed[c]) return false;
+  void push(std::vector<std::uint32_t>& list, std::uint32_t i) {
+    _mm_prefetch(reinterpret_cast<const char*>(&nodes_[i]), _MM_HINT_T0);
+    _mm_prefetch(reinterpret_cast<const char*>(&nodes_[i].center), _MM_HINT_T0);
+    list.push_back(i);
+  }
+
+  // What becomes of the first nodes of a block: into the expansion, to the packet as points, down to the
+  // clusters within this one, or their children into the queue.
+  void sift(const SourceBlock& block, std::size_t count, const Cluster& cluster, bool single) {
+    const std::uint32_t own = (2u << (count - 1)) - 1;
+    const Verdict verdict = kernels_.judge(lane_input_, block, cluster);
+    for (std::uint32_t lanes = own & verdict.expansion; lanes != 0; lanes &= lanes - 1)
+      expanded_.push_back(block.node[__builtin_ctz(lanes)]);
+    for (std::uint32_t lanes = own & ~verdict.expansion; lanes != 0; lanes &= lanes - 1) {
+      const std::size_t lane = std::size_t(__builtin_ctz(lanes));
+      const std::uint32_t i = block.node[lane];
+      const OctreeNode& node = nodes_[i];
+      if (single && (verdict.points >> lane & 1) != 0)
+        far_.push_back(i);
+      else if (single && node.leaf)
+        near_.push_back(i);
+      else if (node.leaf || (!single && length(node.half) < cluster.radius))
+        rest_.push_back(i);
+      else
+        for (std::uint32_t child = i + 1; child < node.skip; child = nodes_[child].skip) push(queue_, child);
     }
-    return true;
+  }
+
+  void gather_all(const std::vector<std::uint32_t>& list, std::vector<SourceBlock>& blocks) const {
+    blocks.resize((list.size() + kLanes - 1) / kLanes);
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      gather(nodes_.data(), std::span(list).subspan(b * kLanes), blocks[b]);
   }
 
   // Adds to packets [first, last) what nodes that stand as points give, and hands the others down.
-  void refine(std::size_t first, std::size_t last, const std::vector<std::uint32_t>& candidates) {
-    Sphere cluster = spheres_[first];
-    for (std::size_t p = first + 1; p < last; ++p)
-      cluster = around(component_min(cluster.center - cluster.half, spheres_[p].center - spheres_[p].half),
-                       component_max(cluster.center + cluster.half, spheres_[p].center + spheres_[p].half));
-    const RgbF allowed = allowed_error(first, last);
+  // candidates: `count` nodes; inherited: what is known of them already, around `center`
+  void refine(std::size_t depth, std::size_t first, std::size_t last, std::span<const SourceBlock> candidates,
+              std::size_t count, const Expansion& inherited, const Vec3f& center) {
     const bool single = last - first == 1;
-    std::vector<std::uint32_t> far, rest, stack(candidates.rbegin(), candidates.rend());
-    while (!stack.empty()) {
-      const std::uint32_t i = stack.back();
-      stack.pop_back();
-      const OctreeNode& node = nodes_[i];
-      if (is_accepted(node, cluster, allowed)) {
-        far.push_back(i);
-      } else if (node.leaf || (!single && length(node.half) < cluster.radius)) {
-        rest.push_back(i);
-      } else {
-        std::uint32_t children[8];
-        std::size_t count = 0;
-        for (std::uint32_t child = i + 1; child < node.skip; child = nodes_[child].skip)
-          children[count++] = child;
-        while (count > 0) stack.push_back(children[--count]);
-      }
+    const Cluster cluster = cluster_of(first, last);
+    for (auto* list : {&rest_, &queue_, &expanded_, &far_, &near_}) list->clear();
+    for (std::size_t b = 0; b < candidates.size(); ++b)
+      sift(candidates[b], std::min<std::size_t>(kLanes, count - b * kLanes), cluster, single);
+    for (std::size_t i = 0; i < queue_.size();) {
+      const std::size_t own = std::min<std::size_t>(kLanes, queue_.size() - i);
+      gather(nodes_.data(), std::span(queue_).subspan(i, own), block_);
+      i += own;
+      sift(block_, own, cluster, single);
     }
-    for (std::size_t p = first; p < last; ++p)
-      kernels_.add_nodes(lane_input_, far.data(), far.size(), packets_[p], sums_[p]);
+    Expansion all = inherited.empty ? inherited : inherited.around(cluster.center - center);
+    gather_all(expanded_, expanded_blocks_);
+    kernels_.expand(lane_input_, expanded_blocks_, cluster.center, all);
     if (single) {
-      add_leaves(first, rest);
+      if (!all.empty) kernels_.add_expansion(all, cluster.center, packets_[first], sums_[first]);
+      kernels_.add_nodes(lane_input_, far_.data(), far_.size(), packets_[first], sums_[first]);
+      add_leaves(first, near_);
       return;
     }
-    const std::size_t step = (last - first + 3) / 4;
+    std::vector<SourceBlock>& rest = rest_blocks_[depth];
+    gather_all(rest_, rest);
+    const std::size_t rest_count = rest_.size(), step = (last - first + 3) / 4;
     for (std::size_t begin = first; begin < last; begin += step)
-      refine(begin, std::min(last, begin + step), rest);
+      refine(depth + 1, begin, std::min(last, begin + step), rest, rest_count, all, cluster.center);
   }
 
   void add_leaves(std::size_t p, const std::vector<std::uint32_t>& leaves) {
@@ -255,52 +278,11 @@ class Chunk {
   std::array<Sphere, kPackets> spheres_;
   std::array<RgbF, kPackets> guess_;
   Packet middles_;
-  std::vector<std::uint32_t> far_, wholes_;
+  SourceBlock block_;
+  std::vector<SourceBlock> expanded_blocks_;
+  std::array<std::vector<SourceBlock>, 4> rest_blocks_;
+  std::vector<std::uint32_t> rest_, queue_, expanded_, far_, near_, wholes_;
 };
-
-// Cuts queries at the middle of their longest side, down to packets: compact boxes make short lists.
-void sort_into_packets(std::span<std::uint32_t> order, std::span<const Query> queries) {
-  if (order.size() <= std::size_t(kLanes)) return;
-  Vec3f low = queries[order[0]].position, high = low;
-  for (const std::uint32_t q : order) {
-    low = component_min(low, queries[q].position);
-    high = component_max(high, queries[q].position);
-  }
-  const Vec3f side = high - low;
-  const std::size_t axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
-  const std::size_t packets = (order.size() + kLanes - 1) / kLanes, half = packets / 2 * kLanes;
-  std::ranges::nth_element(order, order.begin() + std::ptrdiff_t(half),
-                           [&](std::uint32_t a, std::uint32_t b) {
-                             const float pa = queries[a].position[axis], pb = queries[b].position[axis];
-                             return pa != pb ? pa < pb : a < b;
-                           });
-  sort_into_packets(order.first(half), queries);
-  sort_into_packets(order.subspan(half), queries);
-}
-
-// Queries along the Morton curve of their box; those that are not finite are left out: nothing reaches them.
-std::vector<std::uint32_t> nearby_order(std::span<const Query> queries) {
-  std::vector<std::uint32_t> order;
-  order.reserve(queries.size());
-  Vec3f low(std::numeric_limits<float>::max()), high = -low;
-  for (std::uint32_t i = 0; i < queries.size(); ++i) {
-    if (!is_finite(queries[i].position)) continue;
-    order.push_back(i);
-    low = component_min(low, queries[i].position);
-    high = component_max(high, queries[i].position);
-  }
-  const float side = max_component(high - low);
-  const float scale = side > 0 ? 1023.999f / side : 0;
-  if (scale == 0) return order;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(order.size());
-  std::ranges::transform(order, keyed.begin(), [&](std::uint32_t i) {
-    const Vec3f p = (queries[i].position - low) * scale;
-    return std::pair{morton_key(std::uint64_t(p.x), std::uint64_t(p.y), std::uint64_t(p.z)), i};
-  });
-  std::ranges::sort(keyed);
-  std::ranges::transform(keyed, order.begin(), [](const auto& k) { return k.second; });
-  return order;
-}
 
 // Exitance, per channel, below which errors are held against it instead of the query's own.
 RgbF darkest(const EvaluateInput& input, std::span<const RgbF> guesses) {
@@ -319,7 +301,7 @@ RgbF darkest(const EvaluateInput& input, std::span<const RgbF> guesses) {
 
 void evaluate_dual_tree(const EvaluateInput& input, std::span<Exitance> result) {
   const LaneKernels& kernels = lane_kernels(input.instruction_set);
-  std::vector<std::uint32_t> order = nearby_order(input.queries);
+  std::vector<std::uint32_t> order = chunk_order(input.queries);
   if (order.empty()) return;
   std::vector<RgbF> guesses(chunk_count(order.size(), kLanes));
   const auto packets = [&](std::size_t begin) { return std::span(guesses).subspan(begin / kLanes); };
