@@ -14,12 +14,12 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kPackets = kChunk / kLanes;
+constexpr std::size_t kTogether = 4;    // packets that go down the tree side by side
 constexpr float kCoarseSolidAngle = 4;  // of the first guess of the exitance, sr
 constexpr float kCoarseSize = 4;        // and how many of its nodes the size of a cluster holds
 // Third-order terms of a node's series that the second moment leaves, for the shapes that nodes have, and how
 // the errors of many nodes add up: measured, so that the promise holds (test_dual_tree).
-constexpr float kErrorShare = 0.9f;
+constexpr float kErrorShare = 0.7f;
 // Below this share of the p99 of all queries' exitance (under the promise's, for guesses run high), or this
 // one of the brightest possible, a relative error is not asked for.
 constexpr float kDark = 2e-4f, kDarkest = 1e-8f;
@@ -34,6 +34,23 @@ Sphere around(const Vec3f& low, const Vec3f& high) {
   return {center, half, length(half)};
 }
 
+// What a packet makes of the nodes it meets.
+struct PacketLists {
+  Cluster cluster;
+  std::vector<std::uint32_t> expanded, far, near;  // by its expansion, as points, sample by sample
+
+  void start(const Cluster& own) {
+    cluster = own;
+    for (auto* list : {&expanded, &far, &near}) list->clear();
+  }
+};
+
+// Packets of a chunk and their first guesses.
+struct ChunkPlan {
+  PacketCut cut;
+  std::array<RgbF, PacketCut::kMost> guesses;
+};
+
 // Up to kChunk queries that lie near each other.
 class Chunk {
  public:
@@ -44,21 +61,24 @@ class Chunk {
         lane_input_{*input.kernel.lanes, input.octree.nodes.data(), input.octree.samples.data(),
                     input.octree.normals.data(), input.kernel.radius * input.kernel.radius} {}
 
-  // A coarse exitance at one point of each packet.
-  void guess(std::span<const std::uint32_t> order, std::span<RgbF> guesses) {
-    fill_packets(order);
-    guess_exitance(bounds_of(order), guesses);
+  // A coarse exitance of each packet.
+  void guess(std::span<const std::uint32_t> order, ChunkPlan& plan) {
+    fill_packets(order, plan.cut);
+    guess_exitance(bounds_of(order), plan.guesses);
   }
 
-  // guesses: of its packets; dark: exitance below which errors are absolute
-  void evaluate(std::span<const std::uint32_t> order, std::span<const RgbF> guesses, const RgbF& dark,
+  // dark: exitance below which errors are absolute
+  void evaluate(std::span<const std::uint32_t> order, const ChunkPlan& plan, const RgbF& dark,
                 std::span<Exitance> result) {
-    fill_packets(order);
-    for (std::size_t p = 0; p < packet_count_; ++p) guess_[p] = component_max(guesses[p], dark);
+    fill_packets(order, plan.cut);
+    for (std::size_t p = 0; p < packet_count_; ++p) guess_[p] = component_max(plan.guesses[p], dark);
     gather(nodes_.data(), std::array{std::uint32_t(0)}, block_);
     const SourceBlock root = block_;
     refine(0, 0, packet_count_, {&root, 1}, 1, {}, {});
-    for (std::size_t i = 0; i < order.size(); ++i) result[order[i]] = result_of(order[i], i);
+    std::size_t i = 0;
+    for (std::size_t p = 0; p < packet_count_; ++p)
+      for (std::size_t lane = 0; lane < plan.cut.counts[p]; ++lane, ++i)
+        result[order[i]] = result_of(order[i], p, lane);
   }
 
  private:
@@ -80,23 +100,22 @@ class Chunk {
     packet.nz[lane] = query.normal.z;
   }
 
-  void fill_packets(std::span<const std::uint32_t> order) {
-    packet_count_ = (order.size() + kLanes - 1) / kLanes;
-    for (std::size_t p = 0; p < packet_count_; ++p) {
-      const std::size_t first = p * kLanes, count = std::min<std::size_t>(kLanes, order.size() - first);
+  void fill_packets(std::span<const std::uint32_t> order, const PacketCut& cut) {
+    packet_count_ = cut.packets;
+    for (std::size_t p = 0, first = 0; p < packet_count_; first += cut.counts[p++]) {
+      const std::size_t count = cut.counts[p];
       for (int lane = 0; lane < kLanes; ++lane)
         set_lane(packets_[p], lane, input_.queries[order[first + std::min(std::size_t(lane), count - 1)]]);
       spheres_[p] = bounds_of(order.subspan(first, count));
       sums_[p] = {};
       const Query& middle = input_.queries[order[first + count / 2]];
-      set_lane(middles_, int(p), middle);
-      for (int lane = int(p) + 1; lane < kLanes; ++lane) set_lane(middles_, lane, middle);
+      for (int lane = int(p) % kLanes; lane < kLanes; ++lane) set_lane(middles_[p / kLanes], lane, middle);
     }
   }
 
   // A coarse sum at the points of a packet, which lie within `all`. The near field is guessed from the far
   // one, as if the irradiance were even.
-  PacketSums coarse_sums(const Sphere& all, const Packet& points) {
+  void list_coarse(const Sphere& all) {
     far_.clear();
     const float fine = all.radius / kCoarseSize;
     for (std::uint32_t i = 0; i < nodes_.size();) {
@@ -110,6 +129,9 @@ class Chunk {
         ++i;
       }
     }
+  }
+
+  PacketSums coarse_sums(const Packet& points) const {
     PacketSums sums{};
     kernels_.add_nodes(lane_input_, far_.data(), far_.size(), points, sums);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -125,11 +147,16 @@ class Chunk {
   void guess_exitance(const Sphere& all, std::span<RgbF> guesses) {
     const std::array<float, 3>& decay = lane_input_.table.decay;
     const float rate = std::max({decay[0], decay[1], decay[2]}) + 0.25f / input_.kernel.radius;
-    const PacketSums middles = coarse_sums(all, middles_);
+    list_coarse(all);
+    for (std::size_t first = 0; first < packet_count_; first += kLanes) {
+      const PacketSums middles = coarse_sums(middles_[first / kLanes]);
+      for (std::size_t p = first; p < std::min(packet_count_, first + kLanes); ++p)
+        for (std::size_t c = 0; c < 3; ++c) guesses[p][c] = middles.exitance[c][p - first];
+    }
     for (std::size_t p = 0; p < packet_count_; ++p) {
-      for (std::size_t c = 0; c < 3; ++c) guesses[p][c] = middles.exitance[c][p];
-      if (spheres_[p].radius * rate < 1) continue;
-      const PacketSums points = coarse_sums(spheres_[p], packets_[p]);
+      if (spheres_[p].radius * rate < 0.5f) continue;
+      list_coarse(spheres_[p]);
+      const PacketSums points = coarse_sums(packets_[p]);
       for (std::size_t c = 0; c < 3; ++c) guesses[p][c] = std::ranges::min(points.exitance[c]);
     }
   }
@@ -167,31 +194,32 @@ class Chunk {
     return cluster;
   }
 
-  void push(std::vector<std::uint32_t>& list, std::uint32_t i) {
-    _mm_prefetch(reinterpret_cast<const char*>(&nodes_[i]), _MM_HINT_T0);
-    _mm_prefetch(reinterpret_cast<const char*>(&nodes_[i].center), _MM_HINT_T0);
-    list.push_back(i);
+  // takers: bits of the packets that want the children of a node
+  void open(std::uint32_t i, std::uint32_t takers) {
+    const std::uint32_t end = nodes_[i].skip;
+    for (std::uint32_t child = i + 1; child < end; child = nodes_[child].skip) {
+      _mm_prefetch(reinterpret_cast<const char*>(&nodes_[child]), _MM_HINT_T0);
+      _mm_prefetch(reinterpret_cast<const char*>(&nodes_[child].center), _MM_HINT_T0);
+      queue_.push_back(child);
+      takers_.push_back(std::uint8_t(takers));
+    }
   }
 
-  // What becomes of the first nodes of a block: into the expansion, to the packet as points, down to the
-  // clusters within this one, or their children into the queue.
-  void sift(const SourceBlock& block, std::size_t count, const Cluster& cluster, bool single) {
-    const std::uint32_t own = (2u << (count - 1)) - 1;
-    const Verdict verdict = kernels_.judge(lane_input_, block, cluster);
-    for (std::uint32_t lanes = own & verdict.expansion; lanes != 0; lanes &= lanes - 1)
-      expanded_.push_back(block.node[__builtin_ctz(lanes)]);
-    for (std::uint32_t lanes = own & ~verdict.expansion; lanes != 0; lanes &= lanes - 1) {
-      const std::size_t lane = std::size_t(__builtin_ctz(lanes));
-      const std::uint32_t i = block.node[lane];
-      const OctreeNode& node = nodes_[i];
-      if (single && (verdict.points >> lane & 1) != 0)
-        far_.push_back(i);
-      else if (single && node.leaf)
-        near_.push_back(i);
-      else if (node.leaf || (!single && length(node.half) < cluster.radius))
-        rest_.push_back(i);
-      else
-        for (std::uint32_t child = i + 1; child < node.skip; child = nodes_[child].skip) push(queue_, child);
+  // Calls sift(block, first, count) for the candidates and then for the queue, until it grows no more; first:
+  // place in the queue, or -1 for candidates.
+  template <class Sift>
+  void sift_all(std::span<const SourceBlock> candidates, std::size_t count, const Sift& sift) {
+    queue_.clear();
+    takers_.clear();
+    for (std::size_t b = 0; b < candidates.size(); ++b)
+      sift(candidates[b], nullptr, std::min<std::size_t>(kLanes, count - b * kLanes));
+    for (std::size_t i = 0; i < queue_.size();) {
+      const std::size_t own = std::min<std::size_t>(kLanes, queue_.size() - i);
+      gather(nodes_.data(), std::span(queue_).subspan(i, own), block_);
+      std::uint8_t takers[kLanes];
+      std::copy_n(takers_.begin() + std::ptrdiff_t(i), own, takers);
+      i += own;
+      sift(block_, takers, own);
     }
   }
 
@@ -201,35 +229,90 @@ class Chunk {
       gather(nodes_.data(), std::span(list).subspan(b * kLanes), blocks[b]);
   }
 
-  // Adds to packets [first, last) what nodes that stand as points give, and hands the others down.
-  // candidates: `count` nodes; inherited: what is known of them already, around `center`
+  // What is known around the centre of a cluster: by inheritance, and by its own nodes.
+  Expansion expansion_of(const Cluster& cluster, const std::vector<std::uint32_t>& nodes,
+                         const Expansion& inherited, const Vec3f& center) {
+    Expansion all = inherited.empty ? inherited : inherited.around(cluster.center - center);
+    gather_all(nodes, expanded_blocks_);
+    kernels_.expand(lane_input_, expanded_blocks_, cluster.center, all);
+    return all;
+  }
+
+  // Puts nodes far from packets [first, last) into their expansion, and hands the others down. candidates:
+  // `count` nodes; inherited: what is known of them already, around `center`
   void refine(std::size_t depth, std::size_t first, std::size_t last, std::span<const SourceBlock> candidates,
               std::size_t count, const Expansion& inherited, const Vec3f& center) {
-    const bool single = last - first == 1;
+    if (last - first == 1) return refine_packets(first, last, candidates, count, inherited, center);
     const Cluster cluster = cluster_of(first, last);
-    for (auto* list : {&rest_, &queue_, &expanded_, &far_, &near_}) list->clear();
-    for (std::size_t b = 0; b < candidates.size(); ++b)
-      sift(candidates[b], std::min<std::size_t>(kLanes, count - b * kLanes), cluster, single);
-    for (std::size_t i = 0; i < queue_.size();) {
-      const std::size_t own = std::min<std::size_t>(kLanes, queue_.size() - i);
-      gather(nodes_.data(), std::span(queue_).subspan(i, own), block_);
-      i += own;
-      sift(block_, own, cluster, single);
-    }
-    Expansion all = inherited.empty ? inherited : inherited.around(cluster.center - center);
-    gather_all(expanded_, expanded_blocks_);
-    kernels_.expand(lane_input_, expanded_blocks_, cluster.center, all);
-    if (single) {
-      if (!all.empty) kernels_.add_expansion(all, cluster.center, packets_[first], sums_[first]);
-      kernels_.add_nodes(lane_input_, far_.data(), far_.size(), packets_[first], sums_[first]);
-      add_leaves(first, near_);
-      return;
-    }
+    rest_.clear();
+    PacketLists& lists = lists_[0];
+    lists.expanded.clear();
+    sift_all(candidates, count, [&](const SourceBlock& block, const std::uint8_t*, std::size_t own_count) {
+      const std::uint32_t own = (2u << (own_count - 1)) - 1;
+      const Verdict verdict = kernels_.judge(lane_input_, block, cluster);
+      append(lists.expanded, block, own & verdict.expansion);
+      for (std::uint32_t lanes = own & ~verdict.expansion; lanes != 0; lanes &= lanes - 1) {
+        const std::uint32_t i = block.node[__builtin_ctz(lanes)];
+        if (nodes_[i].leaf || length(nodes_[i].half) < cluster.radius)
+          rest_.push_back(i);
+        else
+          open(i, 1);
+      }
+    });
+    const Expansion all = expansion_of(cluster, lists.expanded, inherited, center);
     std::vector<SourceBlock>& rest = rest_blocks_[depth];
     gather_all(rest_, rest);
-    const std::size_t rest_count = rest_.size(), step = (last - first + 3) / 4;
+    const std::size_t rest_count = rest_.size();
+    if (last - first <= kTogether) return refine_packets(first, last, rest, rest_count, all, cluster.center);
+    const std::size_t step = (last - first + 3) / 4;
     for (std::size_t begin = first; begin < last; begin += step)
       refine(depth + 1, begin, std::min(last, begin + step), rest, rest_count, all, cluster.center);
+  }
+
+  // Adds to packets [first, last), kTogether at most, all that is left: each its own way, but what one opens
+  // is opened once.
+  void refine_packets(std::size_t first, std::size_t last, std::span<const SourceBlock> candidates,
+                      std::size_t count, const Expansion& inherited, const Vec3f& center) {
+    const std::size_t packets = last - first;
+    for (std::size_t p = 0; p < packets; ++p) lists_[p].start(cluster_of(first + p, first + p + 1));
+    sift_all(candidates, count,
+             [&](const SourceBlock& block, const std::uint8_t* takers, std::size_t own_count) {
+               std::uint32_t leaves = 0;
+               for (std::size_t i = 0; i < own_count; ++i)
+                 leaves |= std::uint32_t(nodes_[block.node[i]].leaf) << i;
+               std::array<std::uint32_t, kTogether> opened{};
+               for (std::size_t p = 0; p < packets; ++p) {
+                 std::uint32_t own = (2u << (own_count - 1)) - 1;
+                 for (std::size_t i = 0; takers != nullptr && i < own_count; ++i)
+                   own &= ~(std::uint32_t(~takers[i] >> p & 1) << i);
+                 if (own == 0) continue;
+                 const Verdict verdict = kernels_.judge(lane_input_, block, lists_[p].cluster);
+                 append(lists_[p].expanded, block, own & verdict.expansion);
+                 append(lists_[p].far, block, own & ~verdict.expansion & verdict.points);
+                 append(lists_[p].near, block, own & ~verdict.points & leaves);
+                 opened[p] = own & ~verdict.points & ~leaves;
+               }
+               for (std::uint32_t lanes = opened[0] | opened[1] | opened[2] | opened[3]; lanes != 0;
+                    lanes &= lanes - 1) {
+                 const int lane = __builtin_ctz(lanes);
+                 std::uint32_t wanted = 0;
+                 for (std::size_t p = 0; p < packets; ++p) wanted |= (opened[p] >> lane & 1) << p;
+                 open(block.node[lane], wanted);
+               }
+             });
+    for (std::size_t p = 0; p < packets; ++p) {
+      const PacketLists& lists = lists_[p];
+      const Packet& packet = packets_[first + p];
+      PacketSums& sums = sums_[first + p];
+      const Expansion all = expansion_of(lists.cluster, lists.expanded, inherited, center);
+      if (!all.empty) kernels_.add_expansion(all, lists.cluster.center, packet, sums);
+      kernels_.add_nodes(lane_input_, lists.far.data(), lists.far.size(), packet, sums);
+      add_leaves(first + p, lists.near);
+    }
+  }
+
+  static void append(std::vector<std::uint32_t>& list, const SourceBlock& block, std::uint32_t lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) list.push_back(block.node[__builtin_ctz(lanes)]);
   }
 
   void add_leaves(std::size_t p, const std::vector<std::uint32_t>& leaves) {
@@ -252,18 +335,21 @@ class Chunk {
     for (std::size_t c = 0; c < 3; ++c) sums_[p].exitance[c][lane] += kernel[c] * missing * s.flux[c];
   }
 
-  Exitance result_of(std::uint32_t query, std::size_t place) const {
-    const PacketSums& from = sums_[place / kLanes];
-    const std::size_t lane = place % kLanes;
+  Exitance result_of(std::uint32_t query, std::size_t packet, std::size_t lane) const {
+    const PacketSums& from = sums_[packet];
     PointSums sums;
     sums.near_area = from.near_area[lane];
+    // The irradiance varies around the point by the same share of its mean in each channel.
+    float square = 0;
+    for (std::size_t c = 0; c < 3; ++c) square += from.near_flux[c][lane] * from.near_flux[c][lane];
+    const float spread = square > 0 ? from.near_squares[lane] / square : 0;
     for (std::size_t c = 0; c < 3; ++c) {
       sums.far[c] = std::max(0.0f, from.exitance[c][lane]);
       sums.spread[c] = from.spread[c][lane];
       sums.squares[c] = from.squares[c][lane];
       sums.hierarchy[c] = 0.3f * float(input_.tolerance) * sums.far[c];
       sums.near_flux[c] = from.near_flux[c][lane];
-      sums.near_squares[c] = from.near_squares[c][lane];
+      sums.near_squares[c] = sums.near_flux[c] * sums.near_flux[c] * spread;
     }
     return exitance_from(sums, input_, input_.irradiance.empty() ? nullptr : &input_.irradiance[query]);
   }
@@ -273,24 +359,28 @@ class Chunk {
   const std::vector<OctreeNode>& nodes_;
   LaneInput lane_input_;
   std::size_t packet_count_ = 0;
-  std::array<Packet, kPackets> packets_;
-  std::array<PacketSums, kPackets> sums_;
-  std::array<Sphere, kPackets> spheres_;
-  std::array<RgbF, kPackets> guess_;
-  Packet middles_;
+  std::array<Packet, PacketCut::kMost> packets_;
+  std::array<PacketSums, PacketCut::kMost> sums_;
+  std::array<Sphere, PacketCut::kMost> spheres_;
+  std::array<RgbF, PacketCut::kMost> guess_;
+  std::array<Packet, PacketCut::kMost / kLanes> middles_;
   SourceBlock block_;
   std::vector<SourceBlock> expanded_blocks_;
-  std::array<std::vector<SourceBlock>, 4> rest_blocks_;
-  std::vector<std::uint32_t> rest_, queue_, expanded_, far_, near_, wholes_;
+  std::array<std::vector<SourceBlock>, 6> rest_blocks_;
+  std::array<PacketLists, kTogether> lists_;
+  std::vector<std::uint32_t> rest_, queue_, far_, wholes_;
+  std::vector<std::uint8_t> takers_;  // of the queue
 };
 
 // Exitance, per channel, below which errors are held against it instead of the query's own.
-RgbF darkest(const EvaluateInput& input, std::span<const RgbF> guesses) {
+RgbF darkest(const EvaluateInput& input, std::span<const ChunkPlan> plans) {
   RgbF dark;
-  std::vector<float> values(guesses.size());
-  const std::size_t p99 = (values.size() * 99 + 99) / 100 - 1;
+  std::vector<float> values;
   for (std::size_t c = 0; c < 3; ++c) {
-    std::ranges::transform(guesses, values.begin(), [&](const RgbF& guess) { return guess[c]; });
+    values.clear();
+    for (const ChunkPlan& plan : plans)
+      for (std::size_t p = 0; p < plan.cut.packets; ++p) values.push_back(plan.guesses[p][c]);
+    const std::size_t p99 = (values.size() * 99 + 99) / 100 - 1;
     std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(p99));
     dark[c] = std::max(kDark * values[p99], kDarkest * input.kernel.total[c]);
   }
@@ -303,17 +393,15 @@ void evaluate_dual_tree(const EvaluateInput& input, std::span<Exitance> result) 
   const LaneKernels& kernels = lane_kernels(input.instruction_set);
   std::vector<std::uint32_t> order = chunk_order(input.queries);
   if (order.empty()) return;
-  std::vector<RgbF> guesses(chunk_count(order.size(), kLanes));
-  const auto packets = [&](std::size_t begin) { return std::span(guesses).subspan(begin / kLanes); };
-  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+  std::vector<ChunkPlan> plans(chunk_count(order.size(), kChunk));
+  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     const std::span<std::uint32_t> own = std::span(order).subspan(begin, end - begin);
-    sort_into_packets(own, input.queries);
-    Chunk(input, kernels).guess(own, packets(begin));
+    plans[chunk].cut = sort_into_packets(own, input.queries, input.kernel.radius);
+    Chunk(input, kernels).guess(own, plans[chunk]);
   });
-  const RgbF dark = darkest(input, guesses);
-  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-    const std::span<const std::uint32_t> own = std::span(order).subspan(begin, end - begin);
-    Chunk(input, kernels).evaluate(own, packets(begin), dark, result);
+  const RgbF dark = darkest(input, plans);
+  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    Chunk(input, kernels).evaluate(std::span(order).subspan(begin, end - begin), plans[chunk], dark, result);
     advance(input.monitor, end - begin);
   });
 }

@@ -42,14 +42,16 @@ TARGET static Verdict judge(const LaneInput& input, const SourceBlock& sources, 
     const I segment = (q - 0x3F800000) >> 22, last = I{} + (LaneTable::kSegments - 1);
     const V t = __builtin_convertvector(q & 0x003FFFFF, V) * 0x1p-22f;
     const I place = segment > last ? last : segment;
+    const bool near_table = !any(place > 31);
     const V slope = 3 / safe, both = size + cluster.radius;
     I far = ok & (safe < splat(1e15f));
     for (std::size_t c = 0; c < 3; ++c) {
       const auto& chord = input.table.chord[c];
-      const V kernel = load(sources.flux[c] + block) *
-                       (lookup(chord[0].data(), place) + t * lookup(chord[1].data(), place));
+      const V kernel = near_table ? lookup_32(chord[0].data(), place) + t * lookup_32(chord[1].data(), place)
+                                  : lookup(chord[0].data(), place) + t * lookup(chord[1].data(), place);
+      const V share = load(sources.flux[c] + block) * kernel;
       const V rate = slope + input.table.decay[c], allowed = splat(cluster.allowed[c]);
-      const V second = kernel * rate * rate, third = second * rate;
+      const V second = share * rate * rate, third = second * rate;
       ok &= (third * size * size * size <= allowed) & (second * aside * aside <= allowed);
       far &= third * both * both * both <= allowed;
     }

@@ -44,24 +44,59 @@ TARGET static inline Place find(V q) {
 using Channel = std::array<std::array<float, LaneTable::kSegments>, 4>;
 using Curvature = std::array<std::array<float, LaneTable::kSegments>, 3>;
 
-// Second derivative in q.
-TARGET static inline V second_derivative(const Curvature& curvature, const Place& at) {
-  const V c0 = lookup(curvature[0].data(), at.segment), c1 = lookup(curvature[1].data(), at.segment),
-          c2 = lookup(curvature[2].data(), at.segment);
-  return c0 + at.t * (c1 + at.t * c2);
+// How far into the table places go: to 4 h, to 64 h, anywhere.
+enum class Reach { near, middle, all };
+
+template <Reach reach>
+TARGET static inline V lookup_within(const float* table, I segment) {
+  if constexpr (reach == Reach::near) return lookup_16(table, segment);
+  if constexpr (reach == Reach::middle) return lookup_32(table, segment);
+  return lookup(table, segment);
 }
 
-// Of places in the first half of the table.
-TARGET static inline V near_kernel(const Channel& channel, const Place& at) {
-  const V c0 = lookup_low(channel[0].data(), at.segment), c1 = lookup_low(channel[1].data(), at.segment),
-          c2 = lookup_low(channel[2].data(), at.segment), c3 = lookup_low(channel[3].data(), at.segment);
-  return c0 + at.t * (c1 + at.t * (c2 + at.t * c3));
-}
-
+template <Reach reach>
 TARGET static inline V kernel(const Channel& channel, const Place& at) {
-  const V c0 = lookup(channel[0].data(), at.segment), c1 = lookup(channel[1].data(), at.segment),
-          c2 = lookup(channel[2].data(), at.segment), c3 = lookup(channel[3].data(), at.segment);
+  const V c0 = lookup_within<reach>(channel[0].data(), at.segment),
+          c1 = lookup_within<reach>(channel[1].data(), at.segment),
+          c2 = lookup_within<reach>(channel[2].data(), at.segment),
+          c3 = lookup_within<reach>(channel[3].data(), at.segment);
   return c0 + at.t * (c1 + at.t * (c2 + at.t * c3));
+}
+
+// Of three channels.
+struct Kernels {
+  V c0, c1, c2;
+};
+
+template <Reach reach>
+TARGET static inline Kernels kernels(const LaneTable& table, const Place& at) {
+  return {kernel<reach>(table.coefficients[0], at), kernel<reach>(table.coefficients[1], at),
+          kernel<reach>(table.coefficients[2], at)};
+}
+
+// The kernel and its derivatives in q.
+struct Series {
+  V value, first, second;
+};
+
+template <Reach reach>
+TARGET static inline Series series(const LaneTable& table, std::size_t channel, const Place& at) {
+  const Channel& c = table.coefficients[channel];
+  const Curvature& d = table.curvature[channel];
+  const V c0 = lookup_within<reach>(c[0].data(), at.segment),
+          c1 = lookup_within<reach>(c[1].data(), at.segment),
+          c2 = lookup_within<reach>(c[2].data(), at.segment),
+          c3 = lookup_within<reach>(c[3].data(), at.segment),
+          d0 = lookup_within<reach>(d[0].data(), at.segment),
+          d1 = lookup_within<reach>(d[1].data(), at.segment),
+          d2 = lookup_within<reach>(d[2].data(), at.segment);
+  return {c0 + at.t * (c1 + at.t * (c2 + at.t * c3)),
+          (c1 + at.t * (2 * c2 + 3 * at.t * c3)) * at.inverse_width, d0 + at.t * (d1 + at.t * d2)};
+}
+
+TARGET static inline Series series(const LaneTable& table, std::size_t channel, const Place& at) {
+  return any(at.segment > 31) ? series<Reach::all>(table, channel, at)
+                              : series<Reach::middle>(table, channel, at);
 }
 
 // Of the second order; kept where the orders beyond it make sense.
@@ -78,16 +113,11 @@ TARGET static inline V with_fourth_order(V value, V change) {
 // The kernel's sum over a node of second moment C around its centroid at d: F(s) + F' tr C + 2 F'' d'Cd, s =
 // d'd. Kept within a quarter and four times of F: close by, and far down an exponential, the series means
 // nothing.
-TARGET static inline V node_kernel(const Channel& channel, const Curvature& curved, const Place& at, V first,
+TARGET static inline V node_kernel(const LaneTable& table, std::size_t channel, const Place& at, V first,
                                    V second) {
-  const V c0 = lookup(channel[0].data(), at.segment), c1 = lookup(channel[1].data(), at.segment),
-          c2 = lookup(channel[2].data(), at.segment), c3 = lookup(channel[3].data(), at.segment);
-  const V value = c0 + at.t * (c1 + at.t * (c2 + at.t * c3));
-  const V slope = (c1 + at.t * (2 * c2 + 3 * at.t * c3)) * at.inverse_width;
-  const V curvature = second_derivative(curved, at);
-  const V change = slope * first + curvature * second;
-  const V corrected = with_fourth_order(value, change);
-  return smaller(larger(corrected, 0.25f * value), 4.0f * value);
+  const Series f = series(table, channel, at);
+  const V corrected = with_fourth_order(f.value, f.first * first + f.second * second);
+  return smaller(larger(corrected, 0.25f * f.value), 4.0f * f.value);
 }
 
 struct Offset {
@@ -117,12 +147,9 @@ TARGET static void add_nodes_block(const LaneInput& input, const std::uint32_t* 
       const Offset d{node.x[0] - px, node.y[0] - py, node.z[0] - pz};
       const Place at = find(1 + square(d) * unit);
       const V first = splat(trace), second = (2 * unit * unit) * second_moment(node.spread, d);
-      sum0 += node.flux[0] *
-              node_kernel(input.table.coefficients[0], input.table.curvature[0], at, first, second);
-      sum1 += node.flux[1] *
-              node_kernel(input.table.coefficients[1], input.table.curvature[1], at, first, second);
-      sum2 += node.flux[2] *
-              node_kernel(input.table.coefficients[2], input.table.curvature[2], at, first, second);
+      sum0 += node.flux[0] * node_kernel(input.table, 0, at, first, second);
+      sum1 += node.flux[1] * node_kernel(input.table, 1, at, first, second);
+      sum2 += node.flux[2] * node_kernel(input.table, 2, at, first, second);
       continue;
     }
     V* const channel_sums[3] = {&sum0, &sum1, &sum2};
@@ -131,27 +158,12 @@ TARGET static void add_nodes_block(const LaneInput& input, const std::uint32_t* 
       const Offset d{node.x[c] - px, node.y[c] - py, node.z[c] - pz};
       const Place at = find(1 + square(d) * unit);
       const V second = (2 * unit * unit) * second_moment(node.spread, d);
-      *channel_sums[c] += node.flux[c] * node_kernel(input.table.coefficients[c], input.table.curvature[c],
-                                                     at, splat(trace), second);
+      *channel_sums[c] += node.flux[c] * node_kernel(input.table, c, at, splat(trace), second);
     }
   }
   add_to(sums.exitance[0] + block, sum0);
   add_to(sums.exitance[1] + block, sum1);
   add_to(sums.exitance[2] + block, sum2);
-}
-
-// Derivatives of the kernel in s = r^2.
-struct Series {
-  V value, first, second;
-};
-
-TARGET static inline Series series(const Channel& channel, const Curvature& curved, const Place& at,
-                                   float unit) {
-  const V c0 = lookup(channel[0].data(), at.segment), c1 = lookup(channel[1].data(), at.segment),
-          c2 = lookup(channel[2].data(), at.segment), c3 = lookup(channel[3].data(), at.segment);
-  const V scale = at.inverse_width * unit;
-  return {c0 + at.t * (c1 + at.t * (c2 + at.t * c3)), (c1 + at.t * (2 * c2 + 3 * at.t * c3)) * scale,
-          second_derivative(curved, at) * (unit * unit)};
 }
 
 // Channel c of an expansion, lane by lane: value, bend, slope, hessian as in Expansion.
@@ -163,8 +175,8 @@ struct ChannelSeries {
     const float unit = input.table.inverse_scale2;
     const Offset d{load(sources.x[c] + block) - center.x, load(sources.y[c] + block) - center.y,
                    load(sources.z[c] + block) - center.z};
-    const Series f =
-        series(input.table.coefficients[c], input.table.curvature[c], find(1 + square(d) * unit), unit);
+    const Series in_q = series(input.table, c, find(1 + square(d) * unit));
+    const Series f{in_q.value, in_q.first * unit, in_q.second * (unit * unit)};
     const V cxx = load(sources.spread[0] + block), cyy = load(sources.spread[1] + block),
             czz = load(sources.spread[2] + block), cxy = load(sources.spread[3] + block),
             cxz = load(sources.spread[4] + block), cyz = load(sources.spread[5] + block);
@@ -224,7 +236,7 @@ TARGET static void add_expansion(const Expansion& expansion, const Vec3f& center
 }
 
 struct NearSums {
-  V area{}, flux0{}, flux1{}, flux2{}, squares0{}, squares1{}, squares2{};
+  V area{}, flux0{}, flux1{}, flux2{}, squares{};
 };
 
 // Notes a sample within h of some lanes; returns the lanes for which it is on another sheet.
@@ -239,10 +251,8 @@ TARGET static inline std::uint32_t add_near(const LaneInput& input, const TreeSa
   near.flux0 += weight * s.flux[0];
   near.flux1 += weight * s.flux[1];
   near.flux2 += weight * s.flux[2];
-  const V per_area = weight * (1 / s.area);
-  near.squares0 += per_area * (s.flux[0] * s.flux[0]);
-  near.squares1 += per_area * (s.flux[1] * s.flux[1]);
-  near.squares2 += per_area * (s.flux[2] * s.flux[2]);
+  const float squares = s.flux[0] * s.flux[0] + s.flux[1] * s.flux[1] + s.flux[2] * s.flux[2];
+  near.squares += weight * (squares / s.area);
   return bits(within & ~same);
 }
 
@@ -251,33 +261,25 @@ TARGET static std::size_t add_leaves_block(const LaneInput& input, const std::ui
                                            int block, std::uint32_t (*whole)[2], std::size_t wholes) {
   const V px = load(packet.x + block), py = load(packet.y + block), pz = load(packet.z + block);
   const float unit = input.table.inverse_scale2;
-  const auto& table = input.table.coefficients;
-  V all0{}, all1{}, all2{}, squares0{}, squares1{}, squares2{}, spread0{}, spread1{}, spread2{};
+  V sum0{}, sum1{}, sum2{}, squares0{}, squares1{}, squares2{}, even0{}, even1{}, even2{};
   NearSums near;
   for (std::size_t i = 0; i < count; ++i) {
     const OctreeNode& leaf = input.nodes[list[i]];
-    V sum0{}, sum1{}, sum2{}, own0{}, own1{}, own2{};
+    const V before0 = sum0, before1 = sum1, before2 = sum2;
     for (std::uint32_t k = leaf.first; k < leaf.first + leaf.count; ++k) {
       const TreeSample& s = input.samples[k];
       const Offset d{s.x - px, s.y - py, s.z - pz};
       const V s2 = square(d);
       const Place at = find(1 + s2 * unit);
-      V c0, c1, c2;
-      if (any(at.segment > (LaneTable::kSegments / 2 - 1))) {
-        c0 = s.flux[0] * kernel(table[0], at);
-        c1 = s.flux[1] * kernel(table[1], at);
-        c2 = s.flux[2] * kernel(table[2], at);
-      } else {
-        c0 = s.flux[0] * near_kernel(table[0], at);
-        c1 = s.flux[1] * near_kernel(table[1], at);
-        c2 = s.flux[2] * near_kernel(table[2], at);
-      }
+      const Kernels kernel_of =
+          any(at.segment > 15) ? kernels<Reach::all>(input.table, at) : kernels<Reach::near>(input.table, at);
+      const V c0 = s.flux[0] * kernel_of.c0, c1 = s.flux[1] * kernel_of.c1, c2 = s.flux[2] * kernel_of.c2;
       sum0 += c0;
       sum1 += c1;
       sum2 += c2;
-      own0 += c0 * c0;
-      own1 += c1 * c1;
-      own2 += c2 * c2;
+      squares0 += c0 * c0;
+      squares1 += c1 * c1;
+      squares2 += c2 * c2;
       if (!any(s2 < splat(input.near2))) continue;
       const std::uint32_t other = add_near(input, s, input.normals[k], packet, block, s2, near);
       if (other != 0) {
@@ -285,33 +287,26 @@ TARGET static std::size_t add_leaves_block(const LaneInput& input, const std::ui
         whole[wholes++][1] = other << block;
       }
     }
+    // What the squares would be if all samples of the leaf gave the same.
     const float inverse = 1 / float(leaf.count);
-    all0 += sum0;
-    all1 += sum1;
-    all2 += sum2;
-    squares0 += own0;
-    squares1 += own1;
-    squares2 += own2;
-    spread0 += own0 - sum0 * sum0 * inverse;
-    spread1 += own1 - sum1 * sum1 * inverse;
-    spread2 += own2 - sum2 * sum2 * inverse;
+    even0 += (sum0 - before0) * (sum0 - before0) * inverse;
+    even1 += (sum1 - before1) * (sum1 - before1) * inverse;
+    even2 += (sum2 - before2) * (sum2 - before2) * inverse;
   }
-  add_to(sums.exitance[0] + block, all0);
-  add_to(sums.exitance[1] + block, all1);
-  add_to(sums.exitance[2] + block, all2);
+  add_to(sums.exitance[0] + block, sum0);
+  add_to(sums.exitance[1] + block, sum1);
+  add_to(sums.exitance[2] + block, sum2);
   add_to(sums.squares[0] + block, squares0);
   add_to(sums.squares[1] + block, squares1);
   add_to(sums.squares[2] + block, squares2);
-  add_to(sums.spread[0] + block, spread0);
-  add_to(sums.spread[1] + block, spread1);
-  add_to(sums.spread[2] + block, spread2);
+  add_to(sums.spread[0] + block, squares0 - even0);
+  add_to(sums.spread[1] + block, squares1 - even1);
+  add_to(sums.spread[2] + block, squares2 - even2);
   add_to(sums.near_area + block, near.area);
   add_to(sums.near_flux[0] + block, near.flux0);
   add_to(sums.near_flux[1] + block, near.flux1);
   add_to(sums.near_flux[2] + block, near.flux2);
-  add_to(sums.near_squares[0] + block, near.squares0);
-  add_to(sums.near_squares[1] + block, near.squares1);
-  add_to(sums.near_squares[2] + block, near.squares2);
+  add_to(sums.near_squares + block, near.squares);
   return wholes;
 }
 

@@ -10,8 +10,14 @@ typedef std::int32_t I __attribute__((vector_size(32)));
 TARGET inline V lookup(const float* table, I segment) {
   return (V)_mm256_i32gather_ps(table, (__m256i)segment, 4);
 }
-[[maybe_unused]] TARGET inline V lookup_low(const float* table, I segment) {
+[[maybe_unused]] TARGET inline V lookup_32(const float* table, I segment) {
   return lookup(table, segment);
+}
+[[maybe_unused]] TARGET inline V lookup_16(const float* table, I segment) {
+  const __m256i index = (__m256i)segment;
+  const __m256 low = _mm256_permutevar8x32_ps(_mm256_load_ps(table), index),
+               high = _mm256_permutevar8x32_ps(_mm256_load_ps(table + 8), index);
+  return (V)_mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32(index, 28)));
 }
 [[maybe_unused]] TARGET inline V square_root(V v) {
   return (V)_mm256_sqrt_ps((__m256)v);

@@ -14,10 +14,13 @@ TARGET inline V lookup(const float* table, I segment) {
   return (V)_mm512_mask_blend_ps(_mm512_test_epi32_mask(index, _mm512_set1_epi32(32)), low, high);
 }
 
-[[maybe_unused]] TARGET inline V lookup_low(const float* table, I segment) {
+[[maybe_unused]] TARGET inline V lookup_32(const float* table, I segment) {
   return (V)_mm512_permutex2var_ps(_mm512_load_ps(table), (__m512i)segment, _mm512_load_ps(table + 16));
 }
 
+[[maybe_unused]] TARGET inline V lookup_16(const float* table, I segment) {
+  return (V)_mm512_maskz_permutexvar_ps(__mmask16(-1), (__m512i)segment, _mm512_load_ps(table));
+}
 [[maybe_unused]] TARGET inline V square_root(V v) {
   return (V)_mm512_maskz_sqrt_ps(__mmask16(-1), (__m512)v);
 }

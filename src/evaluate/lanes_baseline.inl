@@ -10,7 +10,10 @@ typedef std::int32_t I __attribute__((vector_size(16)));
 inline V lookup(const float* table, I segment) {
   return V{table[segment[0]], table[segment[1]], table[segment[2]], table[segment[3]]};
 }
-[[maybe_unused]] inline V lookup_low(const float* table, I segment) {
+[[maybe_unused]] inline V lookup_32(const float* table, I segment) {
+  return lookup(table, segment);
+}
+[[maybe_unused]] inline V lookup_16(const float* table, I segment) {
   return lookup(table, segment);
 }
 [[maybe_unused]] inline V square_root(V v) {
