@@ -7,7 +7,7 @@ namespace opaline {
 namespace {
 
 #include "evaluate/lanes_avx2.inl"
-//
+// On these vectors:
 #include "evaluate/lane_kernels.inl"
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace opaline {
 namespace {
 
 #include "evaluate/lanes_baseline.inl"
-//
+// On these vectors:
 #include "evaluate/lane_kernels.inl"
 
 }  // namespace
