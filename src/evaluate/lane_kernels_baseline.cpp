@@ -4,33 +4,16 @@
 #include "evaluate/lane_kernels.h"
 #include "opaline/core/error.h"
 
-#define LANES 4
-#define TARGET
-
 namespace opaline {
 namespace {
 
-typedef float V __attribute__((vector_size(16)));
-typedef std::int32_t I __attribute__((vector_size(16)));
-
-inline V lookup(const float* table, I segment) {
-  return V{table[segment[0]], table[segment[1]], table[segment[2]], table[segment[3]]};
-}
-inline V lookup_low(const float* table, I segment) {
-  return lookup(table, segment);
-}
-inline std::uint32_t bits(I mask) {
-  return std::uint32_t(_mm_movemask_ps((__m128)mask));
-}
-inline bool any(I mask) {
-  return bits(mask) != 0;
-}
-
+#include "evaluate/lanes_baseline.inl"
+// On these vectors:
 #include "evaluate/lane_kernels.inl"
 
 }  // namespace
 
-const LaneKernels kBaselineKernels{"baseline", add_nodes, add_leaves};
+const LaneKernels kBaselineKernels{"baseline", judge_baseline, expand, add_expansion, add_nodes, add_leaves};
 
 MachineSets this_machine() {
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");

@@ -16,6 +16,20 @@ double decay_of(const ChannelProfile& profile) {
   return 0;
 }
 
+// The quadratic in t through the second differences of f at the Chebyshev points start + width t.
+template <class Function>
+std::array<double, 3> curvature_of(const Function& f, double start, double width) {
+  std::array<double, 3> t{}, y{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    t[i] = 0.5 - 0.5 * std::cos(std::numbers::pi * (2 * double(i) + 1) / 6);
+    const double q = start + width * t[i], step = 0.02 * width;
+    y[i] = (f(q - step) - 2 * f(q) + f(q + step)) / (step * step);
+  }
+  const double d01 = (y[1] - y[0]) / (t[1] - t[0]), d12 = (y[2] - y[1]) / (t[2] - t[1]),
+               d = (d12 - d01) / (t[2] - t[0]);
+  return {y[0] - d01 * t[0] + d * t[0] * t[1], d01 - d * (t[0] + t[1]), d};
+}
+
 }  // namespace
 
 LaneTable make_lane_table(const DiffuseProfile& profile, double h, double r_max, bool split) {
@@ -38,8 +52,15 @@ LaneTable make_lane_table(const DiffuseProfile& profile, double h, double r_max,
       for (std::size_t i = 0; i < 4; ++i) values[i] = far_kernel(start + width * nodes[i]);
       const bool underflows = start > 32 && *std::ranges::min_element(values) * r_max * r_max < 1e-30;
       const std::array<double, 4> cubic = interpolating_cubic(nodes, values);
-      for (std::size_t power = 0; power < 4 && !underflows; ++power)
+      if (underflows) continue;
+      for (std::size_t power = 0; power < 4; ++power)
         table.coefficients[c][power][std::size_t(segment)] = float(cubic[power]);
+      const float first = float(far_kernel(start));
+      table.chord[c][0][std::size_t(segment)] = first;
+      table.chord[c][1][std::size_t(segment)] = float(far_kernel(start + width)) - first;
+      const std::array<double, 3> quadratic = curvature_of(far_kernel, start, width);
+      for (std::size_t power = 0; power < 3; ++power)
+        table.curvature[c][power][std::size_t(segment)] = float(quadratic[power]);
     }
   }
   return table;

@@ -18,6 +18,12 @@ struct alignas(64) LaneTable {
   static constexpr int kSegments = 64;
   /// [channel][power][segment]: coefficients of the fraction t in [0, 1) of the way through the segment.
   std::array<std::array<std::array<float, kSegments>, 4>, 3> coefficients{};
+  /// d^2 R_far / dq^2 likewise, as a quadratic: a cubic's own second derivative is off by a quarter at the
+  /// ends of a segment, and 5 % on average.
+  std::array<std::array<std::array<float, kSegments>, 3>, 3> curvature{};
+  /// Chords of R_far, [channel][0: at the start of the segment, 1: from there to its end]: never below it
+  /// beyond h, where it is convex in q, while the cubics of an exponential's tail may be.
+  std::array<std::array<std::array<float, kSegments>, 2>, 3> chord{};
   float inverse_scale2 = 1;  ///< 1 / r_0^2
   /// About -d ln R_d / dr far out, 1/mm: what an exponential adds to a power law.
   std::array<float, 3> decay{};

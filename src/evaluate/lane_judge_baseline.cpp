@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <immintrin.h>
+
+#include "evaluate/lane_kernels.h"
+
+namespace opaline {
+namespace {
+
+#include "evaluate/lanes_baseline.inl"
+// On these vectors:
+#include "evaluate/lane_judge.inl"
+
+}  // namespace
+
+Verdict judge_baseline(const LaneInput& input, const SourceBlock& sources, const Cluster& cluster) {
+  return judge(input, sources, cluster);
+}
+
+}  // namespace opaline

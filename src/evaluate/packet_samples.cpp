@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluate/packet_samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "evaluate/point_sums.h"
+
+namespace opaline {
+namespace {
+
+// A sample of another sheet within h has no near field: its kernel is whole.
+void add_near_part(const EvaluateInput& input, float near2, const TreeSample& s, const Packet& packet,
+                   std::size_t lane, PacketSums& sums) {
+  const Vec3f d = Vec3f{s.x, s.y, s.z} - Vec3f{packet.x[lane], packet.y[lane], packet.z[lane]};
+  const float r2 = dot(d, d), missing = 1 - far_weight(std::sqrt(r2 / near2));
+  alignas(16) float kernel[4];
+  _mm_store_ps(kernel, input.kernel.table(r2));
+  for (std::size_t c = 0; c < 3; ++c) sums.exitance[c][lane] += kernel[c] * missing * s.flux[c];
+}
+
+}  // namespace
+
+void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
+                 const std::vector<std::uint32_t>& leaves, const Packet& packet, PacketSums& sums,
+                 std::vector<std::uint32_t>& room) {
+  std::size_t samples = 0;
+  for (const std::uint32_t leaf : leaves) samples += input.octree.nodes[leaf].count;
+  room.resize(samples * kLanes);  // pairs, at most one a sample and block of lanes
+  auto* wholes = reinterpret_cast<std::uint32_t(*)[2]>(room.data());
+  const std::size_t count = kernels.add_leaves(lanes, leaves.data(), leaves.size(), packet, sums, wholes);
+  if (!input.kernel.split) return;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::uint32_t bits = wholes[i][1]; bits != 0; bits &= bits - 1)
+      add_near_part(input, lanes.near2, input.octree.samples[wholes[i][0]], packet,
+                    std::size_t(__builtin_ctz(bits)), sums);
+}
+
+Exitance exitance_of(const EvaluateInput& input, const PacketSums& from, std::size_t lane,
+                     std::uint32_t query) {
+  PointSums sums;
+  sums.near_area = from.near_area[lane];
+  // The irradiance varies around the point by the same share of its mean in each channel.
+  float square = 0;
+  for (std::size_t c = 0; c < 3; ++c) square += from.near_flux[c][lane] * from.near_flux[c][lane];
+  const float spread = square > 0 ? from.near_squares[lane] / square : 0;
+  // Of the tolerance, what the nodes' errors come to (bench_evaluate).
+  constexpr float kHierarchy = 0.1f;
+  for (std::size_t c = 0; c < 3; ++c) {
+    sums.far[c] = std::max(0.0f, from.exitance[c][lane]);
+    sums.spread[c] = from.spread[c][lane];
+    sums.squares[c] = from.squares[c][lane];
+    sums.hierarchy[c] = kHierarchy * float(input.tolerance) * sums.far[c];
+    sums.near_flux[c] = from.near_flux[c][lane];
+    sums.near_squares[c] = sums.near_flux[c] * sums.near_flux[c] * spread;
+  }
+  return exitance_from(sums, input, input.irradiance.empty() ? nullptr : &input.irradiance[query]);
+}
+
+}  // namespace opaline
