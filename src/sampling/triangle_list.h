@@ -24,8 +24,10 @@ class TriangleList {
       const Mesh& mesh = world.meshes[m];
       for (const auto& corner : mesh.triangles) {
         const Vec3d a = mesh.positions[corner[0]];
-        sum += 0.5 * length(cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a));
+        const Vec3d normal = cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a);
+        sum += 0.5 * length(normal);
         cumulative_.push_back(sum);
+        normals_.push_back(Vec3f(normalized(normal)));
       }
     }
   }
@@ -34,6 +36,7 @@ class TriangleList {
   double area() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
   /// Area of the triangles up to and including this one.
   double cumulative(std::size_t index) const { return cumulative_[index]; }
+  const Vec3f& geometric_normal(std::size_t index) const { return normals_[index]; }
   /// The triangle in which the cumulative area passes the given one.
   std::size_t find(double area) const {
     const auto it = std::upper_bound(cumulative_.begin(), cumulative_.end(), area);
@@ -48,7 +51,6 @@ class TriangleList {
 
   struct Corners {
     Vec3d a, b, c;
-    Vec3f geometric_normal() const { return Vec3f(normalized(cross(b - a, c - a))); }
     Vec3f at(float u, float v) const { return Vec3f(a + (b - a) * double(u) + (c - a) * double(v)); }
   };
   Corners corners(TriangleId id) const {
@@ -62,6 +64,7 @@ class TriangleList {
   std::vector<std::size_t> first_;
   std::vector<std::uint32_t> meshes_;
   std::vector<double> cumulative_;
+  std::vector<Vec3f> normals_;
 };
 
 }  // namespace opaline
