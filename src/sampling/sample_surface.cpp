@@ -237,7 +237,8 @@ SurfaceSamples sample_surface(const SamplingInput& input) {
   std::iota(order.begin(), order.end(), 0u);
   tbb::parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) {
     const SampleGrid::Place &p = grid.place(a), &q = grid.place(b);
-    return std::tie(p.triangle, p.u, p.v) < std::tie(q.triangle, q.u, q.v);
+    const TriangleId s = triangles.id(p.triangle), t = triangles.id(q.triangle);
+    return std::tie(s.mesh, s.triangle, p.u, p.v) < std::tie(t.mesh, t.triangle, q.u, q.v);
   });
   result.samples.resize(order.size());
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {

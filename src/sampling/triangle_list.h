@@ -14,23 +14,11 @@ struct TriangleId {
   std::uint32_t mesh, triangle;
 };
 
+/// Along the Morton curve of their centres: neighbours in the list are neighbours in space, whatever the order of the
+/// file, and what was just read serves again.
 class TriangleList {
  public:
-  TriangleList(const World& world, std::span<const std::uint32_t> meshes) : world_(world) {
-    double sum = 0;
-    for (const std::uint32_t m : meshes) {
-      first_.push_back(cumulative_.size());
-      meshes_.push_back(m);
-      const Mesh& mesh = world.meshes[m];
-      for (const auto& corner : mesh.triangles) {
-        const Vec3d a = mesh.positions[corner[0]];
-        const Vec3d normal = cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a);
-        sum += 0.5 * length(normal);
-        cumulative_.push_back(sum);
-        normals_.push_back(Vec3f(normalized(normal)));
-      }
-    }
-  }
+  TriangleList(const World& world, std::span<const std::uint32_t> meshes);
 
   std::size_t size() const { return cumulative_.size(); }
   double area() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
@@ -43,15 +31,13 @@ class TriangleList {
     return std::min<std::size_t>(std::size_t(it - cumulative_.begin()), size() - 1);
   }
 
-  TriangleId id(std::size_t index) const {
-    const auto it = std::upper_bound(first_.begin(), first_.end(), index) - 1;
-    return {meshes_[std::size_t(it - first_.begin())], std::uint32_t(index - *it)};
-  }
+  TriangleId id(std::size_t index) const { return ids_[index]; }
   const Mesh& mesh(TriangleId id) const { return world_.meshes[id.mesh]; }
 
   struct Corners {
     Vec3d a, b, c;
     Vec3f at(float u, float v) const { return Vec3f(a + (b - a) * double(u) + (c - a) * double(v)); }
+    Vec3d centre() const { return (a + b + c) / 3.0; }
   };
   Corners corners(TriangleId id) const {
     const Mesh& m = mesh(id);
@@ -61,8 +47,7 @@ class TriangleList {
 
  private:
   const World& world_;
-  std::vector<std::size_t> first_;
-  std::vector<std::uint32_t> meshes_;
+  std::vector<TriangleId> ids_;
   std::vector<double> cumulative_;
   std::vector<Vec3f> normals_;
 };
