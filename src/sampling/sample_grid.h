@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "opaline/core/morton.h"
@@ -73,6 +74,8 @@ class SampleGrid {
   std::size_t size() const { return positions_.size(); }
   const Vec3f& position(std::size_t sample) const { return positions_[sample]; }
   const Place& place(std::size_t sample) const { return places_[sample]; }
+  /// All places; the grid is of no use afterwards.
+  std::vector<Place> take_places() { return std::move(places_); }
 
   /// The cell that holds p; null if there is none.
   const Cell* find_cell(const Vec3f& p) const {

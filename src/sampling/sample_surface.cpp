@@ -32,8 +32,29 @@ class PoissonDisk {
   PoissonDisk(const TriangleList& triangles, const Vec3f& low, float radius)
       : triangles_(triangles), radius_(radius), grid_(low, 2 * radius) {}
 
-  // One round: `count` candidates, stratified over the area; those far from all samples are tried for real.
+  // One round: about `count` candidates, stratified over the area; those far from all samples are tried for
+  // real. A round of many is thrown in several, for memory's sake.
   void throw_darts(std::size_t count, std::uint64_t seed, Monitor* monitor) {
+    const std::size_t throws = chunk_count(count, kMostCandidates), each = chunk_count(count, throws);
+    for (std::size_t i = 0; i < throws; ++i) throw_some(each, i == 0 ? seed : hash_bits(seed, i), monitor);
+  }
+
+  // The last round: the centroids of triangles with nothing near, so that no part of the surface, however
+  // small, stays without a sample.
+  void cover_centroids(Monitor* monitor) {
+    run_round(triangles_.size(), 2 * radius_, monitor,
+              [&](std::size_t begin, std::size_t end, const auto& keep) {
+                for (std::size_t t = begin; t < end; ++t)
+                  keep(t, 1.0f / 3, 1.0f / 3, std::uint32_t(hash_bits(0, t)));
+              });
+  }
+
+  SampleGrid& grid() { return grid_; }
+
+ private:
+  static constexpr std::size_t kMostCandidates = std::size_t(1) << 21;
+
+  void throw_some(std::size_t count, std::uint64_t seed, Monitor* monitor) {
     run_round(count, radius_, monitor, [&](std::size_t begin, std::size_t end, const auto& keep) {
       const double step = triangles_.area() / double(count);
       std::size_t t = triangles_.find(double(begin) * step);
@@ -51,19 +72,6 @@ class PoissonDisk {
     });
   }
 
-  // The last round: the centroids of triangles with nothing near, so that no part of the surface, however
-  // small, stays without a sample.
-  void cover_centroids(Monitor* monitor) {
-    run_round(triangles_.size(), 2 * radius_, monitor,
-              [&](std::size_t begin, std::size_t end, const auto& keep) {
-                for (std::size_t t = begin; t < end; ++t)
-                  keep(t, 1.0f / 3, 1.0f / 3, std::uint32_t(hash_bits(0, t)));
-              });
-  }
-
-  const SampleGrid& grid() const { return grid_; }
-
- private:
   // A candidate in its cell. Sorted by phase (the cell's parities), cell and random order.
   struct Entry {
     std::uint64_t cell;  // its key, the phase moved from the lowest bits to the highest
@@ -198,6 +206,21 @@ Vec3f lowest_corner(const World& world, std::span<const std::uint32_t> meshes) {
   return Vec3f(low);
 }
 
+// The samples before they are put in order.
+struct PlacedSamples {
+  std::vector<SampleGrid::Place> places;
+  std::vector<SurfaceShare> shares;
+};
+
+PlacedSamples place_samples(const SamplingInput& input, const TriangleList& triangles, float radius) {
+  PoissonDisk poisson(triangles, lowest_corner(input.world, input.meshes), radius);
+  for (int round = 0; round < input.candidate_rounds; ++round)
+    poisson.throw_darts(input.count, hash_bits(input.seed, std::uint64_t(round)), input.monitor);
+  poisson.cover_centroids(input.monitor);
+  std::vector<SurfaceShare> shares = surface_shares(triangles, poisson.grid(), radius, input.monitor);
+  return {poisson.grid().take_places(), std::move(shares)};
+}
+
 SurfaceSample make_sample(const TriangleList& triangles, const SampleGrid::Place& place,
                           const SurfaceShare& share) {
   const TriangleId id = triangles.id(place.triangle);
@@ -226,24 +249,18 @@ SurfaceSamples sample_surface(const SamplingInput& input) {
     input.monitor->begin("sampling",
                          input.count * std::size_t(input.candidate_rounds) + 2 * triangles.size());
 
-  PoissonDisk poisson(triangles, lowest_corner(input.world, input.meshes), radius);
-  for (int round = 0; round < input.candidate_rounds; ++round)
-    poisson.throw_darts(input.count, hash_bits(input.seed, std::uint64_t(round)), input.monitor);
-  poisson.cover_centroids(input.monitor);
-
-  const SampleGrid& grid = poisson.grid();
-  const std::vector<SurfaceShare> shares = surface_shares(triangles, grid, radius, input.monitor);
-  std::vector<std::uint32_t> order(grid.size());
+  const PlacedSamples placed = place_samples(input, triangles, radius);
+  std::vector<std::uint32_t> order(placed.places.size());
   std::iota(order.begin(), order.end(), 0u);
   tbb::parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) {
-    const SampleGrid::Place &p = grid.place(a), &q = grid.place(b);
+    const SampleGrid::Place &p = placed.places[a], &q = placed.places[b];
     const TriangleId s = triangles.id(p.triangle), t = triangles.id(q.triangle);
     return std::tie(s.mesh, s.triangle, p.u, p.v) < std::tie(t.mesh, t.triangle, q.u, q.v);
   });
   result.samples.resize(order.size());
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i)
-      result.samples[i] = make_sample(triangles, grid.place(order[i]), shares[order[i]]);
+      result.samples[i] = make_sample(triangles, placed.places[order[i]], placed.shares[order[i]]);
   });
   return result;
 }

@@ -32,7 +32,8 @@ TriangleList::TriangleList(const World& world, std::span<const std::uint32_t> me
   if (ids_.empty()) return;
   const Bounds box = bounds_of(world, meshes);
   const Vec3d size = box.high - box.low;
-  const double largest = std::max({size.x, size.y, size.z}), scale = largest > 0 ? double((1 << 20) - 1) / largest : 0;
+  const double largest = std::max({size.x, size.y, size.z}),
+               scale = largest > 0 ? double((1 << 20) - 1) / largest : 0;
   struct Keyed {
     std::uint64_t key;
     TriangleId id;

@@ -14,8 +14,8 @@ struct TriangleId {
   std::uint32_t mesh, triangle;
 };
 
-/// Along the Morton curve of their centres: neighbours in the list are neighbours in space, whatever the order of the
-/// file, and what was just read serves again.
+/// Along the Morton curve of their centres: neighbours in the list are neighbours in space, whatever the
+/// order of the file, and what was just read serves again.
 class TriangleList {
  public:
   TriangleList(const World& world, std::span<const std::uint32_t> meshes);
