@@ -3,92 +3,22 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <optional>
+#include <span>
 
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 #include "opaline/sampling/sample_surface.h"
+#include "sampling/convex_polygon.h"
+#include "sampling/triangle_piece.h"
 
 namespace opaline {
 namespace {
-
-struct Point2 {
-  double x, y;
-};
-
-// A convex polygon in the plane of a triangle.
-class Polygon {
- public:
-  static constexpr int kMaxCorners = 64;
-
-  void assign(const Point2& a, const Point2& b, const Point2& c) {
-    corner_[0] = a;
-    corner_[1] = b;
-    corner_[2] = c;
-    size_ = 3;
-  }
-
-  // Keeps the part where nx x + ny y <= limit.
-  void clip(double nx, double ny, double limit) {
-    std::array<double, kMaxCorners> side;
-    bool outside = false;
-    for (int i = 0; i < size_; ++i) {
-      side[i] = nx * corner_[i].x + ny * corner_[i].y - limit;
-      outside = outside || side[i] > 0;
-    }
-    if (!outside) return;
-    std::array<Point2, kMaxCorners> kept;
-    int n = 0;
-    for (int i = 0; i < size_; ++i) {
-      const int j = i + 1 == size_ ? 0 : i + 1;
-      if (side[i] <= 0) kept[n++] = corner_[i];
-      if ((side[i] <= 0) != (side[j] <= 0)) {
-        const double t = side[i] / (side[i] - side[j]);
-        kept[n++] = {corner_[i].x + t * (corner_[j].x - corner_[i].x),
-                     corner_[i].y + t * (corner_[j].y - corner_[i].y)};
-      }
-    }
-    std::copy_n(kept.begin(), n, corner_.begin());
-    size_ = n;
-  }
-
-  void clear() { size_ = 0; }
-  bool empty() const { return size_ < 3; }
-
-  // Area, and area times centroid.
-  struct Moments {
-    double area = 0, x = 0, y = 0;
-  };
-  Moments moments() const {
-    Moments sum;
-    for (int i = 1; i + 1 < size_; ++i) {
-      const Point2 &a = corner_[0], &b = corner_[i], &c = corner_[i + 1];
-      const double area = 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-      sum.area += area;
-      sum.x += area * (a.x + b.x + c.x) / 3;
-      sum.y += area * (a.y + b.y + c.y) / 3;
-    }
-    return sum.area < 0 ? Moments{-sum.area, -sum.x, -sum.y} : sum;
-  }
-
- private:
-  std::array<Point2, kMaxCorners> corner_;
-  int size_ = 0;
-};
 
 struct Share {
   std::uint32_t sample;
   double area;
   Vec3d moment;
-};
-
-// A sample that may own part of a piece, and its squared distances from the piece's corners.
-struct Owner {
-  static constexpr std::uint32_t kNone = ~0u;
-  std::uint32_t sample = kNone;
-  std::array<float, 3> squared{INFINITY, INFINITY, INFINITY};
-  bool is_none() const { return sample == kNone; }
-  float sum() const { return squared[0] + squared[1] + squared[2]; }
 };
 
 // A sample in the plane of a triangle: `power` is its squared height above the plane plus its squared
@@ -99,40 +29,54 @@ struct Site {
   double power;
 };
 
-// Part of a triangle, in doubles for its area, with its corners in floats for distances.
-struct Piece {
-  Vec3d a, b, c;
-  std::array<Vec3f, 3> corners;
-  Vec3f center;
-  float extent;  // radius of the ball around the centre, rounded up so that floats lose no owner
+TrianglePiece whole(const TriangleList& triangles, std::size_t triangle) {
+  const TriangleList::Corners t = triangles.corners(triangles.id(triangle));
+  return {t.a, t.b, t.c};
+}
 
-  Piece(const Vec3d& a_, const Vec3d& b_, const Vec3d& c_)
-      : a(a_), b(b_), c(c_), corners{Vec3f(a), Vec3f(b), Vec3f(c)} {
-    const Vec3d middle = (a + b + c) / 3.0;
-    const double extent2 =
-        std::max({dot(a - middle, a - middle), dot(b - middle, b - middle), dot(c - middle, c - middle)});
-    center = Vec3f(middle);
-    extent = float(std::sqrt(extent2) * 1.0001);
-  }
+// Some triangles, or a part of one: about as much work as any other task.
+struct Task {
+  std::size_t first, last;
+  std::optional<TrianglePiece> part;  // of the triangle `first`
+};
 
-  Owner owner(std::uint32_t sample, const Vec3f& p) const {
-    Owner owner{sample, {}};
-    for (std::size_t k = 0; k < 3; ++k) owner.squared[k] = dot(corners[k] - p, corners[k] - p);
-    return owner;
+// Cuts the surface into tasks, by area in units of a mean share and by triangles.
+class Tasks {
+ public:
+  Tasks(const TriangleList& triangles, double mean_share) : mean_share_(mean_share) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const TrianglePiece piece = whole(triangles, t);
+      if (work(piece) > kWork)
+        add_parts(t, piece);
+      else
+        add_triangle(t, work(piece));
+    }
   }
-
-  // The two halves along the longest side.
-  std::array<Piece, 2> halves() const {
-    const double ab = dot(b - a, b - a), bc = dot(c - b, c - b), ca = dot(a - c, a - c);
-    if (ab >= bc && ab >= ca) return halves_between(a, b, c);
-    return bc >= ca ? halves_between(b, c, a) : halves_between(c, a, b);
-  }
+  const std::vector<Task>& all() const { return tasks_; }
 
  private:
-  static std::array<Piece, 2> halves_between(const Vec3d& p, const Vec3d& q, const Vec3d& r) {
-    const Vec3d middle = 0.5 * (p + q);
-    return {Piece{p, middle, r}, Piece{middle, q, r}};
+  static constexpr double kWork = 512;
+
+  double work(const TrianglePiece& piece) const { return 1 + piece.area() / mean_share_; }
+
+  void add_triangle(std::size_t triangle, double work) {
+    if (tasks_.empty() || tasks_.back().part || filled_ + work > kWork) {
+      tasks_.push_back({triangle, triangle, {}});
+      filled_ = 0;
+    }
+    tasks_.back().last = triangle + 1;
+    filled_ += work;
   }
+
+  void add_parts(std::size_t triangle, const TrianglePiece& piece) {
+    if (work(piece) <= kWork)
+      tasks_.push_back({triangle, triangle + 1, piece});
+    else
+      for (const TrianglePiece& half : piece.halves()) add_parts(triangle, half);
+  }
+
+  double mean_share_, filled_ = 0;
+  std::vector<Task> tasks_;
 };
 
 class TriangleDivider {
@@ -141,20 +85,18 @@ class TriangleDivider {
                   std::vector<Share>& out)
       : triangles_(triangles), grid_(grid), radius_(radius), monitor_(monitor), out_(out) {}
 
-  void divide(std::size_t triangle) {
+  void divide(std::size_t triangle, const TrianglePiece& piece) {
     normal_ = triangles_.geometric_normal(triangle);
-    const TriangleList::Corners t = triangles_.corners(triangles_.id(triangle));
-    const Piece piece(t.a, t.b, t.c);
     // A needle's samples are few and far apart: it is not cut into millions of pieces for them.
-    piece_extent_ = std::max(3 * radius_, piece.extent / 64);
+    piece_extent_ = std::max(3 * radius_, whole(triangles_, triangle).extent / 64);
     divide_large(piece);
   }
 
  private:
   // Down to a few spacings, where the owners are looked up once for all the smaller pieces.
-  void divide_large(const Piece& piece) {
+  void divide_large(const TrianglePiece& piece) {
     if (piece.extent > piece_extent_) {
-      for (const Piece& half : piece.halves()) divide_large(half);
+      for (const TrianglePiece& half : piece.halves()) divide_large(half);
       return;
     }
     advance(monitor_, 0);  // one large triangle can be a minute's work
@@ -163,16 +105,15 @@ class TriangleDivider {
   }
 
   // The owners of this piece stand at the end of owners_, from `first` on.
-  void divide_small(const Piece& piece, std::size_t first) {
+  void divide_small(const TrianglePiece& piece, std::size_t first) {
     const std::size_t count = owners_.size() - first;
     if (count == 1) {
-      add(owners_[first].sample, 0.5 * length(cross(piece.b - piece.a, piece.c - piece.a)),
-          (piece.a + piece.b + piece.c) / 3.0);
+      add(owners_[first].sample, piece.area(), (piece.a + piece.b + piece.c) / 3.0);
     } else if (count <= kClippedOwners || piece.extent < 0.25f * radius_) {
       clip_cells(piece, first);
     } else {
       const std::size_t end = owners_.size();
-      for (const Piece& half : piece.halves()) {
+      for (const TrianglePiece& half : piece.halves()) {
         for (std::size_t i = first; i < end; ++i) {
           const std::uint32_t s = owners_[i].sample;
           owners_.push_back(half.owner(s, grid_.position(s)));
@@ -185,7 +126,7 @@ class TriangleDivider {
   }
 
   // All samples that can be nearest to some point of the piece, and few more: those that no other dominates.
-  void find_owners(const Piece& piece) {
+  void find_owners(const TrianglePiece& piece) {
     const Owner near = some_near(piece);
     // Whoever owns a part is nearer than that one to at least one of the corners.
     Vec3f low = piece.corners[0], high = low;
@@ -207,7 +148,7 @@ class TriangleDivider {
 
   // A sample of the triangle's sheet: from the cell of the piece's centre, or else the nearest within a reach
   // that grows. A sheet without any sample near falls to the other sheets'.
-  Owner some_near(const Piece& piece) {
+  Owner some_near(const TrianglePiece& piece) {
     any_sheet_ = false;
     Owner near;
     const auto take_nearer = [&](const SampleGrid::Cell& cell) {
@@ -255,12 +196,12 @@ class TriangleDivider {
     out_.push_back({sample, area, (centroid - Vec3d(grid_.position(sample))) * area});
   }
 
-  void clip_cells(const Piece& piece, std::size_t first) {
+  void clip_cells(const TrianglePiece& piece, std::size_t first) {
     // The nearest first: they cut most.
     std::sort(owners_.begin() + std::ptrdiff_t(first), owners_.end(), [](const Owner& x, const Owner& y) {
       return x.sum() != y.sum() ? x.sum() < y.sum() : x.sample < y.sample;
     });
-    const std::size_t last = std::min(owners_.size(), first + Polygon::kMaxCorners - 4);
+    const std::size_t last = std::min(owners_.size(), first + ConvexPolygon::kMaxCorners - 4);
     const Vec3d &a = piece.a, ab = piece.b - a, ac = piece.c - a;
     const Vec3d x_axis = normalized(ab), n = normalized(cross(ab, ac)), y_axis = cross(n, x_axis);
     const auto flat = [&](const Vec3d& p) { return Point2{dot(p - a, x_axis), dot(p - a, y_axis)}; };
@@ -281,7 +222,7 @@ class TriangleDivider {
         if (polygon_.empty()) break;
       }
       if (polygon_.empty()) continue;
-      const Polygon::Moments part = polygon_.moments();
+      const ConvexPolygon::Moments part = polygon_.moments();
       if (part.area > 0) add(site.sample, part.area, a + (x_axis * part.x + y_axis * part.y) / part.area);
     }
   }
@@ -297,7 +238,7 @@ class TriangleDivider {
   bool any_sheet_ = false;
   std::vector<Owner> owners_;
   std::vector<Site> sites_;
-  Polygon polygon_;
+  ConvexPolygon polygon_;
 };
 
 }  // namespace
@@ -305,19 +246,23 @@ class TriangleDivider {
 std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
                                          Monitor* monitor) {
   std::vector<SurfaceShare> shares(grid.size());
-  // Blocks bound the memory of the pieces; within one, chunks are summed in order, whatever the threads.
-  constexpr std::size_t kBlock = 1 << 16, kChunk = 256;
-  std::vector<std::vector<Share>> chunks(chunk_count(kBlock, kChunk));
-  for (std::size_t begin = 0; begin < triangles.size(); begin += kBlock) {
-    const std::size_t n = std::min(kBlock, triangles.size() - begin);
-    parallel_chunks(n, kChunk, [&](std::size_t first, std::size_t last, std::size_t chunk) {
-      chunks[chunk].clear();
-      TriangleDivider divider(triangles, grid, radius, monitor, chunks[chunk]);
-      for (std::size_t i = first; i < last; ++i) divider.divide(begin + i);
-      advance(monitor, last - first);
+  const Tasks tasks(triangles, triangles.area() / double(grid.size()));
+  // Blocks bound the memory of the pieces; within one, tasks are summed in order, whatever the threads.
+  constexpr std::size_t kBlock = 256;
+  std::vector<std::vector<Share>> pieces(std::min(kBlock, tasks.all().size()));
+  for (std::size_t begin = 0; begin < tasks.all().size(); begin += kBlock) {
+    const std::span<const Task> block =
+        std::span(tasks.all()).subspan(begin, std::min(kBlock, tasks.all().size() - begin));
+    parallel_chunks(block.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      const Task& task = block[i];
+      pieces[i].clear();
+      TriangleDivider divider(triangles, grid, radius, monitor, pieces[i]);
+      for (std::size_t t = task.first; t < task.last; ++t)
+        divider.divide(t, task.part ? *task.part : whole(triangles, t));
+      advance(monitor, task.part ? 0 : task.last - task.first);
     });
-    for (std::size_t c = 0; c < chunk_count(n, kChunk); ++c)
-      for (const Share& share : chunks[c]) {
+    for (std::size_t i = 0; i < block.size(); ++i)
+      for (const Share& share : pieces[i]) {
         shares[share.sample].area += share.area;
         shares[share.sample].moment += share.moment;
       }
