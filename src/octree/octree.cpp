@@ -78,10 +78,10 @@ struct Sums {
 // parallel; the nodes above them are summed up last. The cut depends on the samples alone.
 class Builder {
  public:
-  Builder(Octree& tree, const std::vector<Keyed>& order) : tree_(tree), order_(order) {}
+  Builder(Octree& tree, std::vector<std::uint64_t> keys) : tree_(tree), keys_(std::move(keys)) {}
 
   void build() {
-    cut(0, std::uint32_t(order_.size()), 0, kNoParent);
+    cut(0, std::uint32_t(keys_.size()), 0, kNoParent);
     parallel_chunks(parts_.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
       Part& part = parts_[i];
       part.nodes = part.is_inner ? 1 : count(part.begin, part.end, part.level);
@@ -170,10 +170,10 @@ class Builder {
   template <class Use>
   void for_children(std::uint32_t begin, std::uint32_t end, int level, const Use& use) const {
     for (std::uint32_t first = begin; first < end;) {
-      const auto rest = std::span(order_).subspan(first, end - first);
+      const auto rest = std::span(keys_).subspan(first, end - first);
       const unsigned child = digit(first, level);
       const auto last =
-          std::ranges::partition_point(rest, [&](const Keyed& k) { return digit(k.key, level) == child; });
+          std::ranges::partition_point(rest, [&](std::uint64_t key) { return digit(key, level) == child; });
       const auto past = first + std::uint32_t(last - rest.begin());
       use(first, past);
       first = past;
@@ -181,7 +181,7 @@ class Builder {
   }
 
   static unsigned digit(std::uint64_t key, int level) { return key >> (3 * (kLevels - 1 - level)) & 7; }
-  unsigned digit(std::uint32_t i, int level) const { return digit(order_[i].key, level); }
+  unsigned digit(std::uint32_t i, int level) const { return digit(keys_[i], level); }
 
   static Sums sums_of(const TreeSample& s) {
     Sums sums;
@@ -242,7 +242,7 @@ class Builder {
   }
 
   Octree& tree_;
-  const std::vector<Keyed>& order_;
+  std::vector<std::uint64_t> keys_;
   std::vector<Part> parts_;
 };
 
@@ -261,7 +261,7 @@ std::size_t Octree::bytes() const {
 Octree build_octree(std::vector<FluxSample> samples) {
   Octree tree;
   if (samples.empty()) return tree;
-  const std::vector<Keyed> order = morton_order(samples);
+  std::vector<Keyed> order = morton_order(samples);
   tree.flux_unit = unit_of_flux(samples);
   tree.samples.resize(samples.size());
   tree.normals.resize(samples.size());
@@ -273,8 +273,11 @@ Octree build_octree(std::vector<FluxSample> samples) {
       tree.normals[i] = s.normal;
     }
   });
-  std::vector<FluxSample>().swap(samples);  // the nodes take their memory
-  Builder(tree, order).build();
+  std::vector<FluxSample>().swap(samples);  // the nodes take their memory, and the order's
+  std::vector<std::uint64_t> keys(order.size());
+  std::ranges::transform(order, keys.begin(), &Keyed::key);
+  std::vector<Keyed>().swap(order);
+  Builder(tree, std::move(keys)).build();
   return tree;
 }
 
