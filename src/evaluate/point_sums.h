@@ -67,6 +67,7 @@ inline Exitance exitance_from(const PointSums& sums, const EvaluateInput& input,
     const float own = given != nullptr ? input.kernel.own_irradiance[c] : 0;
     const float e = own > 0 ? own * (*given)[c] + (1 - own) * out.irradiance[c] : out.irradiance[c];
     const float near = input.kernel.near[c] * share[c];
+    out.near[c] = near;
     out.exitance[c] = sums.far[c] * unit + near * e;
     out.error[c] =
         unit * estimated_error(sums, c, near * (1 - own), interpolated, float(input.irradiance_noise));

@@ -52,6 +52,10 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
     else if (!is_delta(light))
       emitters_.push_back(lights_.back());
   }
+  for (const TranslucentGroup& group : input.groups) {
+    near_fields_.emplace_back();
+    if (group.kernel.needs_irradiance()) near_fields_.back().emplace(group);
+  }
   for (std::size_t m = 0; m < input.world.meshes.size(); ++m) {
     Appearance appearance = appearance_of(input, entry_samplers, m);
     const Kind kind{appearance.group, appearance.entries, appearance.translucent ? appearance.eta : 0};
@@ -131,14 +135,17 @@ Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<
 Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces) const {
   Lit lit;
   const TranslucentGroup& group = *kind.group;
-  if (group.kernel.needs_irradiance()) lit.irradiance = irradiance_at(lighting_of(surfaces, kind.eta));
+  const PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
+  if (group.kernel.needs_irradiance()) lit.irradiance = irradiance_at(lighting);
   std::vector<Query> queries;
   queries.reserve(surfaces.points.size());
   for (const SurfacePoint& point : surfaces.points) queries.push_back({point.position, point.normal});
   const Settings& settings = input_.scene.settings;
-  const std::vector<Exitance> exitance =
+  std::vector<Exitance> exitance =
       evaluate({group.octree, group.kernel, queries, lit.irradiance, settings.evaluator, settings.tolerance,
                 settings.max_solid_angle, settings.instruction_set, group.irradiance_noise});
+  const auto& near_field = near_fields_[std::size_t(&group - input_.groups.data())];
+  if (near_field) near_field->refine(lighting, lit.irradiance, exitance);
   const bool interpolated = lit.irradiance.empty();
   for (const Exitance& e : exitance) {
     lit.exitance.push_back(e.exitance);

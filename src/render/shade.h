@@ -2,6 +2,7 @@
 // From the hits of a batch of camera rays to radiance.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "opaline/render/render.h"
 #include "render/entry_sampler.h"
 #include "render/layers.h"
+#include "render/near_field_sampler.h"
 
 namespace opaline {
 
@@ -78,7 +80,8 @@ class Shader {
   std::vector<Light> lights_;    // recentred
   std::vector<Light> emitters_;  // those with an area
   RgbF surroundings_{};
-  std::vector<Appearance> appearances_;  // one a mesh
+  std::vector<std::optional<NearFieldSampler>> near_fields_;  // one a group; none where samples tell all
+  std::vector<Appearance> appearances_;                       // one a mesh
   std::vector<Kind> kinds_;
 };
 

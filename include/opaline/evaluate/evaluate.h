@@ -52,6 +52,7 @@ struct Query {
 struct Exitance {
   RgbF exitance;    ///< M_o, W/mm^2
   RgbF irradiance;  ///< E interpolated from the samples within h, W/mm^2
+  RgbF near;        ///< what of the near field's integral the surface around the point leaves
   /// Estimated standard error of the exitance against the converged diffusion of the same scene, W/mm^2: from
   /// the spread of neighbouring samples, the variation of E nearby, the solid angles of the nodes taken as
   /// points, and the irradiance's noise. Its mean over a picture is within a factor 3 of the measured one
