@@ -45,11 +45,11 @@ class Tasks {
  public:
   Tasks(const TriangleList& triangles, double mean_share) : mean_share_(mean_share) {
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const TrianglePiece piece = whole(triangles, t);
-      if (work(piece) > kWork)
-        add_parts(t, piece);
+      const double work = work_on(triangles.area(t));
+      if (work > kWork)
+        add_parts(t, whole(triangles, t));
       else
-        add_triangle(t, work(piece));
+        add_triangle(t, work);
     }
   }
   const std::vector<Task>& all() const { return tasks_; }
@@ -57,7 +57,7 @@ class Tasks {
  private:
   static constexpr double kWork = 512;
 
-  double work(const TrianglePiece& piece) const { return 1 + piece.area() / mean_share_; }
+  double work_on(double area) const { return 1 + area / mean_share_; }
 
   void add_triangle(std::size_t triangle, double work) {
     if (tasks_.empty() || tasks_.back().part || filled_ + work > kWork) {
@@ -69,7 +69,7 @@ class Tasks {
   }
 
   void add_parts(std::size_t triangle, const TrianglePiece& piece) {
-    if (work(piece) <= kWork)
+    if (work_on(piece.area()) <= kWork)
       tasks_.push_back({triangle, triangle + 1, piece});
     else
       for (const TrianglePiece& half : piece.halves()) add_parts(triangle, half);
@@ -85,11 +85,13 @@ class TriangleDivider {
                   std::vector<Share>& out)
       : triangles_(triangles), grid_(grid), radius_(radius), monitor_(monitor), out_(out) {}
 
-  void divide(std::size_t triangle, const TrianglePiece& piece) {
+  // Of the whole triangle, or of a part.
+  void divide(std::size_t triangle, const std::optional<TrianglePiece>& part) {
     normal_ = triangles_.geometric_normal(triangle);
+    const TrianglePiece piece = whole(triangles_, triangle);
     // A needle's samples are few and far apart: it is not cut into millions of pieces for them.
-    piece_extent_ = std::max(3 * radius_, whole(triangles_, triangle).extent / 64);
-    divide_large(piece);
+    piece_extent_ = std::max(3 * radius_, piece.extent / 64);
+    divide_large(part ? *part : piece);
   }
 
  private:
@@ -257,8 +259,7 @@ std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const Sa
       const Task& task = block[i];
       pieces[i].clear();
       TriangleDivider divider(triangles, grid, radius, monitor, pieces[i]);
-      for (std::size_t t = task.first; t < task.last; ++t)
-        divider.divide(t, task.part ? *task.part : whole(triangles, t));
+      for (std::size_t t = task.first; t < task.last; ++t) divider.divide(t, task.part);
       advance(monitor, task.part ? 0 : task.last - task.first);
     });
     for (std::size_t i = 0; i < block.size(); ++i)

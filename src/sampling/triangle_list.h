@@ -22,6 +22,9 @@ class TriangleList {
 
   std::size_t size() const { return cumulative_.size(); }
   double area() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
+  double area(std::size_t index) const {
+    return cumulative_[index] - (index > 0 ? cumulative_[index - 1] : 0);
+  }
   /// Area of the triangles up to and including this one.
   double cumulative(std::size_t index) const { return cumulative_[index]; }
   const Vec3f& geometric_normal(std::size_t index) const { return normals_[index]; }
