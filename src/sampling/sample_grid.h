@@ -103,15 +103,18 @@ class SampleGrid {
     const std::uint64_t boxes = std::uint64_t((b.x >> 2) - (a.x >> 2) + 1) * ((b.y >> 2) - (a.y >> 2) + 1) *
                                 ((b.z >> 2) - (a.z >> 2) + 1);
     if (boxes > blocks_.size()) {  // a wide box over a sparse cloud: fewer blocks exist than it meets
-      for (const Block& block : blocks_)
-        if (visit_block(block, a, b, visit)) return;
+      for (const Block& block : blocks_) {
+        const Coordinates at{gather_bits(block.key), gather_bits(block.key >> 1),
+                             gather_bits(block.key >> 2)};
+        if (visit_block(block, at, a, b, visit)) return;
+      }
       return;
     }
     for (std::uint32_t bz = a.z >> 2; bz <= b.z >> 2; ++bz)
       for (std::uint32_t by = a.y >> 2; by <= b.y >> 2; ++by)
         for (std::uint32_t bx = a.x >> 2; bx <= b.x >> 2; ++bx)
           if (const Block* block = find_block(morton_key(bx, by, bz)))
-            if (visit_block(*block, a, b, visit)) return;
+            if (visit_block(*block, {bx, by, bz}, a, b, visit)) return;
   }
 
  private:
@@ -139,17 +142,17 @@ class SampleGrid {
     std::array<std::uint32_t, 64> cells;
   };
 
-  // Visits the block's cells whose coordinates lie in [a, b]; true if a visit returned true.
+  // Visits the block's cells whose coordinates lie in [a, b]; true if a visit returned true. at: the block's
+  // own coordinates, a fourth of its cells'.
   template <class Visit>
-  bool visit_block(const Block& block, const Coordinates& a, const Coordinates& b, const Visit& visit) const {
-    const std::uint32_t bx = gather_bits(block.key), by = gather_bits(block.key >> 1),
-                        bz = gather_bits(block.key >> 2);
-    std::uint64_t inside = block.occupied & range_mask(a.x, b.x, bx, 0) & range_mask(a.y, b.y, by, 1) &
-                           range_mask(a.z, b.z, bz, 2);
+  bool visit_block(const Block& block, const Coordinates& at, const Coordinates& a, const Coordinates& b,
+                   const Visit& visit) const {
+    std::uint64_t inside = block.occupied & range_mask(a.x, b.x, at.x, 0) & range_mask(a.y, b.y, at.y, 1) &
+                           range_mask(a.z, b.z, at.z, 2);
     for (; inside != 0; inside &= inside - 1) {
       const auto bit = std::uint32_t(std::countr_zero(inside));
-      const Coordinates c{4 * bx + axis_bits(bit), 4 * by + axis_bits(bit >> 1),
-                          4 * bz + axis_bits(bit >> 2)};
+      const Coordinates c{4 * at.x + axis_bits(bit), 4 * at.y + axis_bits(bit >> 1),
+                          4 * at.z + axis_bits(bit >> 2)};
       if (visit(c, cells_[block.cells[bit]])) return true;
     }
     return false;
@@ -161,18 +164,18 @@ class SampleGrid {
   // Bits of a block's cells whose coordinate along an axis lies in [low, high].
   static std::uint64_t range_mask(std::uint32_t low, std::uint32_t high, std::uint32_t block,
                                   std::uint32_t axis) {
-    static constexpr auto kLayers = [] {
-      std::array<std::array<std::uint64_t, 4>, 3> layers{};
-      for (std::uint32_t a = 0; a < 3; ++a)
+    // By axis, first and last layer.
+    static constexpr auto kRanges = [] {
+      std::array<std::array<std::array<std::uint64_t, 4>, 4>, 3> ranges{};
+      for (std::uint32_t axis_ = 0; axis_ < 3; ++axis_)
         for (std::uint32_t bit = 0; bit < 64; ++bit)
-          layers[a][axis_bits(bit >> a)] |= std::uint64_t(1) << bit;
-      return layers;
+          for (std::uint32_t first = 0; first <= axis_bits(bit >> axis_); ++first)
+            for (std::uint32_t last = axis_bits(bit >> axis_); last < 4; ++last)
+              ranges[axis_][first][last] |= std::uint64_t(1) << bit;
+      return ranges;
     }();
     if (high < 4 * block || low > 4 * block + 3) return 0;
-    const std::uint32_t first = low > 4 * block ? low - 4 * block : 0, last = std::min(high - 4 * block, 3u);
-    std::uint64_t mask = 0;
-    for (std::uint32_t i = first; i <= last; ++i) mask |= kLayers[axis][i];
-    return mask;
+    return kRanges[axis][low > 4 * block ? low - 4 * block : 0][std::min(high - 4 * block, 3u)];
   }
 
   // Squared distance along one axis from a place to the cells of this coordinate.
