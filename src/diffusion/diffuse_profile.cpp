@@ -2,6 +2,7 @@
 #include "opaline/diffusion/diffuse_profile.h"
 
 #include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
 #include <type_traits>
 
 #include "opaline/diffusion/fresnel.h"
@@ -73,6 +74,7 @@ DiffuseProfile make_diffuse_profile(const Medium& medium) {
         std::visit([&](const auto& coefficients) { return reduce(coefficients, c, mismatch); }, medium.coefficients);
     profile.channels[c] = make_channel(reduced, medium.profile, mismatch);
     profile.mean_free_path[c] = reduced.mean_free_path;
+    profile.diffuse_mean_free_path[c] = reduced.mean_free_path / std::sqrt(3 * reduced.absorbed);
     profile.total[c] = total_diffuse_reflectance(profile.channels[c]);
     profile.translucent = profile.translucent || profile.total[c] > 0;
   }

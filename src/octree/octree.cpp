@@ -3,8 +3,11 @@
 
 #include <tbb/parallel_sort.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include "opaline/core/morton.h"
 #include "opaline/core/parallel.h"
@@ -71,35 +74,114 @@ struct Sums {
   }
 };
 
+// Writes the nodes in depth-first order. The tree is cut into parts that are counted, and then built, in
+// parallel; the nodes above them are summed up last. The cut depends on the samples alone.
 class Builder {
  public:
-  Builder(Octree& tree, const std::vector<Keyed>& order) : tree_(tree), order_(order) {}
+  Builder(Octree& tree, std::vector<std::uint64_t> keys) : tree_(tree), keys_(std::move(keys)) {}
 
-  Sums build(std::uint32_t begin, std::uint32_t end, int level) {
-    // Levels at which all samples share one child add nothing.
-    while (level < kLevels && digit(begin, level) == digit(end - 1, level)) ++level;
-    const std::size_t index = tree_.nodes.size();
-    tree_.nodes.emplace_back();
-    Sums sums;
-    const bool leaf = end - begin <= kLeafSamples || level == kLevels;
-    if (leaf) {
-      for (std::uint32_t i = begin; i < end; ++i) sums.add(sums_of(tree_.samples[i]));
-    } else {
-      for (std::uint32_t first = begin; first < end;) {
-        std::uint32_t last = first + 1;
-        while (last < end && digit(last, level) == digit(first, level)) ++last;
-        sums.add(build(first, last, level + 1));
-        first = last;
-      }
+  void build() {
+    cut(0, std::uint32_t(keys_.size()), 0, kNoParent);
+    parallel_chunks(parts_.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      Part& part = parts_[i];
+      part.nodes = part.is_inner ? 1 : count(part.begin, part.end, part.level);
+    });
+    std::uint32_t nodes = 0;
+    for (Part& part : parts_) {
+      part.index = nodes;
+      nodes += part.nodes;
     }
-    store(index, sums, begin, end, leaf);
-    return sums;
+    tree_.nodes.resize(nodes);
+    parallel_chunks(parts_.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      Part& part = parts_[i];
+      std::uint32_t next = part.index;
+      if (!part.is_inner) part.sums = build(part.begin, part.end, part.level, next);
+    });
+    // Children stand after their parents.
+    for (std::size_t i = parts_.size(); i-- > 0;) {
+      const Part& part = parts_[i];
+      if (part.is_inner)
+        store(part.index, part.sums, part.begin, part.end, false,
+              part.past < parts_.size() ? parts_[part.past].index : nodes);
+      if (part.parent != kNoParent) parts_[part.parent].sums.add(part.sums);
+    }
   }
 
  private:
-  unsigned digit(std::uint32_t i, int level) const {
-    return order_[i].key >> (3 * (kLevels - 1 - level)) & 7;
+  static constexpr std::uint32_t kPart = 4096;  // samples that one thread takes at a time
+  static constexpr std::size_t kNoParent = ~std::size_t(0);
+
+  // A subtree, or one inner node above subtrees; in depth-first order.
+  struct Part {
+    std::uint32_t begin, end;  // its samples
+    int level;
+    std::size_t parent, past;  // the part above, the first one not below
+    bool is_inner;
+    std::uint32_t nodes = 0, index = 0;  // how many, and the first of them
+    Sums sums{};
+  };
+
+  void cut(std::uint32_t begin, std::uint32_t end, int level, std::size_t parent) {
+    level = branching_level(begin, end, level);
+    const bool is_inner = end - begin > kPart && level < kLevels;
+    const std::size_t index = parts_.size();
+    parts_.push_back({begin, end, level, parent, index + 1, is_inner});
+    if (!is_inner) return;
+    for_children(begin, end, level,
+                 [&](std::uint32_t first, std::uint32_t last) { cut(first, last, level + 1, index); });
+    parts_[index].past = parts_.size();
   }
+
+  std::uint32_t count(std::uint32_t begin, std::uint32_t end, int level) const {
+    level = branching_level(begin, end, level);
+    std::uint32_t nodes = 1;
+    if (!is_leaf(begin, end, level))
+      for_children(begin, end, level,
+                   [&](std::uint32_t first, std::uint32_t last) { nodes += count(first, last, level + 1); });
+    return nodes;
+  }
+
+  // next: index of the first node not yet written.
+  Sums build(std::uint32_t begin, std::uint32_t end, int level, std::uint32_t& next) {
+    level = branching_level(begin, end, level);
+    const std::uint32_t index = next++;
+    Sums sums;
+    const bool leaf = is_leaf(begin, end, level);
+    if (leaf)
+      for (std::uint32_t i = begin; i < end; ++i) sums.add(sums_of(tree_.samples[i]));
+    else
+      for_children(begin, end, level, [&](std::uint32_t first, std::uint32_t last) {
+        sums.add(build(first, last, level + 1, next));
+      });
+    store(index, sums, begin, end, leaf, next);
+    return sums;
+  }
+
+  // Levels at which all samples share one child add nothing.
+  int branching_level(std::uint32_t begin, std::uint32_t end, int level) const {
+    while (level < kLevels && digit(begin, level) == digit(end - 1, level)) ++level;
+    return level;
+  }
+
+  static bool is_leaf(std::uint32_t begin, std::uint32_t end, int level) {
+    return end - begin <= kLeafSamples || level == kLevels;
+  }
+
+  template <class Use>
+  void for_children(std::uint32_t begin, std::uint32_t end, int level, const Use& use) const {
+    for (std::uint32_t first = begin; first < end;) {
+      const auto rest = std::span(keys_).subspan(first, end - first);
+      const unsigned child = digit(first, level);
+      const auto last =
+          std::ranges::partition_point(rest, [&](std::uint64_t key) { return digit(key, level) == child; });
+      const auto past = first + std::uint32_t(last - rest.begin());
+      use(first, past);
+      first = past;
+    }
+  }
+
+  static unsigned digit(std::uint64_t key, int level) { return key >> (3 * (kLevels - 1 - level)) & 7; }
+  unsigned digit(std::uint32_t i, int level) const { return digit(keys_[i], level); }
 
   static Sums sums_of(const TreeSample& s) {
     Sums sums;
@@ -137,7 +219,8 @@ class Builder {
     return central;
   }
 
-  void store(std::size_t index, const Sums& sums, std::uint32_t begin, std::uint32_t end, bool leaf) {
+  void store(std::uint32_t index, const Sums& sums, std::uint32_t begin, std::uint32_t end, bool leaf,
+             std::uint32_t skip) {
     OctreeNode& node = tree_.nodes[index];
     const Vec3d middle = 0.5 * (Vec3d(sums.low) + Vec3d(sums.high));
     for (std::size_t c = 0; c < 4; ++c) {
@@ -152,14 +235,15 @@ class Builder {
     // Up to the farther side of the rounded middle.
     node.half = component_max(sums.high - node.center, node.center - sums.low);
     node.spread = central_moment(sums);
-    node.skip = std::uint32_t(tree_.nodes.size());
+    node.skip = skip;
     node.first = begin;
     node.count = end - begin;
     node.leaf = leaf;
   }
 
   Octree& tree_;
-  const std::vector<Keyed>& order_;
+  std::vector<std::uint64_t> keys_;
+  std::vector<Part> parts_;
 };
 
 float unit_of_flux(std::span<const FluxSample> samples) {
@@ -174,10 +258,10 @@ std::size_t Octree::bytes() const {
   return nodes.size() * sizeof(OctreeNode) + samples.size() * (sizeof(TreeSample) + sizeof(Vec3f));
 }
 
-Octree build_octree(std::span<const FluxSample> samples) {
+Octree build_octree(std::vector<FluxSample> samples) {
   Octree tree;
   if (samples.empty()) return tree;
-  const std::vector<Keyed> order = morton_order(samples);
+  std::vector<Keyed> order = morton_order(samples);
   tree.flux_unit = unit_of_flux(samples);
   tree.samples.resize(samples.size());
   tree.normals.resize(samples.size());
@@ -189,9 +273,11 @@ Octree build_octree(std::span<const FluxSample> samples) {
       tree.normals[i] = s.normal;
     }
   });
-  tree.nodes.reserve(samples.size() / 2);
-  Builder(tree, order).build(0, std::uint32_t(samples.size()), 0);
-  tree.nodes.shrink_to_fit();
+  std::vector<FluxSample>().swap(samples);  // the nodes take their memory, and the order's
+  std::vector<std::uint64_t> keys(order.size());
+  std::ranges::transform(order, keys.begin(), &Keyed::key);
+  std::vector<Keyed>().swap(order);
+  Builder(tree, std::move(keys)).build();
   return tree;
 }
 

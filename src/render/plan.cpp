@@ -27,14 +27,29 @@ double smallest_mean_free_path(const DiffuseProfile& profile) {
   return smallest;
 }
 
+// As far apart as samples may be. Light that enters at a point leaves within a few mean free paths around it;
+// what is nearer than the spacing comes from the irradiance at the shading point itself (SplitKernel), so
+// that one and a half of them are near enough, but for a medium in which light decays over a shorter way than
+// that: what it brings to the dark then hangs on where exactly the samples stand. Measured on bunnies: within
+// 1 % of the converged sum.
+double widest_spacing(const DiffuseProfile& profile) {
+  double widest = INFINITY;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double length = profile.mean_free_path[c];
+    if (profile.total[c] > 0 && length > 0)
+      widest = std::min(widest, std::clamp(profile.diffuse_mean_free_path[c], length, 1.5 * length));
+  }
+  return widest;
+}
+
 void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
   const Settings& settings = scene.settings;
-  const double mean_free_path = group.smallest_mean_free_path;
+  const double mean_free_path = group.smallest_mean_free_path,
+               spacing = widest_spacing(make_diffuse_profile(scene.media[group.medium]));
   // Without any mean free path light leaves where it enters, and no number of samples is asked for.
-  const double wanted =
-      std::isfinite(mean_free_path) ? group.area / (mean_free_path * mean_free_path) : kFewestSamples;
+  const double wanted = std::isfinite(spacing) ? group.area / (spacing * spacing) : kFewestSamples;
   double count = wanted;
-  group.reason = fmt::format("one a squared mean free path of {:.4g} mm", mean_free_path);
+  group.reason = fmt::format("{:.2f} mean free paths of {:.4g} mm", spacing / mean_free_path, mean_free_path);
   if (settings.samples) {
     count = double(*settings.samples);
     group.reason = "settings.samples";
@@ -167,8 +182,8 @@ Plan make_plan(const Scene& scene, const World& world) {
     choose_samples(scene, group, plan.warnings);
     if (scene.settings.method != Method::hierarchical) continue;
     warn_of_near_lights(scene, world, group, plan.warnings);
-    // Measured (bench_sampling): candidates, grid and shares, then samples, weights and tree.
-    plan.bytes += group.samples * (300 + 4 * scene.lights.size());
+    // Measured at 10 million: samples, weights and tree while its nodes are written; all else needs less.
+    plan.bytes += group.samples * (170 + 4 * scene.lights.size());
   }
   list_stages(scene, plan);
   return plan;

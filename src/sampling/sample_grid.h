@@ -6,9 +6,11 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "opaline/core/morton.h"
+#include "opaline/core/parallel.h"
 #include "opaline/core/vec3.h"
 
 namespace opaline {
@@ -27,7 +29,7 @@ class SampleGrid {
     float u, v;
   };
   struct Sample {
-    Vec3f position, geometric_normal;
+    Vec3f position;
     Place place;
   };
   struct Coordinates {
@@ -56,53 +58,81 @@ class SampleGrid {
   /// each cell's [round_first, round_first + round_count).
   template <class Accepted>
   void end_round(const Accepted& accepted) {
-    std::vector<Vec3f> positions, normals;
-    std::vector<Place> places;
-    positions.reserve(positions_.size() * 5 / 4);
-    normals.reserve(positions_.size() * 5 / 4);
-    places.reserve(positions_.size() * 5 / 4);
-    const auto add = [&](const Sample& s) {
-      positions.push_back(s.position);
-      normals.push_back(s.geometric_normal);
-      places.push_back(s.place);
-    };
-    for (Cell& cell : cells_) {
-      const auto first = std::uint32_t(positions.size());
-      for (std::uint32_t i = cell.first; i < cell.first + cell.count; ++i)
-        add({positions_[i], normals_[i], places_[i]});
-      for (std::uint32_t i = 0; i < cell.round_count; ++i) add(accepted(cell.round_first + i));
-      cell = {first, cell.count + cell.round_count, 0, 0};
+    std::vector<std::uint32_t> firsts(cells_.size());
+    std::uint32_t total = 0;
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+      firsts[c] = total;
+      total += cells_[c].count + cells_[c].round_count;
     }
-    positions_.swap(positions);
-    normals_.swap(normals);
-    places_.swap(places);
+    // One after the other: both at once would need twice their memory.
+    merge(positions_, firsts, total, [&](std::uint32_t i) { return accepted(i).position; });
+    merge(places_, firsts, total, [&](std::uint32_t i) { return accepted(i).place; });
+    for (std::size_t c = 0; c < cells_.size(); ++c)
+      cells_[c] = {firsts[c], cells_[c].count + cells_[c].round_count, 0, 0};
   }
 
   std::size_t size() const { return positions_.size(); }
   const Vec3f& position(std::size_t sample) const { return positions_[sample]; }
-  const Vec3f& geometric_normal(std::size_t sample) const { return normals_[sample]; }
   const Place& place(std::size_t sample) const { return places_[sample]; }
+  /// All places; the grid is of no use afterwards.
+  std::vector<Place> take_places() { return std::move(places_); }
+
+  /// The cell that holds p; null if there is none.
+  const Cell* find_cell(const Vec3f& p) const {
+    const std::uint64_t at = key(p);
+    const Block* block = find_block(at >> 6);
+    return block != nullptr && (block->occupied >> (at & 63) & 1) ? &cells_[block->cells[at & 63]] : nullptr;
+  }
 
   /// Calls visit(cell) for each existing cell that the ball of this radius around p meets, until one returns
   /// true.
   template <class Visit>
   void for_cells_near(const Vec3f& p, float radius, const Visit& visit) const {
-    const Coordinates a = coordinates(p - Vec3f(radius)), b = coordinates(p + Vec3f(radius));
+    const Vec3f place = p - low_;
+    // Slightly more than the radius: rounding must not lose a cell.
+    const float reach2 = radius * radius * 1.0001f;
+    for_cells_between(p - Vec3f(radius), p + Vec3f(radius), [&](const Coordinates& c, const Cell& cell) {
+      return gap2_to(place.x, c.x) + gap2_to(place.y, c.y) + gap2_to(place.z, c.z) <= reach2 && visit(cell);
+    });
+  }
+
+  /// Calls visit(coordinates, cell) for each existing cell that the box meets, until one returns true.
+  template <class Visit>
+  void for_cells_between(const Vec3f& low, const Vec3f& high, const Visit& visit) const {
+    const Coordinates a = coordinates(low), b = coordinates(high);
     const std::uint64_t boxes = std::uint64_t((b.x >> 2) - (a.x >> 2) + 1) * ((b.y >> 2) - (a.y >> 2) + 1) *
                                 ((b.z >> 2) - (a.z >> 2) + 1);
-    if (boxes > blocks_.size()) {  // a wide ball over a sparse cloud: fewer blocks exist than it meets
-      for (const Block& block : blocks_)
-        if (visit_block(block, a, b, p, radius, visit)) return;
+    if (boxes > blocks_.size()) {  // a wide box over a sparse cloud: fewer blocks exist than it meets
+      for (const Block& block : blocks_) {
+        const Coordinates at{gather_bits(block.key), gather_bits(block.key >> 1),
+                             gather_bits(block.key >> 2)};
+        if (visit_block(block, at, a, b, visit)) return;
+      }
       return;
     }
     for (std::uint32_t bz = a.z >> 2; bz <= b.z >> 2; ++bz)
       for (std::uint32_t by = a.y >> 2; by <= b.y >> 2; ++by)
         for (std::uint32_t bx = a.x >> 2; bx <= b.x >> 2; ++bx)
           if (const Block* block = find_block(morton_key(bx, by, bz)))
-            if (visit_block(*block, a, b, p, radius, visit)) return;
+            if (visit_block(*block, {bx, by, bz}, a, b, visit)) return;
   }
 
  private:
+  // Brings an array of the samples' to the order of cells that begin at `firsts`, the accepted ones last.
+  template <class T, class Accepted>
+  void merge(std::vector<T>& array, const std::vector<std::uint32_t>& firsts, std::size_t total,
+             const Accepted& accepted) const {
+    std::vector<T> merged(total);
+    parallel_chunks(cells_.size(), 8192, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t c = begin; c < end; ++c) {
+        const Cell& cell = cells_[c];
+        T* to = std::copy_n(array.data() + cell.first, cell.count, merged.data() + firsts[c]);
+        for (std::uint32_t i = 0; i < cell.round_count; ++i) *to++ = accepted(cell.round_first + i);
+      }
+    });
+    array.swap(merged);
+  }
+
   static constexpr std::uint32_t kNone = ~0u;
   static constexpr std::uint32_t kLast =
       (1u << 20) - 1;  // largest coordinate; its cells hold all beyond, too
@@ -112,24 +142,18 @@ class SampleGrid {
     std::array<std::uint32_t, 64> cells;
   };
 
-  // Visits the block's cells that the ball meets and whose coordinates lie in [a, b]; true if a visit
-  // returned true.
+  // Visits the block's cells whose coordinates lie in [a, b]; true if a visit returned true. at: the block's
+  // own coordinates, a fourth of its cells'.
   template <class Visit>
-  bool visit_block(const Block& block, const Coordinates& a, const Coordinates& b, const Vec3f& p,
-                   float radius, const Visit& visit) const {
-    const Vec3f place = p - low_;
-    // Slightly more than the radius: rounding must not lose a cell.
-    const float reach2 = radius * radius * 1.0001f;
-    const std::uint32_t bx = gather_bits(block.key), by = gather_bits(block.key >> 1),
-                        bz = gather_bits(block.key >> 2);
-    std::uint64_t inside = block.occupied & range_mask(a.x, b.x, bx, 0) & range_mask(a.y, b.y, by, 1) &
-                           range_mask(a.z, b.z, bz, 2);
+  bool visit_block(const Block& block, const Coordinates& at, const Coordinates& a, const Coordinates& b,
+                   const Visit& visit) const {
+    std::uint64_t inside = block.occupied & range_mask(a.x, b.x, at.x, 0) & range_mask(a.y, b.y, at.y, 1) &
+                           range_mask(a.z, b.z, at.z, 2);
     for (; inside != 0; inside &= inside - 1) {
       const auto bit = std::uint32_t(std::countr_zero(inside));
-      const float gap2 = gap2_to(place.x, 4 * bx + axis_bits(bit)) +
-                         gap2_to(place.y, 4 * by + axis_bits(bit >> 1)) +
-                         gap2_to(place.z, 4 * bz + axis_bits(bit >> 2));
-      if (gap2 <= reach2 && visit(cells_[block.cells[bit]])) return true;
+      const Coordinates c{4 * at.x + axis_bits(bit), 4 * at.y + axis_bits(bit >> 1),
+                          4 * at.z + axis_bits(bit >> 2)};
+      if (visit(c, cells_[block.cells[bit]])) return true;
     }
     return false;
   }
@@ -140,18 +164,18 @@ class SampleGrid {
   // Bits of a block's cells whose coordinate along an axis lies in [low, high].
   static std::uint64_t range_mask(std::uint32_t low, std::uint32_t high, std::uint32_t block,
                                   std::uint32_t axis) {
-    static constexpr auto kLayers = [] {
-      std::array<std::array<std::uint64_t, 4>, 3> layers{};
-      for (std::uint32_t a = 0; a < 3; ++a)
+    // By axis, first and last layer.
+    static constexpr auto kRanges = [] {
+      std::array<std::array<std::array<std::uint64_t, 4>, 4>, 3> ranges{};
+      for (std::uint32_t axis_ = 0; axis_ < 3; ++axis_)
         for (std::uint32_t bit = 0; bit < 64; ++bit)
-          layers[a][axis_bits(bit >> a)] |= std::uint64_t(1) << bit;
-      return layers;
+          for (std::uint32_t first = 0; first <= axis_bits(bit >> axis_); ++first)
+            for (std::uint32_t last = axis_bits(bit >> axis_); last < 4; ++last)
+              ranges[axis_][first][last] |= std::uint64_t(1) << bit;
+      return ranges;
     }();
     if (high < 4 * block || low > 4 * block + 3) return 0;
-    const std::uint32_t first = low > 4 * block ? low - 4 * block : 0, last = std::min(high - 4 * block, 3u);
-    std::uint64_t mask = 0;
-    for (std::uint32_t i = first; i <= last; ++i) mask |= kLayers[axis][i];
-    return mask;
+    return kRanges[axis][low > 4 * block ? low - 4 * block : 0][std::min(high - 4 * block, 3u)];
   }
 
   // Squared distance along one axis from a place to the cells of this coordinate.
@@ -183,7 +207,7 @@ class SampleGrid {
   std::vector<std::uint32_t> slots_;  // hash table of indices into blocks_, a power of two of them
   std::vector<Block> blocks_;
   std::vector<Cell> cells_;
-  std::vector<Vec3f> positions_, normals_;
+  std::vector<Vec3f> positions_;
   std::vector<Place> places_;
 };
 

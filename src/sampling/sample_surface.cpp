@@ -24,7 +24,7 @@ constexpr double kRadiusPerSpacing = 0.7195;
 struct Candidate {
   Vec3f position;
   SampleGrid::Place place;  // its triangle is an index into the TriangleList
-  std::uint64_t order;      // random: the order in which a cell's candidates are tried
+  std::uint32_t order;      // random: the order in which a cell's candidates are tried
 };
 
 class PoissonDisk {
@@ -32,8 +32,29 @@ class PoissonDisk {
   PoissonDisk(const TriangleList& triangles, const Vec3f& low, float radius)
       : triangles_(triangles), radius_(radius), grid_(low, 2 * radius) {}
 
-  // One round: `count` candidates, stratified over the area; those far from all samples are tried for real.
+  // One round: about `count` candidates, stratified over the area; those far from all samples are tried for
+  // real. A round of many is thrown in several, for memory's sake.
   void throw_darts(std::size_t count, std::uint64_t seed, Monitor* monitor) {
+    const std::size_t throws = chunk_count(count, kMostCandidates), each = chunk_count(count, throws);
+    for (std::size_t i = 0; i < throws; ++i) throw_some(each, i == 0 ? seed : hash_bits(seed, i), monitor);
+  }
+
+  // The last round: the centroids of triangles with nothing near, so that no part of the surface, however
+  // small, stays without a sample.
+  void cover_centroids(Monitor* monitor) {
+    run_round(triangles_.size(), 2 * radius_, monitor,
+              [&](std::size_t begin, std::size_t end, const auto& keep) {
+                for (std::size_t t = begin; t < end; ++t)
+                  keep(t, 1.0f / 3, 1.0f / 3, std::uint32_t(hash_bits(0, t)));
+              });
+  }
+
+  SampleGrid& grid() { return grid_; }
+
+ private:
+  static constexpr std::size_t kMostCandidates = std::size_t(1) << 21;
+
+  void throw_some(std::size_t count, std::uint64_t seed, Monitor* monitor) {
     run_round(count, radius_, monitor, [&](std::size_t begin, std::size_t end, const auto& keep) {
       const double step = triangles_.area() / double(count);
       std::size_t t = triangles_.find(double(begin) * step);
@@ -46,115 +67,127 @@ class PoissonDisk {
           u = 1 - u;
           v = 1 - v;
         }
-        keep(t, u, v, more);
+        keep(t, u, v, std::uint32_t(more));
       }
     });
   }
 
-  // The last round: the centroids of triangles with nothing near, so that no part of the surface, however
-  // small, stays without a sample.
-  void cover_centroids(Monitor* monitor) {
-    run_round(triangles_.size(), 2 * radius_, monitor,
-              [&](std::size_t begin, std::size_t end, const auto& keep) {
-                for (std::size_t t = begin; t < end; ++t) keep(t, 1.0f / 3, 1.0f / 3, hash_bits(0, t));
-              });
-  }
-
-  const SampleGrid& grid() const { return grid_; }
-
- private:
   // A candidate in its cell. Sorted by phase (the cell's parities), cell and random order.
   struct Entry {
-    std::uint64_t phase, cell, order;
-    std::uint32_t candidate;
+    std::uint64_t cell;  // its key, the phase moved from the lowest bits to the highest
+    std::uint32_t order, candidate;
+    std::uint64_t phase() const { return cell >> 61; }
+    std::uint64_t key() const { return cell << 3 | phase(); }
     friend auto operator<=>(const Entry&, const Entry&) = default;
+  };
+
+  // The candidates of a round, chunk by chunk as they were generated.
+  class Candidates {
+   public:
+    explicit Candidates(std::size_t tried) : chunks_(chunk_count(tried, kChunk)) {}
+    std::vector<Candidate>& chunk(std::size_t c) { return chunks_[c]; }
+    const Candidate& operator[](std::uint32_t i) const { return chunks_[i / kChunk][i % kChunk]; }
+
+    std::vector<Entry> sorted_entries(const SampleGrid& grid) const {
+      std::vector<std::size_t> firsts(1);
+      for (const auto& chunk : chunks_) firsts.push_back(firsts.back() + chunk.size());
+      std::vector<Entry> entries(firsts.back());
+      parallel_chunks(chunks_.size(), 1, [&](std::size_t c, std::size_t, std::size_t) {
+        for (std::size_t i = 0; i < chunks_[c].size(); ++i) {
+          const std::uint64_t key = grid.key(chunks_[c][i].position);
+          entries[firsts[c] + i] = {key >> 3 | key << 61, chunks_[c][i].order, std::uint32_t(c * kChunk + i)};
+        }
+      });
+      tbb::parallel_sort(entries);
+      return entries;
+    }
+
+    static constexpr std::size_t kChunk = 4096;
+
+   private:
+    std::vector<std::vector<Candidate>> chunks_;
   };
 
   template <class Generate>
   void run_round(std::size_t count, float clearance, Monitor* monitor, const Generate& generate) {
-    constexpr std::size_t kChunk = 4096;
-    std::vector<std::vector<Candidate>> chunks(chunk_count(count, kChunk));
-    parallel_chunks(count, kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-      generate(begin, end, [&](std::size_t t, float u, float v, std::uint64_t order) {
-        const TriangleList::Corners corners = triangles_.corners(triangles_.id(t));
-        const Vec3f p = corners.at(u, v);
-        if (is_clear(p, corners, clearance)) chunks[chunk].push_back({p, {std::uint32_t(t), u, v}, order});
+    Candidates candidates(count);
+    parallel_chunks(count, Candidates::kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+      generate(begin, end, [&](std::size_t t, float u, float v, std::uint32_t order) {
+        const Vec3f p = triangles_.corners(triangles_.id(t)).at(u, v);
+        if (is_clear(p, t, clearance))
+          candidates.chunk(chunk).push_back({p, {std::uint32_t(t), u, v}, order});
       });
+      candidates.chunk(chunk).shrink_to_fit();
       advance(monitor, end - begin);
     });
-    std::vector<Candidate> candidates;
-    for (const auto& chunk : chunks) candidates.insert(candidates.end(), chunk.begin(), chunk.end());
     insert(candidates);
   }
 
   // No accepted sample of the triangle's sheet lies within the clearance.
-  bool is_clear(const Vec3f& p, const TriangleList::Corners& corners, float clearance) const {
+  bool is_clear(const Vec3f& p, std::size_t triangle, float clearance) const {
     bool clear = true;
-    Vec3f normal{};
-    grid_.for_cells_near(p, clearance, [&](const SampleGrid::Cell& cell) {
+    const auto is_blocked_in = [&](const SampleGrid::Cell& cell) {
       for (std::uint32_t i = cell.first; i < cell.first + cell.count && clear; ++i) {
         const Vec3f away = grid_.position(i) - p;
-        if (dot(away, away) >= clearance * clearance) continue;
-        if (normal == Vec3f{}) normal = corners.geometric_normal();
-        clear = !same_sheet(normal, grid_.geometric_normal(i));
+        clear = dot(away, away) >= clearance * clearance || !on_one_sheet(triangle, grid_.place(i).triangle);
       }
       return !clear;
-    });
+    };
+    // Most candidates are blocked, and most of those from within their own cell.
+    if (const SampleGrid::Cell* own = grid_.find_cell(p); own != nullptr && is_blocked_in(*own)) return false;
+    grid_.for_cells_near(p, clearance, is_blocked_in);
     return clear;
   }
 
-  void insert(const std::vector<Candidate>& candidates) {
-    std::vector<Entry> entries(candidates.size());
-    std::vector<Vec3f> normals(candidates.size());
-    parallel_chunks(candidates.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::uint64_t key = grid_.key(candidates[i].position);
-        entries[i] = {key & 7, key, candidates[i].order, std::uint32_t(i)};
-        normals[i] = triangles_.corners(triangles_.id(candidates[i].place.triangle)).geometric_normal();
-      }
-    });
-    tbb::parallel_sort(entries);
-    std::vector<std::size_t> runs;  // where each cell's entries begin
+  bool on_one_sheet(std::size_t a, std::size_t b) const {
+    return same_sheet(triangles_.geometric_normal(a), triangles_.geometric_normal(b));
+  }
+
+  void insert(const Candidates& candidates) {
+    std::vector<Entry> entries = candidates.sorted_entries(grid_);
+    std::vector<std::uint32_t> runs;  // where each cell's entries begin
     for (std::size_t i = 0; i < entries.size(); ++i)
-      if (i == 0 || entries[i].cell != entries[i - 1].cell) runs.push_back(i);
+      if (i == 0 || entries[i].cell != entries[i - 1].cell) runs.push_back(std::uint32_t(i));
     reserve_cells(entries, runs);
     for (std::size_t begin = 0; begin < runs.size();) {
       std::size_t end = begin;
-      while (end < runs.size() && entries[runs[end]].phase == entries[runs[begin]].phase) ++end;
+      while (end < runs.size() && entries[runs[end]].phase() == entries[runs[begin]].phase()) ++end;
       parallel_chunks(end - begin, 64, [&](std::size_t first, std::size_t last, std::size_t) {
         for (std::size_t r = begin + first; r < begin + last; ++r)
-          try_cell(candidates, normals, entries, runs[r], r + 1 < runs.size() ? runs[r + 1] : entries.size());
+          try_cell(candidates, entries, runs[r], r + 1 < runs.size() ? runs[r + 1] : entries.size());
       });
       begin = end;
     }
     grid_.end_round([&](std::uint32_t i) {
-      const std::uint32_t c = entries[i].candidate;
-      return SampleGrid::Sample{candidates[c].position, normals[c], candidates[c].place};
+      const Candidate& c = candidates[entries[i].candidate];
+      return SampleGrid::Sample{c.position, c.place};
     });
   }
 
   // In Morton order, so that neighbours in space are neighbours in memory.
-  void reserve_cells(const std::vector<Entry>& entries, const std::vector<std::size_t>& runs) {
+  void reserve_cells(const std::vector<Entry>& entries, const std::vector<std::uint32_t>& runs) {
     std::vector<std::uint64_t> keys;
-    for (const std::size_t run : runs) keys.push_back(entries[run].cell);
+    keys.reserve(runs.size());
+    for (const std::uint32_t run : runs) keys.push_back(entries[run].key());
     tbb::parallel_sort(keys);
     for (const std::uint64_t key : keys) grid_.reserve_cell(key);
   }
 
   // Tries one cell's candidates in order; the accepted ones move to the front of its run. Cells of one phase
   // are two radii apart, so none sees another at work.
-  void try_cell(const std::vector<Candidate>& candidates, const std::vector<Vec3f>& normals,
-                std::vector<Entry>& entries, std::size_t begin, std::size_t end) {
-    SampleGrid::Cell& own = grid_.cell(entries[begin].cell);
+  void try_cell(const Candidates& candidates, std::vector<Entry>& entries, std::size_t begin,
+                std::size_t end) {
+    SampleGrid::Cell& own = grid_.cell(entries[begin].key());
     own.round_first = std::uint32_t(begin);
     for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t mine = entries[i].candidate;
+      const Candidate& mine = candidates[entries[i].candidate];
       bool free = true;
-      grid_.for_cells_near(candidates[mine].position, radius_, [&](const SampleGrid::Cell& cell) {
+      grid_.for_cells_near(mine.position, radius_, [&](const SampleGrid::Cell& cell) {
         for (std::uint32_t k = 0; k < cell.round_count && free; ++k) {
-          const std::uint32_t other = entries[cell.round_first + k].candidate;
-          const Vec3f away = candidates[other].position - candidates[mine].position;
-          free = dot(away, away) >= radius_ * radius_ || !same_sheet(normals[mine], normals[other]);
+          const Candidate& other = candidates[entries[cell.round_first + k].candidate];
+          const Vec3f away = other.position - mine.position;
+          free = dot(away, away) >= radius_ * radius_ ||
+                 !on_one_sheet(mine.place.triangle, other.place.triangle);
         }
         return !free;
       });
@@ -171,6 +204,21 @@ Vec3f lowest_corner(const World& world, std::span<const std::uint32_t> meshes) {
   Vec3d low{1e300, 1e300, 1e300};
   for (const std::uint32_t m : meshes) low = component_min(low, bounds(world.meshes[m]).low);
   return Vec3f(low);
+}
+
+// The samples before they are put in order.
+struct PlacedSamples {
+  std::vector<SampleGrid::Place> places;
+  std::vector<SurfaceShare> shares;
+};
+
+PlacedSamples place_samples(const SamplingInput& input, const TriangleList& triangles, float radius) {
+  PoissonDisk poisson(triangles, lowest_corner(input.world, input.meshes), radius);
+  for (int round = 0; round < input.candidate_rounds; ++round)
+    poisson.throw_darts(input.count, hash_bits(input.seed, std::uint64_t(round)), input.monitor);
+  poisson.cover_centroids(input.monitor);
+  std::vector<SurfaceShare> shares = surface_shares(triangles, poisson.grid(), radius, input.monitor);
+  return {poisson.grid().take_places(), std::move(shares)};
 }
 
 SurfaceSample make_sample(const TriangleList& triangles, const SampleGrid::Place& place,
@@ -201,23 +249,18 @@ SurfaceSamples sample_surface(const SamplingInput& input) {
     input.monitor->begin("sampling",
                          input.count * std::size_t(input.candidate_rounds) + 2 * triangles.size());
 
-  PoissonDisk poisson(triangles, lowest_corner(input.world, input.meshes), radius);
-  for (int round = 0; round < input.candidate_rounds; ++round)
-    poisson.throw_darts(input.count, hash_bits(input.seed, std::uint64_t(round)), input.monitor);
-  poisson.cover_centroids(input.monitor);
-
-  const SampleGrid& grid = poisson.grid();
-  const std::vector<SurfaceShare> shares = surface_shares(triangles, grid, radius, input.monitor);
-  std::vector<std::uint32_t> order(grid.size());
+  const PlacedSamples placed = place_samples(input, triangles, radius);
+  std::vector<std::uint32_t> order(placed.places.size());
   std::iota(order.begin(), order.end(), 0u);
   tbb::parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) {
-    const SampleGrid::Place &p = grid.place(a), &q = grid.place(b);
-    return std::tie(p.triangle, p.u, p.v) < std::tie(q.triangle, q.u, q.v);
+    const SampleGrid::Place &p = placed.places[a], &q = placed.places[b];
+    const TriangleId s = triangles.id(p.triangle), t = triangles.id(q.triangle);
+    return std::tie(s.mesh, s.triangle, p.u, p.v) < std::tie(t.mesh, t.triangle, q.u, q.v);
   });
   result.samples.resize(order.size());
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i)
-      result.samples[i] = make_sample(triangles, grid.place(order[i]), shares[order[i]]);
+      result.samples[i] = make_sample(triangles, placed.places[order[i]], placed.shares[order[i]]);
   });
   return result;
 }

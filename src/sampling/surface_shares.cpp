@@ -1,89 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sampling/surface_shares.h"
 
+#include <algorithm>
 #include <array>
+#include <optional>
+#include <span>
 
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 #include "opaline/sampling/sample_surface.h"
+#include "sampling/convex_polygon.h"
+#include "sampling/triangle_piece.h"
 
 namespace opaline {
 namespace {
-
-struct Point2 {
-  double x, y;
-};
-
-// A convex polygon in the plane of a triangle.
-class Polygon {
- public:
-  static constexpr int kMaxCorners = 64;
-
-  void assign(const Point2& a, const Point2& b, const Point2& c) {
-    corner_[0] = a;
-    corner_[1] = b;
-    corner_[2] = c;
-    size_ = 3;
-  }
-
-  // Keeps the part where nx x + ny y <= limit.
-  void clip(double nx, double ny, double limit) {
-    std::array<double, kMaxCorners> side;
-    bool outside = false;
-    for (int i = 0; i < size_; ++i) {
-      side[i] = nx * corner_[i].x + ny * corner_[i].y - limit;
-      outside = outside || side[i] > 0;
-    }
-    if (!outside) return;
-    std::array<Point2, kMaxCorners> kept;
-    int n = 0;
-    for (int i = 0; i < size_; ++i) {
-      const int j = i + 1 == size_ ? 0 : i + 1;
-      if (side[i] <= 0) kept[n++] = corner_[i];
-      if ((side[i] <= 0) != (side[j] <= 0)) {
-        const double t = side[i] / (side[i] - side[j]);
-        kept[n++] = {corner_[i].x + t * (corner_[j].x - corner_[i].x),
-                     corner_[i].y + t * (corner_[j].y - corner_[i].y)};
-      }
-    }
-    std::copy_n(kept.begin(), n, corner_.begin());
-    size_ = n;
-  }
-
-  void clear() { size_ = 0; }
-  bool empty() const { return size_ < 3; }
-
-  // Area, and area times centroid.
-  struct Moments {
-    double area = 0, x = 0, y = 0;
-  };
-  Moments moments() const {
-    Moments sum;
-    for (int i = 1; i + 1 < size_; ++i) {
-      const Point2 &a = corner_[0], &b = corner_[i], &c = corner_[i + 1];
-      const double area = 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-      sum.area += area;
-      sum.x += area * (a.x + b.x + c.x) / 3;
-      sum.y += area * (a.y + b.y + c.y) / 3;
-    }
-    return sum.area < 0 ? Moments{-sum.area, -sum.x, -sum.y} : sum;
-  }
-
- private:
-  std::array<Point2, kMaxCorners> corner_;
-  int size_ = 0;
-};
 
 struct Share {
   std::uint32_t sample;
   double area;
   Vec3d moment;
-};
-
-// A sample that may own part of a piece.
-struct Owner {
-  float distance2;  // to the piece's centre
-  std::uint32_t sample;
 };
 
 // A sample in the plane of a triangle: `power` is its squared height above the plane plus its squared
@@ -94,130 +29,190 @@ struct Site {
   double power;
 };
 
+TrianglePiece whole(const TriangleList& triangles, std::size_t triangle) {
+  const TriangleList::Corners t = triangles.corners(triangles.id(triangle));
+  return {t.a, t.b, t.c};
+}
+
+// Some triangles, or a part of one: about as much work as any other task.
+struct Task {
+  std::size_t first, last;
+  std::optional<TrianglePiece> part;  // of the triangle `first`
+};
+
+// Cuts the surface into tasks, by area in units of a mean share and by triangles.
+class Tasks {
+ public:
+  Tasks(const TriangleList& triangles, double mean_share) : mean_share_(mean_share) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const double work = work_on(triangles.area(t));
+      if (work > kWork)
+        add_parts(t, whole(triangles, t));
+      else
+        add_triangle(t, work);
+    }
+  }
+  const std::vector<Task>& all() const { return tasks_; }
+
+ private:
+  static constexpr double kWork = 512;
+
+  double work_on(double area) const { return 1 + area / mean_share_; }
+
+  void add_triangle(std::size_t triangle, double work) {
+    if (tasks_.empty() || tasks_.back().part || filled_ + work > kWork) {
+      tasks_.push_back({triangle, triangle, {}});
+      filled_ = 0;
+    }
+    tasks_.back().last = triangle + 1;
+    filled_ += work;
+  }
+
+  void add_parts(std::size_t triangle, const TrianglePiece& piece) {
+    if (work_on(piece.area()) <= kWork)
+      tasks_.push_back({triangle, triangle + 1, piece});
+    else
+      for (const TrianglePiece& half : piece.halves()) add_parts(triangle, half);
+  }
+
+  double mean_share_, filled_ = 0;
+  std::vector<Task> tasks_;
+};
+
 class TriangleDivider {
  public:
-  TriangleDivider(const SampleGrid& grid, float radius, Monitor* monitor, std::vector<Share>& out)
-      : grid_(grid), radius_(radius), monitor_(monitor), out_(out) {}
+  TriangleDivider(const TriangleList& triangles, const SampleGrid& grid, float radius, Monitor* monitor,
+                  std::vector<Share>& out)
+      : triangles_(triangles), grid_(grid), radius_(radius), monitor_(monitor), out_(out) {}
 
-  void divide(const TriangleList::Corners& t) {
-    normal_ = t.geometric_normal();
+  // Of the whole triangle, or of a part.
+  void divide(std::size_t triangle, const std::optional<TrianglePiece>& part) {
+    normal_ = triangles_.geometric_normal(triangle);
+    const TrianglePiece piece = whole(triangles_, triangle);
     // A needle's samples are few and far apart: it is not cut into millions of pieces for them.
-    piece_extent_ = std::max(3 * radius_, ball(t.a, t.b, t.c).extent / 64);
-    divide_large(t.a, t.b, t.c);
+    piece_extent_ = std::max(3 * radius_, piece.extent / 64);
+    divide_large(part ? *part : piece);
   }
 
  private:
-  // The centre of a piece and the radius of the ball around it, rounded up so that floats lose no owner.
-  struct Ball {
-    Vec3f center;
-    float extent;
-  };
-  static Ball ball(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-    const Vec3d center = (a + b + c) / 3.0;
-    const double extent2 = std::max(dot(a - center, a - center),
-                                    std::max(dot(b - center, b - center), dot(c - center, c - center)));
-    return {Vec3f(center), float(std::sqrt(extent2) * 1.0001)};
-  }
-
-  // Halves along the longest side; `next` takes each half.
-  template <class Next>
-  static void halve(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Next& next) {
-    const double ab = dot(b - a, b - a), bc = dot(c - b, c - b), ca = dot(a - c, a - c);
-    if (ab < bc || ab < ca) return bc >= ca ? halve_first(b, c, a, next) : halve_first(c, a, b, next);
-    halve_first(a, b, c, next);
-  }
-  template <class Next>
-  static void halve_first(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Next& next) {
-    const Vec3d middle = 0.5 * (a + b);
-    next(a, middle, c);
-    next(middle, b, c);
-  }
-
   // Down to a few spacings, where the owners are looked up once for all the smaller pieces.
-  void divide_large(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-    const Ball piece = ball(a, b, c);
-    if (piece.extent > piece_extent_)
-      return halve(a, b, c, [this](const auto&... corners) { divide_large(corners...); });
+  void divide_large(const TrianglePiece& piece) {
+    if (piece.extent > piece_extent_) {
+      for (const TrianglePiece& half : piece.halves()) divide_large(half);
+      return;
+    }
     advance(monitor_, 0);  // one large triangle can be a minute's work
-    owners_.clear();
     find_owners(piece);
-    divide_small(a, b, c, piece, 0);
+    divide_small(piece, 0);
   }
 
   // The owners of this piece stand at the end of owners_, from `first` on.
-  void divide_small(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Ball& piece, std::size_t first) {
+  void divide_small(const TrianglePiece& piece, std::size_t first) {
     const std::size_t count = owners_.size() - first;
     if (count == 1) {
-      add(owners_[first].sample, 0.5 * length(cross(b - a, c - a)), (a + b + c) / 3.0);
+      add(owners_[first].sample, piece.area(), (piece.a + piece.b + piece.c) / 3.0);
     } else if (count <= kClippedOwners || piece.extent < 0.25f * radius_) {
-      clip_cells(a, b, c, first);
+      clip_cells(piece, first);
     } else {
-      halve(a, b, c, [&](const Vec3d& p, const Vec3d& q, const Vec3d& r) {
-        const std::size_t end = owners_.size();
-        const Ball half = ball(p, q, r);
-        narrow_owners(half, first, end);
-        divide_small(p, q, r, half, end);
+      const std::size_t end = owners_.size();
+      for (const TrianglePiece& half : piece.halves()) {
+        for (std::size_t i = first; i < end; ++i) {
+          const std::uint32_t s = owners_[i].sample;
+          owners_.push_back(half.owner(s, grid_.position(s)));
+        }
+        remove_dominated(end);
+        divide_small(half, end);
         owners_.resize(end);
-      });
+      }
     }
   }
 
-  // All samples that can be nearest to some point of the ball: those within d0 + 2 extent of its centre, d0
-  // the distance of the nearest one.
-  void find_owners(const Ball& piece) {
-    for (float reach = 1.2f * radius_ + 2 * piece.extent;; reach *= 2) {
-      owners_.clear();
-      // A sheet without any sample near falls to the other sheets'.
-      const bool any_sheet = reach > 64 * (radius_ + piece.extent);
-      grid_.for_cells_near(piece.center, reach, [&](const SampleGrid::Cell& cell) {
-        for (std::uint32_t s = cell.first; s < cell.first + cell.count; ++s)
-          if (any_sheet || same_sheet(grid_.geometric_normal(s), normal_))
-            owners_.push_back({distance2(grid_.position(s), piece.center), s});
-        return false;
-      });
-      const float needed = reach_of_owners(piece, 0, owners_.size());
-      if (owners_.empty() || needed > reach) continue;
-      std::erase_if(owners_, [&](const Owner& o) { return o.distance2 > needed * needed; });
-      return;
+  // All samples that can be nearest to some point of the piece, and few more: those that no other dominates.
+  void find_owners(const TrianglePiece& piece) {
+    const Owner near = some_near(piece);
+    // Whoever owns a part is nearer than that one to at least one of the corners.
+    Vec3f low = piece.corners[0], high = low;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3f reach(std::sqrt(near.squared[k]) * 1.0001f);
+      low = component_min(low, piece.corners[k] - reach);
+      high = component_max(high, piece.corners[k] + reach);
     }
+    owners_.clear();
+    grid_.for_cells_between(low, high, [&](const SampleGrid::Coordinates&, const SampleGrid::Cell& cell) {
+      for (std::uint32_t s = cell.first; s < cell.first + cell.count; ++s) {
+        const Owner o = piece.owner(s, grid_.position(s));
+        if (!dominates(near, o) && (any_sheet_ || is_on_sheet(s))) owners_.push_back(o);
+      }
+      return false;
+    });
+    remove_dominated(0);
   }
 
-  // Appends those of owners_[first, last) that can own part of the smaller ball.
-  void narrow_owners(const Ball& piece, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const std::uint32_t s = owners_[i].sample;
-      owners_.push_back({distance2(grid_.position(s), piece.center), s});
+  // A sample of the triangle's sheet: from the cell of the piece's centre, or else the nearest within a reach
+  // that grows. A sheet without any sample near falls to the other sheets'.
+  Owner some_near(const TrianglePiece& piece) {
+    any_sheet_ = false;
+    Owner near;
+    const auto take_nearer = [&](const SampleGrid::Cell& cell) {
+      for (std::uint32_t s = cell.first; s < cell.first + cell.count; ++s) {
+        const Owner o = piece.owner(s, grid_.position(s));
+        if (o.sum() < near.sum() && (any_sheet_ || is_on_sheet(s))) near = o;
+      }
+      return false;
+    };
+    if (const SampleGrid::Cell* own = grid_.find_cell(piece.center)) take_nearer(*own);
+    for (float reach = radius_; near.is_none(); reach *= 2) {
+      any_sheet_ = reach > 64 * (radius_ + piece.extent);
+      grid_.for_cells_near(piece.center, reach, take_nearer);
     }
-    const float needed = reach_of_owners(piece, last, owners_.size());
-    const auto far = [&](const Owner& o) { return o.distance2 > needed * needed; };
-    owners_.erase(std::remove_if(owners_.begin() + std::ptrdiff_t(last), owners_.end(), far), owners_.end());
+    return near;
   }
 
-  float reach_of_owners(const Ball& piece, std::size_t first, std::size_t last) const {
-    float nearest2 = std::numeric_limits<float>::infinity();
-    for (std::size_t i = first; i < last; ++i) nearest2 = std::min(nearest2, owners_[i].distance2);
-    return std::sqrt(nearest2) * 1.0001f + 2 * piece.extent;
+  bool is_on_sheet(std::uint32_t sample) const {
+    return same_sheet(triangles_.geometric_normal(grid_.place(sample).triangle), normal_);
+  }
+
+  // Nearer to all corners, and with that to all that lies between them.
+  static bool dominates(const Owner& a, const Owner& b) {
+    return a.squared[0] < b.squared[0] && a.squared[1] < b.squared[1] && a.squared[2] < b.squared[2];
+  }
+
+  // Removes those of owners_, from `first` on, that another one dominates; it is sought among the nearest to
+  // each corner and to the centre.
+  void remove_dominated(std::size_t first) {
+    std::array<Owner, 4> best;
+    best.fill(owners_[first]);
+    for (std::size_t i = first + 1; i < owners_.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k)
+        if (owners_[i].squared[k] < best[k].squared[k]) best[k] = owners_[i];
+      if (owners_[i].sum() < best[3].sum()) best[3] = owners_[i];
+    }
+    const auto is_dominated = [&best](const Owner& o) {
+      return std::ranges::any_of(best, [&o](const Owner& b) { return dominates(b, o); });
+    };
+    owners_.erase(std::remove_if(owners_.begin() + std::ptrdiff_t(first), owners_.end(), is_dominated),
+                  owners_.end());
   }
 
   void add(std::uint32_t sample, double area, const Vec3d& centroid) {
     out_.push_back({sample, area, (centroid - Vec3d(grid_.position(sample))) * area});
   }
 
-  static float distance2(const Vec3f& a, const Vec3f& b) { return dot(a - b, a - b); }
-
-  void clip_cells(const Vec3d& a, const Vec3d& b, const Vec3d& c, std::size_t first) {
+  void clip_cells(const TrianglePiece& piece, std::size_t first) {
+    // The nearest first: they cut most.
     std::sort(owners_.begin() + std::ptrdiff_t(first), owners_.end(), [](const Owner& x, const Owner& y) {
-      return x.distance2 != y.distance2 ? x.distance2 < y.distance2 : x.sample < y.sample;
+      return x.sum() != y.sum() ? x.sum() < y.sum() : x.sample < y.sample;
     });
-    const std::size_t last = std::min(owners_.size(), first + Polygon::kMaxCorners - 4);
-    const Vec3d x_axis = normalized(b - a), n = normalized(cross(b - a, c - a)), y_axis = cross(n, x_axis);
+    const std::size_t last = std::min(owners_.size(), first + ConvexPolygon::kMaxCorners - 4);
+    const Vec3d &a = piece.a, ab = piece.b - a, ac = piece.c - a;
+    const Vec3d x_axis = normalized(ab), n = normalized(cross(ab, ac)), y_axis = cross(n, x_axis);
     const auto flat = [&](const Vec3d& p) { return Point2{dot(p - a, x_axis), dot(p - a, y_axis)}; };
     sites_.clear();
     for (std::size_t i = first; i < last; ++i) {
       const Vec3d p(grid_.position(owners_[i].sample));
       sites_.push_back({owners_[i].sample, flat(p), dot(p - a, p - a)});
     }
-    const Point2 fa = flat(a), fb = flat(b), fc = flat(c);
+    const Point2 fa = flat(a), fb = flat(piece.b), fc = flat(piece.c);
     for (const Site& site : sites_) {
       polygon_.assign(fa, fb, fc);
       for (const Site& other : sites_) {
@@ -229,21 +224,23 @@ class TriangleDivider {
         if (polygon_.empty()) break;
       }
       if (polygon_.empty()) continue;
-      const Polygon::Moments part = polygon_.moments();
+      const ConvexPolygon::Moments part = polygon_.moments();
       if (part.area > 0) add(site.sample, part.area, a + (x_axis * part.x + y_axis * part.y) / part.area);
     }
   }
 
-  static constexpr std::size_t kClippedOwners = 28;
+  static constexpr std::size_t kClippedOwners = 16;
 
+  const TriangleList& triangles_;
   const SampleGrid& grid_;
   float radius_, piece_extent_ = 0;
   Monitor* monitor_;
   std::vector<Share>& out_;
   Vec3f normal_;
+  bool any_sheet_ = false;
   std::vector<Owner> owners_;
   std::vector<Site> sites_;
-  Polygon polygon_;
+  ConvexPolygon polygon_;
 };
 
 }  // namespace
@@ -251,19 +248,22 @@ class TriangleDivider {
 std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
                                          Monitor* monitor) {
   std::vector<SurfaceShare> shares(grid.size());
-  // Blocks bound the memory of the pieces; within one, chunks are summed in order, whatever the threads.
-  constexpr std::size_t kBlock = 1 << 16, kChunk = 256;
-  std::vector<std::vector<Share>> chunks(chunk_count(kBlock, kChunk));
-  for (std::size_t begin = 0; begin < triangles.size(); begin += kBlock) {
-    const std::size_t n = std::min(kBlock, triangles.size() - begin);
-    parallel_chunks(n, kChunk, [&](std::size_t first, std::size_t last, std::size_t chunk) {
-      chunks[chunk].clear();
-      TriangleDivider divider(grid, radius, monitor, chunks[chunk]);
-      for (std::size_t i = first; i < last; ++i) divider.divide(triangles.corners(triangles.id(begin + i)));
-      advance(monitor, last - first);
+  const Tasks tasks(triangles, triangles.area() / double(grid.size()));
+  // Blocks bound the memory of the pieces; within one, tasks are summed in order, whatever the threads.
+  constexpr std::size_t kBlock = 256;
+  std::vector<std::vector<Share>> pieces(std::min(kBlock, tasks.all().size()));
+  for (std::size_t begin = 0; begin < tasks.all().size(); begin += kBlock) {
+    const std::span<const Task> block =
+        std::span(tasks.all()).subspan(begin, std::min(kBlock, tasks.all().size() - begin));
+    parallel_chunks(block.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      const Task& task = block[i];
+      pieces[i].clear();
+      TriangleDivider divider(triangles, grid, radius, monitor, pieces[i]);
+      for (std::size_t t = task.first; t < task.last; ++t) divider.divide(t, task.part);
+      advance(monitor, task.part ? 0 : task.last - task.first);
     });
-    for (std::size_t c = 0; c < chunk_count(n, kChunk); ++c)
-      for (const Share& share : chunks[c]) {
+    for (std::size_t i = 0; i < block.size(); ++i)
+      for (const Share& share : pieces[i]) {
         shares[share.sample].area += share.area;
         shares[share.sample].moment += share.moment;
       }

@@ -14,42 +14,33 @@ struct TriangleId {
   std::uint32_t mesh, triangle;
 };
 
+/// Along the Morton curve of their centres: neighbours in the list are neighbours in space, whatever the
+/// order of the file, and what was just read serves again.
 class TriangleList {
  public:
-  TriangleList(const World& world, std::span<const std::uint32_t> meshes) : world_(world) {
-    double sum = 0;
-    for (const std::uint32_t m : meshes) {
-      first_.push_back(cumulative_.size());
-      meshes_.push_back(m);
-      const Mesh& mesh = world.meshes[m];
-      for (const auto& corner : mesh.triangles) {
-        const Vec3d a = mesh.positions[corner[0]];
-        sum += 0.5 * length(cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a));
-        cumulative_.push_back(sum);
-      }
-    }
-  }
+  TriangleList(const World& world, std::span<const std::uint32_t> meshes);
 
   std::size_t size() const { return cumulative_.size(); }
   double area() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
+  double area(std::size_t index) const {
+    return cumulative_[index] - (index > 0 ? cumulative_[index - 1] : 0);
+  }
   /// Area of the triangles up to and including this one.
   double cumulative(std::size_t index) const { return cumulative_[index]; }
+  const Vec3f& geometric_normal(std::size_t index) const { return normals_[index]; }
   /// The triangle in which the cumulative area passes the given one.
   std::size_t find(double area) const {
     const auto it = std::upper_bound(cumulative_.begin(), cumulative_.end(), area);
     return std::min<std::size_t>(std::size_t(it - cumulative_.begin()), size() - 1);
   }
 
-  TriangleId id(std::size_t index) const {
-    const auto it = std::upper_bound(first_.begin(), first_.end(), index) - 1;
-    return {meshes_[std::size_t(it - first_.begin())], std::uint32_t(index - *it)};
-  }
+  TriangleId id(std::size_t index) const { return ids_[index]; }
   const Mesh& mesh(TriangleId id) const { return world_.meshes[id.mesh]; }
 
   struct Corners {
     Vec3d a, b, c;
-    Vec3f geometric_normal() const { return Vec3f(normalized(cross(b - a, c - a))); }
     Vec3f at(float u, float v) const { return Vec3f(a + (b - a) * double(u) + (c - a) * double(v)); }
+    Vec3d centre() const { return (a + b + c) / 3.0; }
   };
   Corners corners(TriangleId id) const {
     const Mesh& m = mesh(id);
@@ -59,9 +50,9 @@ class TriangleList {
 
  private:
   const World& world_;
-  std::vector<std::size_t> first_;
-  std::vector<std::uint32_t> meshes_;
+  std::vector<TriangleId> ids_;
   std::vector<double> cumulative_;
+  std::vector<Vec3f> normals_;
 };
 
 }  // namespace opaline

@@ -22,6 +22,7 @@ double total_diffuse_reflectance(const ChannelProfile& profile);
 struct DiffuseProfile {
   std::array<ChannelProfile, 3> channels;
   Rgb mean_free_path{};              ///< 1/sigma_t', mm; 0 where the medium neither scatters nor absorbs
+  Rgb diffuse_mean_free_path{};      ///< 1/sigma_tr, mm: over which light decays far inside; infinite without absorption
   Rgb total{};                       ///< total diffuse reflectance per entered flux
   double eta = 1;
   double average_reflectance = 0;    ///< F_bar, from outside

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "opaline/core/vec3.h"
@@ -52,7 +51,8 @@ struct Octree {
 /// Leaves hold at most this many samples, unless more coincide to 2^-21 of the box.
 inline constexpr std::uint32_t kLeafSamples = 8;
 
-/// Builds the tree. The result depends on the samples, not on their order; equal points end in one leaf.
-Octree build_octree(std::span<const FluxSample> samples);
+/// Builds the tree and lets go of the samples. The result depends on them, not on their order or the threads;
+/// equal points end in one leaf.
+Octree build_octree(std::vector<FluxSample> samples);
 
 }  // namespace opaline

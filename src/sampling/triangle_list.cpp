@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sampling/triangle_list.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <numeric>
+#include <tuple>
+
+#include "opaline/core/morton.h"
+#include "opaline/core/parallel.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::size_t kChunk = 4096;
+
+Bounds bounds_of(const World& world, std::span<const std::uint32_t> meshes) {
+  Bounds box = bounds(world.meshes[meshes[0]]);
+  for (const std::uint32_t m : meshes.subspan(1)) {
+    const Bounds other = bounds(world.meshes[m]);
+    box.low = component_min(box.low, other.low);
+    box.high = component_max(box.high, other.high);
+  }
+  return box;
+}
+
+}  // namespace
+
+TriangleList::TriangleList(const World& world, std::span<const std::uint32_t> meshes) : world_(world) {
+  for (const std::uint32_t m : meshes)
+    for (std::uint32_t t = 0; t < world.meshes[m].triangles.size(); ++t) ids_.push_back({m, t});
+  if (ids_.empty()) return;
+  const Bounds box = bounds_of(world, meshes);
+  const Vec3d size = box.high - box.low;
+  const double largest = std::max({size.x, size.y, size.z}),
+               scale = largest > 0 ? double((1 << 20) - 1) / largest : 0;
+  struct Keyed {
+    std::uint64_t key;
+    TriangleId id;
+  };
+  std::vector<Keyed> keyed(ids_.size());
+  parallel_chunks(keyed.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3d p = (corners(ids_[i]).centre() - box.low) * scale;
+      keyed[i] = {morton_key(std::uint64_t(p.x), std::uint64_t(p.y), std::uint64_t(p.z)), ids_[i]};
+    }
+  });
+  tbb::parallel_sort(keyed, [](const Keyed& a, const Keyed& b) {
+    return std::tie(a.key, a.id.mesh, a.id.triangle) < std::tie(b.key, b.id.mesh, b.id.triangle);
+  });
+  normals_.resize(ids_.size());
+  cumulative_.resize(ids_.size());
+  parallel_chunks(keyed.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      ids_[i] = keyed[i].id;
+      const Corners t = corners(ids_[i]);
+      const Vec3d normal = cross(t.b - t.a, t.c - t.a);
+      cumulative_[i] = 0.5 * length(normal);
+      normals_[i] = Vec3f(normalized(normal));
+    }
+  });
+  std::partial_sum(cumulative_.begin(), cumulative_.end(), cumulative_.begin());
+}
+
+}  // namespace opaline
