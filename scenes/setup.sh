@@ -11,7 +11,7 @@ root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 # Both lists are for the scripts that source this file.
 # shellcheck disable=SC2034
 build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev libopenimageio-dev
-  openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev)
+  openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhdf5-dev libxxhash-dev)
 # shellcheck disable=SC2034
 test_packages=(libgtest-dev)
 

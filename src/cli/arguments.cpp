@@ -32,6 +32,8 @@ constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o bunny.exr --log json --threads 4
   opaline compare bunny.exr reference.exr --fail-above 1%
   opaline bench bunny.json --csv bunny.csv --resolution 256x256
+  opaline render bunny.json -o turned.exr --cache stages --set camera.position=[0,50,200]
+  opaline cache ls stages
 
 Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the run failed (I/O, memory), 130 interrupted (Ctrl-C; old files stay).)";
 
@@ -86,6 +88,13 @@ Examples:
   opaline bench bunny.json --csv bunny.csv --halves seed1.exr seed2.exr --rung near_field=false
 
 Exit codes: 0 done, 2 bad input, 3 a rung failed (its row says why) or the run did, 130 interrupted.)";
+
+constexpr const char* kCacheNotes =
+    R"(An entry holds the result of one stage for one input: the samples of a group, the light that enters
+them from one light, or their tree. Its name ends in the key of that input. Entries are HDF5 files behind a
+header with a hash of the rest; one that does not match it is never read, but computed again.
+
+Exit codes: 0 done, 1 an entry cannot be used, 2 bad input, 3 the folder cannot be read or written.)";
 
 /// What the options of render and info write to, before it becomes overrides.
 struct Options {
@@ -181,6 +190,12 @@ CLI::Option* add_repeatable(CLI::App& app, const std::string& names, std::vector
   return app.add_option(names, values, help)->allow_extra_args(false);
 }
 
+CLI::Option* add_size(CLI::App& app, const std::string& name, std::uint64_t& bytes, const std::string& help) {
+  return app.add_option(name, bytes, help)
+      ->transform(CLI::AsSizeValue(true).description(""))
+      ->type_name("SIZE");
+}
+
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {
   app.add_option("SCENE", scene, "scene file (JSON with comments)")->required()->type_name("FILE");
   add_repeatable(app, "--set", options.sets,
@@ -247,6 +262,12 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
                                           : fmt::format("expected a name that ends in .exr, got {}", path);
           },
           {}));
+  app.add_option("--cache", render.cache,
+                 "keep samples, irradiance and trees in this folder, and take from it what was computed from "
+                 "the same")
+      ->type_name("FOLDER");
+  add_size(app, "--cache-size", render.cache_bytes,
+           "the least recently used beyond it go, e.g. 20GB (default 8GB)");
   app.add_option("--threads", render.threads, "at most this many; default: one for each core")
       ->transform(whole_number(kThreads))
       ->type_name("N");
@@ -339,6 +360,22 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
   app.footer(kBenchNotes);
 }
 
+void add_cache_commands(CLI::App& app, CacheArguments& cache, Options& options) {
+  const auto add = [&](const char* name, CacheAction action, const char* help) {
+    CLI::App& command = *app.add_subcommand(name, help);
+    command.add_option("FOLDER", cache.folder, "what --cache named")->required()->type_name("FOLDER");
+    command.add_flag("--json", options.json, "the result as one JSON object on stdout");
+    command.parse_complete_callback([&cache, action] { cache.action = action; });
+    return &command;
+  };
+  add("ls", CacheAction::list, "print the entries, the least recently used first");
+  add("verify", CacheAction::verify, "read every entry whole; exit 1 if one is damaged");
+  CLI::App& prune = *add("prune", CacheAction::prune, "remove the least recently used entries");
+  add_size(prune, "--size", cache.most_bytes, "what may stay, e.g. 500MB (default 8GB)");
+  app.require_subcommand(1);
+  app.footer(kCacheNotes);
+}
+
 std::vector<std::string> overrides_of(const Options& options) {
   std::vector<std::string> overrides;
   const auto add = [&](const char* key, const std::string& value) {
@@ -424,7 +461,7 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
   const std::vector<std::string> extras = app.remaining();
   if (!app.get_subcommands().empty() || extras.empty() || extras.front().starts_with('-'))
     return usage_error(failure.what() + hint(app));
-  constexpr std::array<std::string_view, 4> commands{"render", "info", "compare", "bench"};
+  constexpr std::array<std::string_view, 5> commands{"render", "info", "compare", "bench", "cache"};
   const std::string near = did_you_mean(extras.front(), commands);
   return usage_error("unknown command '" + printable(extras.front()) + "'" + near,
                      near.empty() ? "one of " + join(commands) : "");
@@ -446,6 +483,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   InfoArguments info;
   CompareArguments compare;
   BenchArguments bench;
+  CacheArguments cache;
   Options options;
   CLI::App app("opaline renders translucent things fast, and says how accurate the picture is.", "opaline");
   app.get_formatter()->column_width(34);
@@ -459,11 +497,13 @@ Command parse_arguments(int argc, const char* const* argv) {
   CLI::App& compare_command = *app.add_subcommand("compare", "print how far a picture is from a reference");
   CLI::App& bench_command =
       *app.add_subcommand("bench", "measure what scenes cost and how far off they are, at many settings");
+  CLI::App& cache_command = *app.add_subcommand("cache", "look after a folder of stage results (--cache)");
   add_render_options(render_command, render, options);
   add_common_options(info_command, info.scene, options);
   add_picture_options(info_command, options);
   add_compare_options(compare_command, compare, options);
   add_bench_options(bench_command, bench, options);
+  add_cache_commands(cache_command, cache, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& failure) {
@@ -471,8 +511,12 @@ Command parse_arguments(int argc, const char* const* argv) {
     throw parse_error(app, failure);
   }
   if (app.get_subcommands().empty())
-    throw usage_error("no command given: render, info, compare or bench" + hint(app));
+    throw usage_error("no command given: render, info, compare, bench or cache" + hint(app));
   if (compare_command.parsed()) return checked(std::move(compare), options);
+  if (cache_command.parsed()) {
+    cache.log.format = options.json ? LogFormat::json : LogFormat::text;
+    return cache;
+  }
   if (bench_command.parsed()) {
     for (int i = 1; i < argc; ++i) bench.command_line += ' ' + shell_quoted(argv[i]);
     return checked(std::move(bench), options);

@@ -25,4 +25,8 @@ int compare_command(const CompareArguments& arguments);
 ///       made, the CSV or stdout not be written; Error{interrupted}: the old CSV stays
 int bench_command(const BenchArguments& arguments);
 
+/// Lists, checks or shrinks a folder of stage results; the exit code: 0, or 1 where an entry cannot be used.
+/// error Error{run_failed}: the folder cannot be read or written, or stdout not
+int cache_command(const CacheArguments& arguments);
+
 }  // namespace opaline

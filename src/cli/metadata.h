@@ -2,6 +2,7 @@
 // What an EXR says about how it was made: enough to make it again, nothing that moves from run to run.
 #pragma once
 
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,7 +27,7 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
 /// empty; opaline:seed; opaline:settings, JSON of the values in use; opaline:command, a command line that makes
 /// the same picture: outputs, threads and log are not in it.
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
-                       const Precompute& precompute);
+                       std::span<const TranslucentGroup> groups);
 
 /// What the sums of a direct rendering belong to: the scene and all overrides but those that say when to stop.
 /// error Error{bad_input}: the scene came through a pipe

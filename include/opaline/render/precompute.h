@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a plan to trees of entered flux, one a group: all of a translucent picture that does not depend on the camera.
+// From a plan to trees of entered flux, one a group: all of a translucent picture that does not depend on the
+// camera.
 #pragma once
 
 #include <span>
@@ -42,16 +43,34 @@ struct Precompute {
 
 Precompute precompute(const PrecomputeInput& input);
 
-/// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free path is
-/// below the sample spacing, `render` traces shadow rays for the irradiance at its points; this interpolates it.
-/// in    points: world space, mm; normals: unit, outward, one a point
-/// out   M_o in W/mm^2 per point, in their order
+// Its stages, for callers that keep some of their results; `group` is an index into the plan's groups, which
+// chooses random numbers.
+
+std::uint64_t sampling_seed(const Settings& settings, std::size_t group);
+SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group);
+
+std::uint64_t irradiance_seed(const Settings& settings, std::size_t group);
+/// in    lights: recentred, any of the scene's
+std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
+                                         std::span<const SurfaceSample> samples,
+                                         std::span<const Light> lights);
+std::vector<Light> recentred_lights(const Scene& scene, const World& world);
+
+/// irradiance: one a sample.
+Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);
+SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,
+                         const Settings& settings);
+
+/// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free
+/// path is below the sample spacing, `render` traces shadow rays for the irradiance at its points; this
+/// interpolates it. in    points: world space, mm; normals: unit, outward, one a point out   M_o in W/mm^2
+/// per point, in their order
 std::vector<RgbF> radiant_exitance(const TranslucentGroup& group, const World& world,
                                    std::span<const Vec3d> points, std::span<const Vec3f> normals,
                                    const Settings& settings);
 
 /// Writes all samples as a binary PLY: x y z, nx ny nz, area, irradiance r g b, shape; world space, mm.
 /// error Error{run_failed} naming the file
-void write_samples_ply(const std::string& path, const Precompute& precompute, const World& world);
+void write_samples_ply(const std::string& path, std::span<const TranslucentGroup> groups, const World& world);
 
 }  // namespace opaline
