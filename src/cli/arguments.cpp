@@ -15,6 +15,7 @@
 #include <set>
 #include <sstream>
 
+#include "cli/frames.h"
 #include "cli/metadata.h"
 #include "opaline/core/error.h"
 #include "scene/json_tree.h"
@@ -33,6 +34,7 @@ constexpr const char* kExamples = R"(Examples:
   opaline compare bunny.exr reference.exr --fail-above 1%
   opaline bench bunny.json --csv bunny.csv --resolution 256x256
   opaline render bunny.json -o turned.exr --cache stages --set camera.position=[0,50,200]
+  opaline render bunny.json -o out.####.exr --frames 1-24 --cache stages
   opaline cache ls stages
 
 Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the run failed (I/O, memory), 130 interrupted (Ctrl-C; old files stay).)";
@@ -110,6 +112,7 @@ struct Options {
   bool json = false;
   std::string reference_error;
   std::vector<std::string> rungs;
+  std::string frames;
 };
 
 struct WholeRange {
@@ -196,6 +199,20 @@ CLI::Option* add_size(CLI::App& app, const std::string& name, std::uint64_t& byt
       ->type_name("SIZE");
 }
 
+void add_frames_option(CLI::App& app, Options& options) {
+  app.add_option(
+         "--frames", options.frames,
+         "frames of a range, e.g. 1-24, 1-24x2 or 1,5,7-9; ## in the names of outputs and meshes is their "
+         "number; frames that are there already are left alone")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            return parse_frames(text) ? std::string()
+                                      : "expected frames such as 1-24 or 1,5,7-9, got " + text;
+          },
+          {}))
+      ->type_name("FRAMES");
+}
+
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {
   app.add_option("SCENE", scene, "scene file (JSON with comments)")->required()->type_name("FILE");
   add_repeatable(app, "--set", options.sets,
@@ -266,6 +283,7 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
                  "keep samples, irradiance and trees in this folder, and take from it what was computed from "
                  "the same")
       ->type_name("FOLDER");
+  add_frames_option(app, options);
   add_size(app, "--cache-size", render.cache_bytes,
            "the least recently used beyond it go, e.g. 20GB (default 8GB)");
   app.add_option("--threads", render.threads, "at most this many; default: one for each core")
@@ -360,6 +378,17 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
   app.footer(kBenchNotes);
 }
 
+void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options) {
+  add_common_options(app, precompute.scene, options);
+  app.add_option("--cache", precompute.cache, "the folder to fill")->required()->type_name("FOLDER");
+  add_size(app, "--cache-size", precompute.cache_bytes, "the least recently used beyond it go (default 8GB)");
+  add_frames_option(app, options);
+  app.add_option("--threads", precompute.threads, "at most this many; default: one for each core")
+      ->transform(whole_number(kThreads))
+      ->type_name("N");
+  app.add_flag("--quiet", precompute.log.quiet, "print warnings and errors only");
+}
+
 void add_cache_commands(CLI::App& app, CacheArguments& cache, Options& options) {
   const auto add = [&](const char* name, CacheAction action, const char* help) {
     CLI::App& command = *app.add_subcommand(name, help);
@@ -412,6 +441,13 @@ void check_outputs(const RenderArguments& render) {
   }
   if (seen.contains(render.samples_ply))
     throw usage_error("two outputs have the same name '" + render.samples_ply + "'");
+  std::vector<std::string> files = render.outputs;
+  for (const std::string& more : {render.samples_ply, render.resume})
+    if (!more.empty()) files.push_back(more);
+  for (const std::string& path : files)
+    if (!render.frames.empty() && path.find("##") == std::string::npos)
+      throw usage_error("all frames would be written to '" + path + "'",
+                        "## for their number, as in out.####.exr");
 }
 
 CompareArguments checked(CompareArguments compare, const Options& options) {
@@ -461,7 +497,8 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
   const std::vector<std::string> extras = app.remaining();
   if (!app.get_subcommands().empty() || extras.empty() || extras.front().starts_with('-'))
     return usage_error(failure.what() + hint(app));
-  constexpr std::array<std::string_view, 5> commands{"render", "info", "compare", "bench", "cache"};
+  constexpr std::array<std::string_view, 6> commands{"render", "info",  "compare",
+                                                     "bench",  "cache", "precompute"};
   const std::string near = did_you_mean(extras.front(), commands);
   return usage_error("unknown command '" + printable(extras.front()) + "'" + near,
                      near.empty() ? "one of " + join(commands) : "");
@@ -482,6 +519,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   RenderArguments render;
   InfoArguments info;
   CompareArguments compare;
+  PrecomputeArguments precompute;
   BenchArguments bench;
   CacheArguments cache;
   Options options;
@@ -492,6 +530,8 @@ Command parse_arguments(int argc, const char* const* argv) {
   app.require_subcommand(0, 1);  // none at all is answered below: CLI11 would hide a misspelt one behind it
   app.footer(kExamples);
   CLI::App& render_command = *app.add_subcommand("render", "render a scene to EXR and PNG files");
+  CLI::App& precompute_command =
+      *app.add_subcommand("precompute", "fill a cache with what rendering will ask for");
   CLI::App& info_command =
       *app.add_subcommand("info", "print what a scene requires and why; nothing is rendered");
   CLI::App& compare_command = *app.add_subcommand("compare", "print how far a picture is from a reference");
@@ -499,6 +539,7 @@ Command parse_arguments(int argc, const char* const* argv) {
       *app.add_subcommand("bench", "measure what scenes cost and how far off they are, at many settings");
   CLI::App& cache_command = *app.add_subcommand("cache", "look after a folder of stage results (--cache)");
   add_render_options(render_command, render, options);
+  add_precompute_options(precompute_command, precompute, options);
   add_common_options(info_command, info.scene, options);
   add_picture_options(info_command, options);
   add_compare_options(compare_command, compare, options);
@@ -511,7 +552,7 @@ Command parse_arguments(int argc, const char* const* argv) {
     throw parse_error(app, failure);
   }
   if (app.get_subcommands().empty())
-    throw usage_error("no command given: render, info, compare, bench or cache" + hint(app));
+    throw usage_error("no command given: render, info, compare, bench, cache or precompute" + hint(app));
   if (compare_command.parsed()) return checked(std::move(compare), options);
   if (cache_command.parsed()) {
     cache.log.format = options.json ? LogFormat::json : LogFormat::text;
@@ -523,7 +564,10 @@ Command parse_arguments(int argc, const char* const* argv) {
   }
   const LogFormat format = options.log == "json" ? LogFormat::json : LogFormat::text;
   info.log.format = render.log.format = format;
-  info.overrides = render.overrides = overrides_of(options);
+  precompute.log.format = format;
+  info.overrides = render.overrides = precompute.overrides = overrides_of(options);
+  if (!options.frames.empty()) render.frames = precompute.frames = *parse_frames(options.frames);
+  if (precompute_command.parsed()) return precompute;
   if (info_command.parsed()) return info;
   check_outputs(render);
   return render;

@@ -22,8 +22,20 @@ struct RenderArguments {
   std::string resume;                ///< file of a direct rendering's sums to go on from; empty: none
   std::string cache;                 ///< folder of stage results; empty: none
   std::uint64_t cache_bytes = StageCache::kDefaultBytes;
-  int threads = 0;  ///< 0: one for each core
+  std::vector<int> frames;  ///< empty: one picture; else outputs have a place for the frame's number
+  int threads = 0;          ///< 0: one for each core
   bool timings_in_metadata = false;
+  Log log;
+};
+
+/// The samples, light and trees of frames, into a cache.
+struct PrecomputeArguments {
+  std::string scene;
+  std::vector<std::string> overrides;
+  std::string cache;
+  std::uint64_t cache_bytes = StageCache::kDefaultBytes;
+  std::vector<int> frames;  ///< empty: no range, the scene as it is
+  int threads = 0;
   Log log;
 };
 
@@ -72,7 +84,7 @@ struct ShowText {
 };
 
 using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments,
-                             CacheArguments>;
+                             CacheArguments, PrecomputeArguments>;
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case

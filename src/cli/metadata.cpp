@@ -87,14 +87,23 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
 }
 
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
-                       std::span<const TranslucentGroup> translucent) {
+                       std::span<const TranslucentGroup> translucent, std::optional<int> frame) {
   const std::string name = fs::path(arguments.scene).filename().string();
   Metadata metadata{{"opaline:version", OPALINE_VERSION}, {"opaline:scene", name}};
   if (!hash.empty()) metadata.emplace_back("opaline:scene_hash", hash);
   metadata.emplace_back("opaline:seed", std::to_string(scene.settings.seed));
   metadata.emplace_back("opaline:settings", compact(settings_json(scene, translucent)));
   metadata.emplace_back("opaline:command", command_line(name, arguments.overrides));
+  if (frame) metadata.emplace_back("opaline:frame", std::to_string(*frame));
   return metadata;
+}
+
+Metadata frame_metadata(const RenderArguments& arguments, const std::string& hash, int frame) {
+  const std::string name = fs::path(arguments.scene).filename().string();
+  return {{"opaline:version", OPALINE_VERSION},
+          {"opaline:scene_hash", hash},
+          {"opaline:command", command_line(name, arguments.overrides)},
+          {"opaline:frame", std::to_string(frame)}};
 }
 
 std::string direct_scene_key(const RenderArguments& arguments, const Scene& scene) {

@@ -105,4 +105,11 @@ void print_decisions(const Log& log, const std::vector<std::string>& decisions, 
   if (!warning.empty()) print_warning(log, warning);
 }
 
+void print_skipped(const Log& log, const std::vector<std::string>& outputs) {
+  if (log.quiet) return;
+  if (log.format == LogFormat::json) print_event(log, "skipped", {{"outputs", outputs}});
+  for (std::size_t i = 0; i < outputs.size() && log.format == LogFormat::text; ++i)
+    print_row("is there", outputs[i]);
+}
+
 }  // namespace opaline

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/frames.h"
 #include "cli/metadata.h"
 #include "cli/report.h"
 #include "cli/stages.h"
@@ -148,17 +149,20 @@ Summary summarize(const Session& session, const Shading& shading) {
   return summary;
 }
 
-void run_render(const RenderArguments& arguments) {
+/// One picture; `frame`: of a range, whose session is anchored.
+void render_scene(const RenderArguments& arguments, Session& session, const StageCache* cache,
+                  std::optional<int> frame) {
   StageRunner stages(arguments.log);
-  std::optional<StageCache> cache;
-  if (!arguments.cache.empty()) cache.emplace(arguments.cache, arguments.cache_bytes);
-  Session session(cache ? &*cache : nullptr);
+  bool is_there = false;
   const std::string hash = stages.run("loading", [&] {
-    Scene scene = load_scene(arguments.scene, arguments.overrides);
-    std::string bytes_hash = scene_hash(arguments.scene, arguments.overrides, scene);
-    session.edit(std::move(scene));
+    Scene scene = load_scene(arguments.scene, arguments.overrides, frame.value_or(1));
+    std::string bytes_hash = frame ? frame_hash(arguments.scene, arguments.overrides, scene)
+                                   : scene_hash(arguments.scene, arguments.overrides, scene);
+    is_there = frame && is_rendered(arguments, bytes_hash, *frame);
+    if (!is_there) session.edit(std::move(scene));
     return bytes_hash;
   });
+  if (is_there) return print_skipped(arguments.log, arguments.outputs);
   const Scene& scene = session.scene();
   if (!arguments.resume.empty() && scene.settings.method != Method::direct)
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct");
@@ -167,13 +171,14 @@ void run_render(const RenderArguments& arguments) {
 
   stages.run_unmeasured("rays", [&] { session.prepare(&stages.monitor()); });
   for (const StageCost& cost : session.costs()) stages.note(cost);
-  if (cache) print_decisions(arguments.log, session.decisions(), cache->warning());
+  if (cache != nullptr || frame)
+    print_decisions(arguments.log, session.decisions(), cache != nullptr ? cache->warning() : "");
   Shading shading = shade(stages, arguments, session);
   if (shading.picture.non_finite > 0)
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
-  image.metadata = make_metadata(arguments, hash, scene, session.groups());
+  image.metadata = make_metadata(arguments, hash, scene, session.groups(), frame);
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
 
   auto outputs = stages.run("writing", [&] { return write_outputs(arguments, session, image); });
@@ -190,8 +195,20 @@ void render_command(const RenderArguments& arguments) {
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
-  check_writable(arguments);
-  run_render(arguments);
+  std::optional<StageCache> cache;
+  if (!arguments.cache.empty()) cache.emplace(arguments.cache, arguments.cache_bytes);
+  Session session(cache ? &*cache : nullptr);
+  const auto render_one = [&](const RenderArguments& own, std::optional<int> frame) {
+    render_scene(own, session, cache ? &*cache : nullptr, frame);
+  };
+  if (arguments.frames.empty()) {
+    check_writable(arguments);
+    return render_one(arguments, {});
+  }
+  for (const int frame : arguments.frames) check_writable(arguments_of_frame(arguments, frame));
+  anchor_session(session, arguments.scene, arguments.overrides);
+  for_frames(arguments.log, arguments.frames,
+             [&](int frame) { render_one(arguments_of_frame(arguments, frame), frame); });
 }
 
 }  // namespace opaline

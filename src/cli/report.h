@@ -19,6 +19,9 @@ void print_plan(const Log& log, const Scene& scene, const Plan& plan);
 /// warning alone.
 void print_decisions(const Log& log, const std::vector<std::string>& decisions, const std::string& warning);
 
+/// A frame's pictures that were there already.
+void print_skipped(const Log& log, const std::vector<std::string>& outputs);
+
 /// Standard error of the irradiance a light brings, over its mean (LightTransfer::relative_error).
 struct LightNoise {
   std::string group, light;

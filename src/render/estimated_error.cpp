@@ -45,8 +45,7 @@ double estimated_relative_error(const Image& image) {
   };
   double worst = 0;
   for (const char* part : {".R", ".G", ".B"}) {
-    const std::size_t diffuse = place(std::string("diffuse") + part),
-                      error = place(std::string("error") + part);
+    const std::size_t diffuse = place(std::string("diffuse") + part), error = place(std::string("error") + part);
     if (diffuse < image.channels.size() && error < image.channels.size())
       worst = std::max(worst, mean_relative(lit_pixels(image, diffuse, error)));
   }

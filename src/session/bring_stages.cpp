@@ -23,26 +23,36 @@ void renumber(std::vector<SurfaceSample>& samples, const std::vector<std::uint32
 
 void Session::bring_samples(Part& part, const PrecomputeInput& input, std::size_t group) {
   const StageKey anew = samples_key(input, mesh_keys_, group);
-  const auto& meshes = part.plan.meshes;
-  if (anew == part.origin.key) {
-    // Where they were placed, perhaps by way of elsewhere.
-    if (part.is_carried()) part.surface = std::move(part.origin.surface);
-    renumber(part.surface.samples, part.origin.meshes, meshes);
-    part.origin.world = world_;
-    part.origin.meshes = part.meshes = meshes;
+  if (anew == part.samples_key) return keep_samples(part);
+  if (anew == part.origin.key) {  // back where they were placed
+    part.surface = std::move(part.origin.surface);
+    part.meshes = part.origin.meshes;
     part.samples_key = anew;
-    return decide(part, fmt::format("{} samples kept", part.surface.samples.size()));
+    return keep_samples(part);
   }
-  if (is_from_this_plan(part.origin, input, group) &&
-      can_carry(*part.origin.world, part.origin.meshes, *world_, meshes))
-    return carry_along(part, input, carried_samples_key(part.origin.key, part.plan, mesh_keys_));
-  place_anew(part, input, group, anew);
+  if (!is_from_this_plan(part.origin, input, group) ||
+      !can_carry(*part.origin.world, part.origin.meshes, *world_, part.plan.meshes))
+    return place_anew(part, input, group, anew);
+  const StageKey carried = carried_samples_key(part.origin.key, part.plan, mesh_keys_);
+  if (carried == part.samples_key) return keep_samples(part);
+  carry_along(part, input, carried);
+}
+
+void Session::keep_samples(Part& part) {
+  renumber(part.surface.samples, part.meshes, part.plan.meshes);
+  part.meshes = part.plan.meshes;
+  if (!part.is_carried()) {
+    part.origin.world = world_;
+    part.origin.meshes = part.meshes;
+  }
+  decide(part, fmt::format("{} samples kept", part.surface.samples.size()));
 }
 
 void Session::place_anew(Part& part, const PrecomputeInput& input, std::size_t group, const StageKey& key) {
   const Settings& settings = input.scene.settings;
+  if (anchored_ && !part.is_carried()) part.origin.surface = std::move(part.surface);
   part.samples_key = {};
-  part.origin = {};
+  if (!anchored_) part.origin = {};
   std::optional<SurfaceSamples> found;
   if (cache_ != nullptr) found = cache_->find_samples(key, part.plan.meshes);
   work_.found += found ? 1 : 0;
@@ -54,26 +64,22 @@ void Session::place_anew(Part& part, const PrecomputeInput& input, std::size_t g
     if (cache_ != nullptr) cache_->keep_samples(key, part.surface, part.plan.meshes);
   }
   part.meshes = part.plan.meshes;
-  part.origin = {world_,
-                 part.meshes,
-                 key,
-                 sampling_seed(settings, group),
-                 part.plan.samples,
-                 part.surface.area,
-                 {},
-                 settings.samples.has_value(),
-                 settings.sample_spacing};
+  if (!anchored_)
+    part.origin = {world_,
+                   part.meshes,
+                   key,
+                   sampling_seed(settings, group),
+                   part.plan.samples,
+                   part.surface.area,
+                   {},
+                   settings.samples.has_value(),
+                   settings.sample_spacing};
   part.samples_key = key;
   decide(part,
          fmt::format("{} samples {}", part.surface.samples.size(), found ? "from the cache" : "placed anew"));
 }
 
 void Session::carry_along(Part& part, const PrecomputeInput& input, const StageKey& key) {
-  if (key == part.samples_key) {
-    renumber(part.surface.samples, part.meshes, part.plan.meshes);
-    part.meshes = part.plan.meshes;
-    return decide(part, fmt::format("{} samples kept", part.surface.samples.size()));
-  }
   if (!part.is_carried()) part.origin.surface = std::move(part.surface);
   part.samples_key = {};
   std::optional<SurfaceSamples> found;

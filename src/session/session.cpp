@@ -57,6 +57,16 @@ void Session::edit(Scene scene) {
   keep_spacing();
 }
 
+void Session::anchor(Scene scene, Monitor* monitor) {
+  scene.settings.method = Method::hierarchical;
+  edit(std::move(scene));
+  parts_ = arranged_parts();
+  bring_rays();
+  for (std::size_t g = 0; g < parts_.size(); ++g)
+    bring_samples(parts_[g], {scene_, *world_, *rays_, plan_, monitor}, g);
+  anchored_ = true;
+}
+
 // Samples that the settings do not ask for by number stay while their spacing does.
 void Session::keep_spacing() {
   constexpr double kDensest = 2, kSparsest = 1.1;  // spacing asked for over the one at hand, and the inverse

@@ -54,6 +54,12 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
+  /// Places the scene's samples and holds on to them: every later scene carries these along, or, where its
+  /// surfaces are others, has its own without forgetting them. So frames of a shot are the same whichever
+  /// process renders which of them.
+  /// error as edit
+  void anchor(Scene scene, Monitor* monitor = nullptr);
+
   /// Takes the scene as it is now: loads meshes that changed and plans. Samples at hand may change the plan.
   /// error as make_world; the session then holds the scene before
   void edit(Scene scene);
@@ -84,6 +90,7 @@ class Session {
   void bring_rays();
   std::vector<Part> arranged_parts();
   void bring_samples(Part& part, const PrecomputeInput& input, std::size_t group);
+  void keep_samples(Part& part);
   void place_anew(Part& part, const PrecomputeInput& input, std::size_t group, const StageKey& key);
   void carry_along(Part& part, const PrecomputeInput& input, const StageKey& key);
   void bring_lights(Part& part, const PrecomputeInput& input, std::size_t group,
@@ -103,7 +110,7 @@ class Session {
   std::vector<MeshKeys> rays_keys_;
   std::vector<Part> parts_;  // a group's, without what groups_ holds
   std::vector<TranslucentGroup> groups_;
-  bool prepared_ = false;
+  bool prepared_ = false, anchored_ = false;
   SessionWork work_;
   std::vector<std::string> decisions_;
   std::vector<StageCost> costs_;
