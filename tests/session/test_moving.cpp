@@ -124,7 +124,7 @@ double sum_of_areas(const SurfaceSamples& surface) {
 // Claim: a mesh that bends keeps its samples on their triangles at their barycentrics, with areas that sum to
 // the new surface, new normals, light and tree; the picture differs from a cold one by what two samplings do,
 // and depends on the bend alone, not on how it came about. Source: the table. Tolerance: areas 1e-6;
-// pictures 2 %. Fails if: shares are not divided anew (the sum), or carried from the last frame's.
+// pictures 2 %. Fails if: shares are not divided anew (the sum).
 TEST(Moving, BentMesh) {
   const BendingBall ball;
   Session session;
