@@ -11,9 +11,9 @@ root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 # Both lists are for the scripts that source this file.
 # shellcheck disable=SC2034
 build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev libopenimageio-dev
-  openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev)
+  openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhdf5-dev libxxhash-dev)
 # shellcheck disable=SC2034
-test_packages=(libgtest-dev)
+test_packages=(libgtest-dev parallel)
 
 bunny_package=glmark2-data
 bunny_path=./usr/share/glmark2/models/bunny.obj

@@ -15,6 +15,7 @@
 #include <set>
 #include <sstream>
 
+#include "cli/frames.h"
 #include "cli/metadata.h"
 #include "opaline/core/error.h"
 #include "scene/json_tree.h"
@@ -32,6 +33,9 @@ constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o bunny.exr --log json --threads 4
   opaline compare bunny.exr reference.exr --fail-above 1%
   opaline bench bunny.json --csv bunny.csv --resolution 256x256
+  opaline render bunny.json -o turned.exr --cache stages --set camera.position=[0,50,200]
+  opaline render bunny.json -o out.####.exr --frames 1-24 --cache stages
+  opaline cache ls stages
 
 Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the run failed (I/O, memory), 130 interrupted (Ctrl-C; old files stay).)";
 
@@ -87,6 +91,13 @@ Examples:
 
 Exit codes: 0 done, 2 bad input, 3 a rung failed (its row says why) or the run did, 130 interrupted.)";
 
+constexpr const char* kCacheNotes =
+    R"(An entry holds the result of one stage for one input: the samples of a group, the light that enters
+them from one light, or their tree. Its name ends in the key of that input. Entries are HDF5 files behind a
+header with a hash of the rest; one that does not match it is never read, but computed again.
+
+Exit codes: 0 done, 1 an entry cannot be used, 2 bad input, 3 the folder cannot be read or written.)";
+
 /// What the options of render and info write to, before it becomes overrides.
 struct Options {
   std::string method, evaluator, resolution, crop;
@@ -101,6 +112,7 @@ struct Options {
   bool json = false;
   std::string reference_error;
   std::vector<std::string> rungs;
+  std::string frames;
 };
 
 struct WholeRange {
@@ -181,6 +193,26 @@ CLI::Option* add_repeatable(CLI::App& app, const std::string& names, std::vector
   return app.add_option(names, values, help)->allow_extra_args(false);
 }
 
+CLI::Option* add_size(CLI::App& app, const std::string& name, std::uint64_t& bytes, const std::string& help) {
+  return app.add_option(name, bytes, help)
+      ->transform(CLI::AsSizeValue(true).description(""))
+      ->type_name("SIZE");
+}
+
+void add_frames_option(CLI::App& app, Options& options) {
+  app.add_option(
+         "--frames", options.frames,
+         "frames of a range, e.g. 1-24, 1-24x2 or 1,5,7-9; ## in the names of outputs and meshes is their "
+         "number; frames that are there already are left alone")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            return parse_frames(text) ? std::string()
+                                      : "expected frames such as 1-24 or 1,5,7-9, got " + text;
+          },
+          {}))
+      ->type_name("FRAMES");
+}
+
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {
   app.add_option("SCENE", scene, "scene file (JSON with comments)")->required()->type_name("FILE");
   add_repeatable(app, "--set", options.sets,
@@ -248,6 +280,13 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
                                           : fmt::format("expected a name that ends in .exr, got {}", path);
           },
           {}));
+  app.add_option("--cache", render.cache,
+                 "keep samples, irradiance and trees in this folder, and take from it what was computed from "
+                 "the same")
+      ->type_name("FOLDER");
+  add_frames_option(app, options);
+  add_size(app, "--cache-size", render.cache_bytes,
+           "the least recently used beyond it go, e.g. 20GB (default 8GB)");
   app.add_option("--threads", render.threads, "at most this many; default: one for each core")
       ->transform(whole_number(kThreads))
       ->type_name("N");
@@ -340,6 +379,33 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
   app.footer(kBenchNotes);
 }
 
+void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options) {
+  add_common_options(app, precompute.scene, options);
+  app.add_option("--cache", precompute.cache, "the folder to fill")->required()->type_name("FOLDER");
+  add_size(app, "--cache-size", precompute.cache_bytes, "the least recently used beyond it go (default 8GB)");
+  add_frames_option(app, options);
+  app.add_option("--threads", precompute.threads, "at most this many; default: one for each core")
+      ->transform(whole_number(kThreads))
+      ->type_name("N");
+  app.add_flag("--quiet", precompute.log.quiet, "print warnings and errors only");
+}
+
+void add_cache_commands(CLI::App& app, CacheArguments& cache, Options& options) {
+  const auto add = [&](const char* name, CacheAction action, const char* help) {
+    CLI::App& command = *app.add_subcommand(name, help);
+    command.add_option("FOLDER", cache.folder, "what --cache named")->required()->type_name("FOLDER");
+    command.add_flag("--json", options.json, "the result as one JSON object on stdout");
+    command.parse_complete_callback([&cache, action] { cache.action = action; });
+    return &command;
+  };
+  add("ls", CacheAction::list, "print the entries, the least recently used first");
+  add("verify", CacheAction::verify, "read every entry whole; exit 1 if one is damaged");
+  CLI::App& prune = *add("prune", CacheAction::prune, "remove the least recently used entries");
+  add_size(prune, "--size", cache.most_bytes, "what may stay, e.g. 500MB (default 8GB)");
+  app.require_subcommand(1);
+  app.footer(kCacheNotes);
+}
+
 std::vector<std::string> overrides_of(const Options& options) {
   std::vector<std::string> overrides;
   const auto add = [&](const char* key, const std::string& value) {
@@ -376,6 +442,13 @@ void check_outputs(const RenderArguments& render) {
   }
   if (seen.contains(render.samples_ply))
     throw usage_error("two outputs have the same name '" + render.samples_ply + "'");
+  std::vector<std::string> files = render.outputs;
+  for (const std::string& more : {render.samples_ply, render.resume})
+    if (!more.empty()) files.push_back(more);
+  for (const std::string& path : files)
+    if (!render.frames.empty() && path.find("##") == std::string::npos)
+      throw usage_error("all frames would be written to '" + path + "'",
+                        "## for their number, as in out.####.exr");
 }
 
 CompareArguments checked(CompareArguments compare, const Options& options) {
@@ -425,7 +498,8 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
   const std::vector<std::string> extras = app.remaining();
   if (!app.get_subcommands().empty() || extras.empty() || extras.front().starts_with('-'))
     return usage_error(failure.what() + hint(app));
-  constexpr std::array<std::string_view, 4> commands{"render", "info", "compare", "bench"};
+  constexpr std::array<std::string_view, 6> commands{"render", "info",  "compare",
+                                                     "bench",  "cache", "precompute"};
   const std::string near = did_you_mean(extras.front(), commands);
   return usage_error("unknown command '" + printable(extras.front()) + "'" + near,
                      near.empty() ? "one of " + join(commands) : "");
@@ -446,7 +520,9 @@ Command parse_arguments(int argc, const char* const* argv) {
   RenderArguments render;
   InfoArguments info;
   CompareArguments compare;
+  PrecomputeArguments precompute;
   BenchArguments bench;
+  CacheArguments cache;
   Options options;
   CLI::App app("opaline renders translucent things fast, and says how accurate the picture is.", "opaline");
   app.get_formatter()->column_width(34);
@@ -455,16 +531,21 @@ Command parse_arguments(int argc, const char* const* argv) {
   app.require_subcommand(0, 1);  // none at all is answered below: CLI11 would hide a misspelt one behind it
   app.footer(kExamples);
   CLI::App& render_command = *app.add_subcommand("render", "render a scene to EXR and PNG files");
+  CLI::App& precompute_command =
+      *app.add_subcommand("precompute", "fill a cache with what rendering will ask for");
   CLI::App& info_command =
       *app.add_subcommand("info", "print what a scene requires and why; nothing is rendered");
   CLI::App& compare_command = *app.add_subcommand("compare", "print how far a picture is from a reference");
   CLI::App& bench_command =
       *app.add_subcommand("bench", "measure what scenes cost and how far off they are, at many settings");
+  CLI::App& cache_command = *app.add_subcommand("cache", "look after a folder of stage results (--cache)");
   add_render_options(render_command, render, options);
+  add_precompute_options(precompute_command, precompute, options);
   add_common_options(info_command, info.scene, options);
   add_picture_options(info_command, options);
   add_compare_options(compare_command, compare, options);
   add_bench_options(bench_command, bench, options);
+  add_cache_commands(cache_command, cache, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& failure) {
@@ -472,15 +553,22 @@ Command parse_arguments(int argc, const char* const* argv) {
     throw parse_error(app, failure);
   }
   if (app.get_subcommands().empty())
-    throw usage_error("no command given: render, info, compare or bench" + hint(app));
+    throw usage_error("no command given: render, info, compare, bench, cache or precompute" + hint(app));
   if (compare_command.parsed()) return checked(std::move(compare), options);
+  if (cache_command.parsed()) {
+    cache.log.format = options.json ? LogFormat::json : LogFormat::text;
+    return cache;
+  }
   if (bench_command.parsed()) {
     for (int i = 1; i < argc; ++i) bench.command_line += ' ' + shell_quoted(argv[i]);
     return checked(std::move(bench), options);
   }
   const LogFormat format = options.log == "json" ? LogFormat::json : LogFormat::text;
   info.log.format = render.log.format = format;
-  info.overrides = render.overrides = overrides_of(options);
+  precompute.log.format = format;
+  info.overrides = render.overrides = precompute.overrides = overrides_of(options);
+  if (!options.frames.empty()) render.frames = precompute.frames = *parse_frames(options.frames);
+  if (precompute_command.parsed()) return precompute;
   if (info_command.parsed()) return info;
   check_outputs(render);
   return render;

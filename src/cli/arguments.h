@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/log.h"
+#include "opaline/cache/stage_cache.h"
 #include "opaline/report/ladder.h"
 
 namespace opaline {
@@ -19,8 +20,22 @@ struct RenderArguments {
   std::vector<std::string> outputs;  ///< at least one; .exr or .png, no two alike
   std::string samples_ply;           ///< empty: none
   std::string resume;                ///< file of a direct rendering's sums to go on from; empty: none
-  int threads = 0;                   ///< 0: one for each core
+  std::string cache;                 ///< folder of stage results; empty: none
+  std::uint64_t cache_bytes = StageCache::kDefaultBytes;
+  std::vector<int> frames;  ///< empty: one picture; else outputs have a place for the frame's number
+  int threads = 0;          ///< 0: one for each core
   bool timings_in_metadata = false;
+  Log log;
+};
+
+/// The samples, light and trees of frames, into a cache.
+struct PrecomputeArguments {
+  std::string scene;
+  std::vector<std::string> overrides;
+  std::string cache;
+  std::uint64_t cache_bytes = StageCache::kDefaultBytes;
+  std::vector<int> frames;  ///< empty: no range, the scene as it is
+  int threads = 0;
   Log log;
 };
 
@@ -54,12 +69,22 @@ struct BenchArguments {
   Log log;
 };
 
+enum class CacheAction { list, verify, prune };
+
+struct CacheArguments {
+  CacheAction action = CacheAction::list;
+  std::string folder;
+  std::uint64_t most_bytes = StageCache::kDefaultBytes;  ///< prune
+  Log log;
+};
+
 /// --help or --version: text to print, and done.
 struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments>;
+using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments,
+                             CacheArguments, PrecomputeArguments>;
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case

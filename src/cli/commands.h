@@ -7,7 +7,8 @@
 namespace opaline {
 
 /// Scene file to pictures. Nothing is written unless everything before it went well.
-/// error Error as the stages'; run_failed before any work where an output cannot be written
+/// error Error as the stages'; run_failed before any work where an output cannot be written, and after all of
+///       it where some of several frames failed
 void render_command(const RenderArguments& arguments);
 
 /// Prints the plan; error run_failed where stdout cannot take it.
@@ -24,5 +25,13 @@ int compare_command(const CompareArguments& arguments);
 /// error Error{bad_input}: a scene or half that cannot be used; Error{run_failed}: the reference cannot be
 ///       made, the CSV or stdout not be written; Error{interrupted}: the old CSV stays
 int bench_command(const BenchArguments& arguments);
+
+/// Fills a cache with what rendering the scene, or frames of it, will ask for.
+/// error as render_command
+void precompute_command(const PrecomputeArguments& arguments);
+
+/// Lists, checks or shrinks a folder of stage results; the exit code: 0, or 1 where an entry cannot be used.
+/// error Error{run_failed}: the folder cannot be read or written, or stdout not
+int cache_command(const CacheArguments& arguments);
 
 }  // namespace opaline

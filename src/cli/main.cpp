@@ -9,11 +9,15 @@ namespace {
 int run(const opaline::Command& command) {
   if (const auto* show = std::get_if<opaline::ShowText>(&command)) opaline::write_line(stdout, show->text);
   if (const auto* render = std::get_if<opaline::RenderArguments>(&command)) opaline::render_command(*render);
+  if (const auto* precompute = std::get_if<opaline::PrecomputeArguments>(&command))
+    opaline::precompute_command(*precompute);
   if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) opaline::info_command(*info);
   if (const auto* compare = std::get_if<opaline::CompareArguments>(&command))
     return opaline::compare_command(*compare);
   if (const auto* bench = std::get_if<opaline::BenchArguments>(&command))
     return opaline::bench_command(*bench);
+  if (const auto* cache = std::get_if<opaline::CacheArguments>(&command))
+    return opaline::cache_command(*cache);
   return 0;
 }
 
@@ -22,6 +26,8 @@ opaline::Log log_of(const opaline::Command& command) {
   if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) return info->log;
   if (const auto* compare = std::get_if<opaline::CompareArguments>(&command)) return compare->log;
   if (const auto* bench = std::get_if<opaline::BenchArguments>(&command)) return bench->log;
+  if (const auto* cache = std::get_if<opaline::CacheArguments>(&command)) return cache->log;
+  if (const auto* precompute = std::get_if<opaline::PrecomputeArguments>(&command)) return precompute->log;
   return {};
 }
 

@@ -24,11 +24,11 @@ std::string read_again(const std::string& path) {
   return bytes;
 }
 
-Json settings_json(const Scene& scene, const Precompute& precompute) {
+Json settings_json(const Scene& scene, std::span<const TranslucentGroup> translucent) {
   const Settings& settings = scene.settings;
   const Film& film = scene.film;
   Json groups = Json::array();
-  for (const TranslucentGroup& group : precompute.groups)
+  for (const TranslucentGroup& group : translucent)
     groups.push_back({{"name", group.plan.name},
                       {"samples", group.surface.samples.size()},
                       {"spacing_mm", group.surface.spacing()}});
@@ -87,14 +87,23 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
 }
 
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
-                       const Precompute& precompute) {
+                       std::span<const TranslucentGroup> translucent, std::optional<int> frame) {
   const std::string name = fs::path(arguments.scene).filename().string();
   Metadata metadata{{"opaline:version", OPALINE_VERSION}, {"opaline:scene", name}};
   if (!hash.empty()) metadata.emplace_back("opaline:scene_hash", hash);
   metadata.emplace_back("opaline:seed", std::to_string(scene.settings.seed));
-  metadata.emplace_back("opaline:settings", compact(settings_json(scene, precompute)));
+  metadata.emplace_back("opaline:settings", compact(settings_json(scene, translucent)));
   metadata.emplace_back("opaline:command", command_line(name, arguments.overrides));
+  if (frame) metadata.emplace_back("opaline:frame", std::to_string(*frame));
   return metadata;
+}
+
+Metadata frame_metadata(const RenderArguments& arguments, const std::string& hash, int frame) {
+  const std::string name = fs::path(arguments.scene).filename().string();
+  return {{"opaline:version", OPALINE_VERSION},
+          {"opaline:scene_hash", hash},
+          {"opaline:command", command_line(name, arguments.overrides)},
+          {"opaline:frame", std::to_string(frame)}};
 }
 
 std::string direct_scene_key(const RenderArguments& arguments, const Scene& scene) {

@@ -2,6 +2,8 @@
 // What an EXR says about how it was made: enough to make it again, nothing that moves from run to run.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,19 +19,24 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 /// As a shell reads it back.
 std::string shell_quoted(const std::string& argument);
 
-/// SHA-1 of the scene file's bytes, the overrides, and the bytes of each mesh file in use, once; empty where the
-/// scene came through a pipe. Taken while loading: files may change during a long render.
-/// error Error{bad_input}: a file that cannot be read a second time
-std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides, const Scene& scene);
+/// SHA-1 of the scene file's bytes, the overrides, and the bytes of each mesh file in use, once; empty where
+/// the scene came through a pipe. Taken while loading: files may change during a long render. error
+/// Error{bad_input}: a file that cannot be read a second time
+std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,
+                       const Scene& scene);
+
+/// opaline:version, opaline:frame, opaline:scene_hash and opaline:command of a frame: what tells whether it
+/// is made already.
+Metadata frame_metadata(const RenderArguments& arguments, const std::string& hash, int frame);
 
 /// opaline:version; opaline:scene, the scene file's name without its folder; opaline:scene_hash, left out if
-/// empty; opaline:seed; opaline:settings, JSON of the values in use; opaline:command, a command line that makes
-/// the same picture: outputs, threads and log are not in it.
+/// empty; opaline:seed; opaline:settings, JSON of the values in use; opaline:command, a command line that
+/// makes the same picture: outputs, threads and log are not in it; opaline:frame, for one of a range.
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
-                       const Precompute& precompute);
+                       std::span<const TranslucentGroup> groups, std::optional<int> frame);
 
-/// What the sums of a direct rendering belong to: the scene and all overrides but those that say when to stop.
-/// error Error{bad_input}: the scene came through a pipe
+/// What the sums of a direct rendering belong to: the scene and all overrides but those that say when to
+/// stop. error Error{bad_input}: the scene came through a pipe
 std::string direct_scene_key(const RenderArguments& arguments, const Scene& scene);
 
 /// opaline:timings, JSON: wall and CPU seconds of each stage so far.

@@ -98,4 +98,18 @@ void print_plan(const Log& log, const Scene& scene, const Plan& plan) {
   for (const std::string& warning : plan.warnings) print_warning(log, warning);
 }
 
+void print_decisions(const Log& log, const std::vector<std::string>& decisions, const std::string& warning) {
+  if (!log.quiet && log.format == LogFormat::json) print_event(log, "reuse", {{"decisions", decisions}});
+  for (std::size_t i = 0; i < decisions.size() && !log.quiet && log.format == LogFormat::text; ++i)
+    print_row(i == 0 ? "reuse" : "", decisions[i]);
+  if (!warning.empty()) print_warning(log, warning);
+}
+
+void print_skipped(const Log& log, const std::vector<std::string>& outputs) {
+  if (log.quiet) return;
+  if (log.format == LogFormat::json) print_event(log, "skipped", {{"outputs", outputs}});
+  for (std::size_t i = 0; i < outputs.size() && log.format == LogFormat::text; ++i)
+    print_row("is there", outputs[i]);
+}
+
 }  // namespace opaline

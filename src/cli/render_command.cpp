@@ -6,23 +6,18 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/frames.h"
 #include "cli/metadata.h"
 #include "cli/report.h"
 #include "cli/stages.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/render/direct.h"
-#include "opaline/render/render.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/session/session.h"
 
 namespace opaline {
 namespace {
-
-struct LoadedScene {
-  Scene scene;
-  World world;
-  std::string hash;
-};
 
 /// What cannot be written at the end is said before the work.
 void check_writable(const RenderArguments& arguments) {
@@ -31,28 +26,27 @@ void check_writable(const RenderArguments& arguments) {
   if (!arguments.resume.empty()) const AtomicFile probe(arguments.resume);
 }
 
-bool needs_precompute(const RenderArguments& arguments, const Scene& scene, const Plan& plan) {
-  const bool needed = scene.settings.method == Method::hierarchical && !plan.groups.empty();
-  if (!needed && !arguments.samples_ply.empty())
+void check_precompute(const RenderArguments& arguments, const Scene& scene, const Plan& plan) {
+  if (arguments.samples_ply.empty()) return;
+  if (scene.settings.method != Method::hierarchical || plan.groups.empty())
     throw bad_file(arguments.samples_ply, "there are no samples to write",
                    "settings.method \"hierarchical\" and a translucent shape");
-  return needed;
 }
 
 /// Writes everything that was asked for; returns the names.
-std::vector<std::string> write_outputs(const RenderArguments& arguments, const LoadedScene& loaded,
-                                       const Precompute& samples, const Image& image) {
+std::vector<std::string> write_outputs(const RenderArguments& arguments, const Session& session,
+                                       const Image& image) {
   std::size_t cut = 0;
   std::vector<std::string> written;
   for (const std::string& path : arguments.outputs) {
     if (output_format(path) == OutputFormat::exr)
-      cut = write_exr(path, image, loaded.scene.film.half).half_overflow;
+      cut = write_exr(path, image, session.scene().film.half).half_overflow;
     else
-      write_png(path, image, loaded.scene.film.exposure);
+      write_png(path, image, session.scene().film.exposure);
     written.push_back(path);
   }
   if (!arguments.samples_ply.empty()) {
-    write_samples_ply(arguments.samples_ply, samples, loaded.world);
+    write_samples_ply(arguments.samples_ply, session.groups(), session.world());
     written.push_back(arguments.samples_ply);
   }
   if (cut > 0)
@@ -102,12 +96,11 @@ class ResumableState {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-DirectResult shade_direct(const RenderArguments& arguments, const LoadedScene& loaded, const RayScene& rays,
-                          const Plan& plan, Monitor& monitor) {
-  ResumableState resumable(arguments, loaded.scene);
+DirectResult shade_direct(const RenderArguments& arguments, const Session& session, Monitor& monitor) {
+  ResumableState resumable(arguments, session.scene());
   try {
-    DirectResult result = render_direct({loaded.scene, loaded.world, rays, plan, &monitor,
-                                         [&](const DirectState&) { resumable.keep_each_minute(); }},
+    DirectResult result = render_direct({session.scene(), session.world(), session.rays(), session.plan(),
+                                         &monitor, [&](const DirectState&) { resumable.keep_each_minute(); }},
                                         resumable.state);
     resumable.keep();
     return result;
@@ -117,25 +110,24 @@ DirectResult shade_direct(const RenderArguments& arguments, const LoadedScene& l
   }
 }
 
-Shading shade(StageRunner& stages, const RenderArguments& arguments, const LoadedScene& loaded,
-              const RayScene& rays, const Plan& plan, const Precompute& samples) {
+Shading shade(StageRunner& stages, const RenderArguments& arguments, Session& session) {
   Shading shading;
-  const RayScene::Statistics before = rays.statistics();
+  const RayScene::Statistics before = session.rays().statistics();
   shading.picture = stages.run("shading", [&] {
-    if (loaded.scene.settings.method == Method::direct) {
-      shading.direct = shade_direct(arguments, loaded, rays, plan, stages.monitor());
+    if (session.scene().settings.method == Method::direct) {
+      shading.direct = shade_direct(arguments, session, stages.monitor());
       return std::move(shading.direct->picture);
     }
-    return render({loaded.scene, loaded.world, rays, samples.groups, &stages.monitor()});
+    return session.render(&stages.monitor());
   });
-  const RayScene::Statistics after = rays.statistics();
+  const RayScene::Statistics after = session.rays().statistics();
   shading.rays = after.rays - before.rays;
   shading.embree_seconds = after.seconds - before.seconds;
   shading.cpu_seconds = stages.costs().back().cpu_seconds;
   return shading;
 }
 
-Summary summarize(const Scene& scene, const Precompute& samples, const Shading& shading) {
+Summary summarize(const Session& session, const Shading& shading) {
   Summary summary;
   summary.peak_memory = peak_memory();
   summary.queries = shading.picture.queries;
@@ -147,47 +139,50 @@ Summary summarize(const Scene& scene, const Precompute& samples, const Shading& 
   summary.rays = shading.rays;
   summary.shading_seconds = shading.cpu_seconds;
   summary.embree_seconds = shading.embree_seconds;
-  for (const TranslucentGroup& group : samples.groups) {
+  for (const TranslucentGroup& group : session.groups()) {
     summary.samples += group.surface.samples.size();
     for (std::size_t l = 0; l < group.transfers.size(); ++l)
       if (group.transfers[l].relative_error > 0)
-        summary.noise.push_back({group.plan.name, scene.lights[l].name, group.transfers[l].relative_error});
+        summary.noise.push_back(
+            {group.plan.name, session.scene().lights[l].name, group.transfers[l].relative_error});
   }
   return summary;
 }
 
-void run_render(const RenderArguments& arguments) {
+/// One picture; `frame`: of a range, whose session is anchored.
+void render_scene(const RenderArguments& arguments, Session& session, const StageCache* cache,
+                  std::optional<int> frame) {
   StageRunner stages(arguments.log);
-  const LoadedScene loaded = stages.run("loading", [&] {
-    Scene scene = load_scene(arguments.scene, arguments.overrides);
-    World world = make_world(scene);
-    std::string hash = scene_hash(arguments.scene, arguments.overrides, scene);
-    return LoadedScene{std::move(scene), std::move(world), std::move(hash)};
+  bool is_there = false;
+  const std::string hash = stages.run("loading", [&] {
+    Scene scene = load_scene(arguments.scene, arguments.overrides, frame.value_or(1));
+    std::string bytes_hash = frame ? frame_hash(arguments.scene, arguments.overrides, scene)
+                                   : scene_hash(arguments.scene, arguments.overrides, scene);
+    is_there = frame && is_rendered(arguments, bytes_hash, *frame);
+    if (!is_there) session.edit(std::move(scene));
+    return bytes_hash;
   });
-  if (!arguments.resume.empty() && loaded.scene.settings.method != Method::direct)
+  if (is_there) return print_skipped(arguments.log, arguments.outputs);
+  const Scene& scene = session.scene();
+  if (!arguments.resume.empty() && scene.settings.method != Method::direct)
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct");
-  const Plan plan = make_plan(loaded.scene, loaded.world);
-  const bool translucent = needs_precompute(arguments, loaded.scene, plan);
-  print_plan(arguments.log, loaded.scene, plan);
+  check_precompute(arguments, scene, session.plan());
+  print_plan(arguments.log, scene, session.plan());
 
-  const RayScene rays = stages.run("rays", [&] { return RayScene(loaded.world); });
-  Precompute samples;
-  if (translucent) {
-    samples = stages.run_unmeasured("sampling", [&] {
-      return precompute({loaded.scene, loaded.world, rays, plan, &stages.monitor()});
-    });
-    for (const StageCost& cost : samples.costs) stages.note(cost);
-  }
-  Shading shading = shade(stages, arguments, loaded, rays, plan, samples);
+  stages.run_unmeasured("rays", [&] { session.prepare(&stages.monitor()); });
+  for (const StageCost& cost : session.costs()) stages.note(cost);
+  if (cache != nullptr || frame)
+    print_decisions(arguments.log, session.decisions(), cache != nullptr ? cache->warning() : "");
+  Shading shading = shade(stages, arguments, session);
   if (shading.picture.non_finite > 0)
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
-  image.metadata = make_metadata(arguments, loaded.hash, loaded.scene, samples);
+  image.metadata = make_metadata(arguments, hash, scene, session.groups(), frame);
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
 
-  auto outputs = stages.run("writing", [&] { return write_outputs(arguments, loaded, samples, image); });
-  Summary summary = summarize(loaded.scene, samples, shading);
+  auto outputs = stages.run("writing", [&] { return write_outputs(arguments, session, image); });
+  Summary summary = summarize(session, shading);
   summary.costs = stages.costs();
   summary.outputs = std::move(outputs);
   print_summary(arguments.log, summary);
@@ -200,8 +195,20 @@ void render_command(const RenderArguments& arguments) {
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
-  check_writable(arguments);
-  run_render(arguments);
+  std::optional<StageCache> cache;
+  if (!arguments.cache.empty()) cache.emplace(arguments.cache, arguments.cache_bytes);
+  Session session(cache ? &*cache : nullptr);
+  const auto render_one = [&](const RenderArguments& own, std::optional<int> frame) {
+    render_scene(own, session, cache ? &*cache : nullptr, frame);
+  };
+  if (arguments.frames.empty()) {
+    check_writable(arguments);
+    return render_one(arguments, {});
+  }
+  for (const int frame : arguments.frames) check_writable(arguments_of_frame(arguments, frame));
+  anchor_session(session, arguments.scene, arguments.overrides);
+  for_frames(arguments.log, arguments.frames,
+             [&](int frame) { render_one(arguments_of_frame(arguments, frame), frame); });
 }
 
 }  // namespace opaline

@@ -15,6 +15,13 @@ namespace opaline {
 /// What the scene requires and why, then the plan's warnings; nothing but the warnings with --quiet.
 void print_plan(const Log& log, const Scene& scene, const Plan& plan);
 
+/// What was kept from before and what was not, a line each, and a warning unless it is empty; with --quiet the
+/// warning alone.
+void print_decisions(const Log& log, const std::vector<std::string>& decisions, const std::string& warning);
+
+/// A frame's pictures that were there already.
+void print_skipped(const Log& log, const std::vector<std::string>& outputs);
+
 /// Standard error of the irradiance a light brings, over its mean (LightTransfer::relative_error).
 struct LightNoise {
   std::string group, light;

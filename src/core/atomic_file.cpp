@@ -52,7 +52,8 @@ void require_replaceable(const std::string& path) {
   if (!fs::status_known(status)) throw run_failed(path, "cannot write: " + failure.message());
   if (fs::is_directory(status)) throw run_failed(path, "cannot write: it is a folder");
   if (!fs::is_regular_file(status)) throw run_failed(path, "cannot write: it is not a regular file");
-  if (::access(path.c_str(), W_OK) != 0) throw run_failed(path, "cannot write: " + reason());
+  // Another process may have removed it since.
+  if (::access(path.c_str(), W_OK) != 0 && errno != ENOENT) throw run_failed(path, "cannot write: " + reason());
 }
 
 /// Creates an empty file beside `path` under a name that nobody had, also where hosts share the folder.
@@ -75,18 +76,6 @@ int flush_to_disk(const fs::path& path, int flags) {
   return 0;
 }
 
-void write_all(const std::string& path, std::string_view bytes, const std::string& name) {
-  Descriptor file{::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC)};
-  if (file.number < 0) throw run_failed(name, "cannot write: " + reason());
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(file.number, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw run_failed(name, "cannot write: " + reason());
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  if (file.close() != 0) throw run_failed(name, "cannot write: " + reason());
-}
-
 }  // namespace
 
 AtomicFile::AtomicFile(std::string path) : path_(resolve_link(path)) {
@@ -98,25 +87,44 @@ AtomicFile::~AtomicFile() {
   if (!committed_) ::unlink(temporary_.c_str());
 }
 
+void AtomicFile::append(std::string_view bytes) {
+  Descriptor file{::open(temporary_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC)};
+  if (file.number < 0) throw run_failed(path_, "cannot write: " + reason());
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file.number, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw run_failed(path_, "cannot write: " + reason());
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (file.close() != 0) throw run_failed(path_, "cannot write: " + reason());
+}
+
 void AtomicFile::commit() {
+  put_in_place(flush_to_disk(temporary_, O_WRONLY));
+  // The new file is in place. A folder that may not be opened for reading, or a file system that cannot flush
+  // folders (EINVAL), is no failure of the run.
+  const int failure = flush_to_disk(folder_of(path_), O_RDONLY | O_DIRECTORY);
+  if (failure != 0 && failure != EACCES && failure != EINVAL)
+    throw run_failed(path_, std::string("written, but its folder not flushed: ") + std::strerror(failure));
+}
+
+void AtomicFile::commit_unflushed() {
+  put_in_place(0);
+}
+
+void AtomicFile::put_in_place(int failure) {
   require(!committed_, "an atomic file is committed once");
-  int failure = flush_to_disk(temporary_, O_WRONLY);
   if (failure == 0 && std::rename(temporary_.c_str(), path_.c_str()) != 0) failure = errno;
   if (failure != 0) {
     ::unlink(temporary_.c_str());
     throw run_failed(path_, std::string("cannot write: ") + std::strerror(failure));
   }
   committed_ = true;
-  // The new file is in place. A folder that may not be opened for reading, or a file system that cannot flush
-  // folders (EINVAL), is no failure of the run.
-  failure = flush_to_disk(folder_of(path_), O_RDONLY | O_DIRECTORY);
-  if (failure != 0 && failure != EACCES && failure != EINVAL)
-    throw run_failed(path_, std::string("written, but its folder not flushed: ") + std::strerror(failure));
 }
 
 void write_file(const std::string& path, std::string_view bytes) {
   AtomicFile file(path);
-  write_all(file.temporary(), bytes, path);
+  file.append(bytes);
   file.commit();
 }
 

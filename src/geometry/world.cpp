@@ -1,27 +1,69 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/geometry/world.h"
 
+#include <cmath>
+
 #include "geometry/oriented_point.h"
 #include "opaline/geometry/make_mesh.h"
 
 namespace opaline {
 
+namespace {
+
+Vec3d stable_middle(const Bounds& all, double diagonal) {
+  if (!(diagonal > 0)) return all.low;
+  const double step = std::scalbn(1.0, std::ilogb(diagonal) - 2);
+  const Vec3d middle = 0.5 * (all.low + all.high);
+  return {step * std::round(middle.x / step), step * std::round(middle.y / step),
+          step * std::round(middle.z / step)};
+}
+
+}  // namespace
+
 World make_world(const Scene& scene) {
+  std::size_t loaded = 0;
+  return update_world(scene, {}, std::vector<std::optional<std::size_t>>(scene.shapes.size()), loaded);
+}
+
+World update_world(const Scene& scene, const World& old, std::span<const std::optional<std::size_t>> kept,
+                   std::size_t& loaded) {
   World world;
-  Bounds all;
-  for (const Shape& shape : scene.shapes) {
-    CheckedMesh checked = make_mesh(shape);
-    const Bounds own = bounds(checked.mesh);
-    all.low = component_min(all.low, own.low);
-    all.high = component_max(all.high, own.high);
-    world.meshes.push_back(std::move(checked.mesh));
-    world.reports.push_back(std::move(checked.report));
-  }
-  if (world.meshes.empty()) return world;
-  world.origin = 0.5 * (all.low + all.high);
-  world.diagonal = length(all.high - all.low);
-  for (Mesh& mesh : world.meshes)
+  const auto load = [&](std::size_t shape) {
+    CheckedMesh checked = make_mesh(scene.shapes[shape]);
+    world.meshes[shape] = std::move(checked.mesh);
+    world.reports[shape] = std::move(checked.report);
+    world.boxes[shape] = bounds(world.meshes[shape]);
+    ++loaded;
+  };
+  const auto move = [&](Mesh& mesh) {
     for (Vec3d& p : mesh.positions) p -= world.origin;
+  };
+  const std::size_t count = scene.shapes.size();
+  world.meshes.resize(count);
+  world.reports.resize(count);
+  world.boxes.resize(count);
+  loaded = 0;
+  if (count == 0) return world;
+  Bounds all;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (kept[i])
+      world.boxes[i] = old.boxes[*kept[i]];
+    else
+      load(i);
+    all.low = component_min(all.low, world.boxes[i].low);
+    all.high = component_max(all.high, world.boxes[i].high);
+  }
+  world.diagonal = length(all.high - all.low);
+  world.origin = stable_middle(all, world.diagonal);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (kept[i] && world.origin == old.origin) {
+      world.meshes[i] = old.meshes[*kept[i]];
+      world.reports[i] = old.reports[*kept[i]];
+    } else {
+      if (kept[i]) load(i);
+      move(world.meshes[i]);
+    }
+  }
   return world;
 }
 

@@ -85,7 +85,7 @@ std::vector<LightTransfer> compute_irradiance(const IrradianceInput& input) {
   std::vector<LightTransfer> transfers;
   std::vector<std::vector<float>> unblocked(input.lights.size());
   for (std::size_t l = 0; l < input.lights.size(); ++l)
-    transfers.push_back(transfer_from(input, input.lights[l], hash_bits(input.seed, l), unblocked[l]));
+    transfers.push_back(transfer_from(input, input.lights[l], light_seed(input.seed, input.lights[l]), unblocked[l]));
   refine_shadow_edges(input, unblocked, transfers);
   return transfers;
 }
@@ -115,7 +115,7 @@ std::vector<RgbF> irradiance_at(const PointIrradianceInput& input) {
   std::vector<RgbF> irradiance(input.points.size());
   for (std::size_t l = 0; l < input.lights.size(); ++l) {
     const RgbF colour(emission(input.lights[l]));
-    ShadowBatch batch(input.rays, input.lights[l], input.eta, input.light_samples, hash_bits(input.seed, l));
+    ShadowBatch batch(input.rays, input.lights[l], input.eta, input.light_samples, light_seed(input.seed, input.lights[l]));
     const std::size_t batch_size = batch_points(input.light_samples);
     batch.reserve(std::min(batch_size, input.points.size()));
     for (std::size_t begin = 0; begin < input.points.size(); begin += batch_size) {

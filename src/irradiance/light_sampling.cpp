@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "opaline/core/random.h"
+
 namespace opaline {
 namespace {
 
@@ -83,6 +85,12 @@ Rgb emission(const Light& light) {
 bool is_delta(const Light& light) {
   return std::holds_alternative<PointLight>(light.source) ||
          std::holds_alternative<DirectionalLight>(light.source);
+}
+
+std::uint64_t light_seed(std::uint64_t seed, const Light& light) {
+  std::uint64_t name = 0;
+  for (const char c : light.name) name = hash_bits(name, std::uint8_t(c));
+  return hash_bits(seed, name);
 }
 
 Light recentred(const Light& light, const Vec3d& origin) {

@@ -124,7 +124,7 @@ void average(const IrradianceInput& input, std::uint32_t light, std::span<const 
   const std::uint32_t most =
       delta ? CellPoints::kMost : std::min(CellPoints::kMost, 2 * std::uint32_t(input.light_samples));
   const int each = delta ? 1 : 2 * input.light_samples / int(most);
-  ShadowBatch batch(input.rays, input.lights[light], input.eta, each, hash_bits(input.seed, light));
+  ShadowBatch batch(input.rays, input.lights[light], input.eta, each, light_seed(input.seed, input.lights[light]));
   const std::size_t batch_size = batch_points(int(most) * each);
   for (std::size_t begin = 0; begin < marks.size(); begin += batch_size) {
     const std::span<const Mark> part = marks.subspan(begin, std::min(batch_size, marks.size() - begin));

@@ -10,15 +10,6 @@
 namespace opaline {
 namespace {
 
-std::vector<FluxSample> flux_samples(const TranslucentGroup& group) {
-  std::vector<FluxSample> flux(group.surface.samples.size());
-  for (std::size_t i = 0; i < flux.size(); ++i) {
-    const SurfaceSample& s = group.surface.samples[i];
-    flux[i] = {s.centroid, s.area, group.irradiance.empty() ? RgbF{} : group.irradiance[i], s.normal};
-  }
-  return flux;
-}
-
 void add_cost(StageCost& total, const StageCost& part) {
   total.wall_seconds += part.wall_seconds;
   total.cpu_seconds += part.cpu_seconds;
@@ -28,37 +19,77 @@ void add_cost(StageCost& total, const StageCost& part) {
 
 }  // namespace
 
-Precompute precompute(const PrecomputeInput& input) {
+std::uint64_t sampling_seed(const Settings& settings, std::size_t group) {
+  return hash_bits(settings.seed, group);
+}
+
+SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group) {
+  const GroupPlan& plan = input.plan.groups[group];
+  return sample_surface({.world = input.world,
+                         .meshes = plan.meshes,
+                         .count = plan.samples,
+                         .seed = sampling_seed(input.scene.settings, group),
+                         .monitor = input.monitor});
+}
+
+std::uint64_t irradiance_seed(const Settings& settings, std::size_t group) {
+  return hash_bits(settings.seed, group + 1000);
+}
+
+std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
+                                         std::span<const SurfaceSample> samples,
+                                         std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
+  const DiffuseProfile profile = make_diffuse_profile(input.scene.media[input.plan.groups[group].medium]);
+  return compute_irradiance({input.rays, samples, lights, profile.eta, settings.light_samples,
+                             irradiance_seed(settings, group), input.monitor});
+}
+
+std::vector<Light> recentred_lights(const Scene& scene, const World& world) {
   std::vector<Light> lights;
-  for (const Light& light : input.scene.lights) lights.push_back(recentred(light, input.world.origin));
+  for (const Light& light : scene.lights) lights.push_back(recentred(light, world.origin));
+  return lights;
+}
+
+Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance) {
+  std::vector<FluxSample> flux(samples.size());
+  for (std::size_t i = 0; i < flux.size(); ++i) {
+    const SurfaceSample& s = samples[i];
+    flux[i] = {s.centroid, s.area, irradiance.empty() ? RgbF{} : irradiance[i], s.normal};
+  }
+  return build_octree(flux);
+}
+
+SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,
+                         const Settings& settings) {
+  return make_split_kernel(profile, surface.spacing(), world.diagonal, settings.near_field,
+                           settings.near_irradiance);
+}
+
+Precompute precompute(const PrecomputeInput& input) {
+  const std::vector<Light> lights = recentred_lights(input.scene, input.world);
   Precompute result;
   StageCost sampling{"sampling"}, irradiance{"irradiance"}, octree{"octree"};
   for (std::size_t g = 0; g < input.plan.groups.size(); ++g) {
     const GroupPlan& plan = input.plan.groups[g];
     const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium]);
     const Stopwatch sampling_watch;
-    SurfaceSamples surface = sample_surface({.world = input.world,
-                                             .meshes = plan.meshes,
-                                             .count = plan.samples,
-                                             .seed = hash_bits(settings.seed, g),
-                                             .monitor = input.monitor});
+    SurfaceSamples surface = place_samples(input, g);
     add_cost(sampling, sampling_watch.cost({}));
 
+    const Stopwatch kernel_watch;
+    SplitKernel kernel = group_kernel(profile, surface, input.world, input.scene.settings);
+    TranslucentGroup group{plan, profile, std::move(surface), {}, {}, 0, {}, std::move(kernel)};
+    add_cost(octree, kernel_watch.cost({}));
+
     const Stopwatch irradiance_watch;
-    std::vector<LightTransfer> transfers =
-        compute_irradiance({input.rays, surface.samples, lights, profile.eta, settings.light_samples,
-                            hash_bits(settings.seed, g + 1000), input.monitor});
-    std::vector<RgbF> entered = combine_lights(transfers, lights);
-    const double noise = combined_noise(transfers, lights);
+    group.transfers = light_samples(input, g, group.surface.samples, lights);
+    group.irradiance = combine_lights(group.transfers, lights);
+    group.irradiance_noise = combined_noise(group.transfers, lights);
     add_cost(irradiance, irradiance_watch.cost({}));
 
     const Stopwatch octree_watch;
-    SplitKernel kernel = make_split_kernel(profile, surface.spacing(), input.world.diagonal,
-                                           settings.near_field, settings.near_irradiance);
-    TranslucentGroup group{plan,  profile, std::move(surface), std::move(transfers), std::move(entered),
-                           noise, {},      std::move(kernel)};
-    group.octree = build_octree(flux_samples(group));
+    group.octree = gather_flux(group.surface.samples, group.irradiance);
     add_cost(octree, octree_watch.cost({}));
     result.groups.push_back(std::move(group));
   }

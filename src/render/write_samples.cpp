@@ -19,9 +19,10 @@ void append(std::string& bytes, const T& value) {
 
 }  // namespace
 
-void write_samples_ply(const std::string& path, const Precompute& precompute, const World& world) {
+void write_samples_ply(const std::string& path, std::span<const TranslucentGroup> groups,
+                       const World& world) {
   std::size_t count = 0;
-  for (const TranslucentGroup& group : precompute.groups) count += group.surface.samples.size();
+  for (const TranslucentGroup& group : groups) count += group.surface.samples.size();
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment opaline samples: mm, mm^2, W/mm^2\nelement vertex {}\n"
       "property double x\nproperty double y\nproperty double z\n"
@@ -29,7 +30,7 @@ void write_samples_ply(const std::string& path, const Precompute& precompute, co
       "property float irradiance_r\nproperty float irradiance_g\nproperty float irradiance_b\n"
       "property uint shape\nend_header\n",
       count);
-  for (const TranslucentGroup& group : precompute.groups)
+  for (const TranslucentGroup& group : groups)
     for (std::size_t i = 0; i < group.surface.samples.size(); ++i) {
       const SurfaceSample& s = group.surface.samples[i];
       append(bytes, Vec3d(s.position) + world.origin);

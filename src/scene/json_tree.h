@@ -34,6 +34,7 @@ struct Document {
   std::string_view text;
   std::vector<std::string> overrides;
   Node root;
+  int frame = 1;
 };
 
 /// An error at a byte of the document's text, or about the override that put the value there.

@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "keyed_values.h"
 #include "overrides.h"
 #include "readers.h"
 
@@ -62,8 +63,11 @@ Scene read_scene(const Document& document) {
   const double mm_per_unit = unit ? unit->number({1e-12, 1e12}) : 1;
   if (const auto media = reader.find("media"))
     for (const Value& medium : media->members()) scene.media.push_back(read_medium(medium));
-  ShapeContext context{
-      std::filesystem::path(document.file).parent_path().string(), mm_per_unit, &scene.media, {}};
+  ShapeContext context{std::filesystem::path(document.file).parent_path().string(),
+                       document.frame,
+                       mm_per_unit,
+                       &scene.media,
+                       {}};
   scene.shapes = read_named<Shape>(
       reader.find("shapes"), "shape",
       [&](const Value& value, const std::string& name) { return read_shape(value, name, context); });
@@ -79,16 +83,29 @@ Scene read_scene(const Document& document) {
 
 }  // namespace
 
-Scene load_scene(const std::string& path, std::span<const std::string> overrides) {
-  return parse_scene(read_text(path), path, overrides);
+Scene load_scene(const std::string& path, std::span<const std::string> overrides, int frame) {
+  return parse_scene(read_text(path), path, overrides, frame);
 }
 
-Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides) {
+std::string with_frame(const std::string& path, int frame) {
+  const std::size_t begin = path.rfind("##");
+  if (begin == std::string::npos) return path;
+  const std::size_t end = begin + 2, first = path.find_last_not_of('#', begin) + 1;
+  std::string number = std::to_string(std::abs(frame));
+  if (number.size() < end - first) number.insert(0, end - first - number.size(), '0');
+  return path.substr(0, first) + (frame < 0 ? "-" : "") + number + path.substr(end);
+}
+
+Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides,
+                  int frame) {
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
     throw bad_file(file, "the scene file is empty", "a JSON object {...}");
-  Document document{file, text, {overrides.begin(), overrides.end()}, {}};
+  Document document{file, text, {overrides.begin(), overrides.end()}, {}, frame};
   document.root = parse_tree(document, text);
-  if (document.root.kind == Node::Kind::object) apply_overrides(document);
+  if (document.root.kind == Node::Kind::object) {
+    apply_overrides(document);
+    resolve_keyed_values(document);
+  }
   return read_scene(document);
 }
 

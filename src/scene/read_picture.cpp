@@ -17,6 +17,7 @@ constexpr std::array<std::string_view, 2> strategy_names{"disc_axes", "chords"};
 
 constexpr std::uint64_t largest_side = 65536, most_pixels = std::uint64_t{1} << 28;
 constexpr std::uint64_t most_samples = 1000000000;
+constexpr std::uint64_t most_frame = 1000000000;
 
 std::array<int, 2> read_resolution(const Value& value) {
   const std::vector<Value> sides = value.list(2, "[width, height]");
@@ -107,6 +108,8 @@ Settings read_settings(const Value& value, double mm_per_unit) {
   if (const auto error = reader.find("until_error"))
     settings.until_error = error->number({0, 1, true, false});
   if (const auto seed = reader.find("seed")) settings.seed = seed->integer(0, UINT64_MAX);
+  if (const auto frame = reader.find("reference_frame"))
+    settings.reference_frame = static_cast<int>(frame->integer(0, most_frame));
   return settings;
 }
 

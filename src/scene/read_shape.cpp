@@ -2,6 +2,7 @@
 #include <array>
 #include <filesystem>
 
+#include "opaline/scene/load_scene.h"
 #include "presets.h"
 #include "readers.h"
 #include "schema.h"
@@ -14,7 +15,8 @@ constexpr std::array<std::string_view, 2> normal_names{"smooth", "faceted"};
 
 MeshFile read_mesh_file(const ObjectReader& shape, const ShapeContext& context) {
   MeshFile mesh;
-  mesh.path = (std::filesystem::path(context.folder) / shape.need("file").string()).string();
+  mesh.path = (std::filesystem::path(context.folder) / with_frame(shape.need("file").string(), context.frame))
+                  .string();
   if (const auto fill_holes = shape.find("fill_holes")) mesh.fill_holes = fill_holes->boolean();
   if (const auto fit_size = shape.find("fit_size")) mesh.fit_size = fit_size->length(context.mm_per_unit);
   return mesh;

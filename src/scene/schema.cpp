@@ -40,7 +40,7 @@ const std::vector<Section>& sections() {
       {"settings",
        {"method", "evaluator", "tolerance", "instruction_set", "max_solid_angle", "near_field", "near_irradiance",
         "sample_spacing", "samples", "max_samples", "light_samples", "entry_strategy", "entry_samples",
-        "until_error", "seed"}},
+        "until_error", "seed", "reference_frame"}},
   };
   return table;
 }

@@ -161,8 +161,7 @@ TEST(DirectExitance, SlabLitFromBehind) {
     const ChannelProfile profile = slab.profile().channels[1];
     const auto within = [&](double r) { return diffuse_reflectance_within(profile, r); };
     const double expected = reference_transmittance(1, 1.3) * rectangle_integral(within, {10, 10, 10, 10}, 3);
-    // The world's middle is the slab's.
-    const SurfacePoint exit = point_at({0, 0, 1.5}, {0, 0, 1});
+    const SurfacePoint exit = point_at(-slab.world.origin, {0, 0, 1});
     for (const EntryStrategy strategy : kStrategies)
       expect_near(exitance_at(slab, strategy, exit, 1, {16, 10000}), expected, 1e-5, name_of(kind, strategy));
   }

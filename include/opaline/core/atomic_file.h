@@ -20,11 +20,22 @@ class AtomicFile {
   /// Where to write; keeps the final file's extension, for writers that choose the format by it.
   const std::string& temporary() const { return temporary_; }
 
+  /// Adds bytes at the end of the temporary file.
+  /// error Error{run_failed} naming the file: disk full, I/O error
+  void append(std::string_view bytes);
+
   /// Flushes to the disk and renames.
   /// error Error{run_failed} naming the file: disk full, I/O error
   void commit();
 
+  /// Renames without waiting for the disk: after a power cut the file may be torn. For files whose readers
+  /// check them whole.
+  /// error as commit
+  void commit_unflushed();
+
  private:
+  void put_in_place(int failure);
+
   std::string path_, temporary_;
   bool committed_ = false;
 };

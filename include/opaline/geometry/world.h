@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,17 +15,26 @@
 
 namespace opaline {
 
-/// Every shape's mesh in the order of Scene::shapes, moved so that the middle of them all is at zero: sums of
-/// floats far from the origin lose what they are made of. p_world = p + origin.
+/// Every shape's mesh in the order of Scene::shapes, moved so that zero is near the middle of them all: sums
+/// of floats far from the origin lose what they are made of. p_world = p + origin.
 struct World {
   std::vector<Mesh> meshes;
   std::vector<MeshReport> reports;
+  std::vector<Bounds> boxes;  ///< one a mesh, before it was moved
+  /// The middle of everything, rounded to a power of two of 1/8 to 1/4 of the diagonal: where one object
+  /// moves a little, the others keep their bits.
   Vec3d origin{};
   double diagonal = 0;  ///< of the bounding box of everything, mm; 0 for an empty scene
 };
 
 /// Meshes of all shapes; error as make_mesh.
 World make_world(const Scene& scene);
+
+/// The same world as make_world's, bit for bit, after an edit that left some shapes as they were.
+/// in    kept: one a shape of the scene, the index of its mesh in `old`; none: load it
+/// out   loaded: how many meshes were loaded, those too that had to move with the origin
+World update_world(const Scene& scene, const World& old, std::span<const std::optional<std::size_t>> kept,
+                   std::size_t& loaded);
 
 /// A ray in the layout Embree traces, so that batches need no copy (checked in ray_scene.cpp).
 struct alignas(16) Ray {

@@ -24,6 +24,9 @@ Rgb emission(const Light& light);
 /// True where one sample is exact (point and directional lights).
 bool is_delta(const Light& light);
 
+/// Seed of a light's random numbers: by its name, so that adding or removing another light leaves them alone.
+std::uint64_t light_seed(std::uint64_t seed, const Light& light);
+
 /// The light moved by -origin into recentred space.
 Light recentred(const Light& light, const Vec3d& origin);
 

@@ -47,6 +47,24 @@ struct Precompute {
 
 Precompute precompute(const PrecomputeInput& input);
 
+// Its stages, for callers that keep some of their results; `group` is an index into the plan's groups, which
+// chooses random numbers.
+
+std::uint64_t sampling_seed(const Settings& settings, std::size_t group);
+SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group);
+
+std::uint64_t irradiance_seed(const Settings& settings, std::size_t group);
+/// in    lights: recentred, any of the scene's
+std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
+                                         std::span<const SurfaceSample> samples,
+                                         std::span<const Light> lights);
+std::vector<Light> recentred_lights(const Scene& scene, const World& world);
+
+/// irradiance: one a sample.
+Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);
+SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,
+                         const Settings& settings);
+
 /// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free
 /// path is below the sample spacing, `render` traces shadow rays for the irradiance at its points; this
 /// interpolates it. in    points: world space, mm; normals: unit, outward, one a point out   M_o in W/mm^2
@@ -57,6 +75,6 @@ std::vector<RgbF> radiant_exitance(const TranslucentGroup& group, const World& w
 
 /// Writes all samples as a binary PLY: x y z, nx ny nz, area, irradiance r g b, shape; world space, mm.
 /// error Error{run_failed} naming the file
-void write_samples_ply(const std::string& path, const Precompute& precompute, const World& world);
+void write_samples_ply(const std::string& path, std::span<const TranslucentGroup> groups, const World& world);
 
 }  // namespace opaline

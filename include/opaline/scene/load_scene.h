@@ -15,9 +15,15 @@ namespace opaline {
 ///       (a value that is not JSON is taken as a string), applied before checking
 /// error Error{bad_input} with file, line and column, what was expected, what was found, and the nearest valid
 ///       name: no such file, broken JSON, unknown or duplicate key, wrong type, value out of range
-Scene load_scene(const std::string& path, std::span<const std::string> overrides = {});
+/// frame: which one, of values and mesh files that change.
+Scene load_scene(const std::string& path, std::span<const std::string> overrides = {}, int frame = 1);
 
 /// The same from text; `file` stands in messages and its folder in front of relative mesh paths.
-Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides = {});
+Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides = {},
+                  int frame = 1);
+
+/// The last run of two or more # in a path as the frame's number, with zeros in front to fill them:
+/// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths stay as they are.
+std::string with_frame(const std::string& path, int frame);
 
 }  // namespace opaline

@@ -190,6 +190,7 @@ struct Settings {
   std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
   std::optional<double> until_error;         ///< direct: stop at this estimated relative error of the pixels
   std::uint64_t seed = 0;
+  int reference_frame = 1;  ///< of frame ranges: samples are placed there and go along to all others
 };
 
 struct Scene {

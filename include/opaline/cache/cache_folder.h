@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The entries of a cache as files: what there is, whether it is whole, and what goes first.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "opaline/cache/stage_key.h"
+
+namespace opaline {
+
+struct CacheEntry {
+  std::string file;   ///< its name in the folder
+  std::string stage;  ///< "samples", "light" or "octree"
+  StageKey key;
+  std::uint64_t bytes = 0;
+  std::filesystem::file_time_type last_used;  ///< written or read
+};
+
+/// All entries, the least recently used first; other files in the folder are not looked at.
+/// error Error{run_failed} naming the folder: it cannot be read
+std::vector<CacheEntry> list_cache(const std::string& folder);
+
+/// Reads an entry whole; empty, or why it cannot be used: "is truncated".
+std::string problem_of(const std::string& folder, const CacheEntry& entry);
+
+/// Removes the least recently used entries until the rest has at most this many bytes, and what writers that
+/// were killed more than an hour ago left behind. One process at a time; readers and writers go on meanwhile.
+/// out   the entries removed
+/// error Error{run_failed} naming the folder or file
+std::vector<CacheEntry> prune_cache(const std::string& folder, std::uint64_t most_bytes);
+
+}  // namespace opaline

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a stage's result was computed from, as a number.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace opaline {
+
+/// XXH3's 128 bits: two results with one key are the same result. Not a defence against forgery.
+struct StageKey {
+  std::uint64_t high = 0, low = 0;
+  friend auto operator<=>(const StageKey&, const StageKey&) = default;
+};
+
+/// 32 hexadecimal digits, most significant first.
+std::string hex(const StageKey& key);
+
+/// Gathers what a key stands for. Every part goes in with its length in front: no two lists of parts read the
+/// same.
+class KeyBuilder {
+ public:
+  /// stage: what the key is of; version: of the code that computes it.
+  KeyBuilder(std::string_view stage, std::uint64_t version);
+  ~KeyBuilder();
+  KeyBuilder(const KeyBuilder&) = delete;
+  KeyBuilder& operator=(const KeyBuilder&) = delete;
+
+  /// Numbers, enumerators, and structs of one kind of number, which have no padding.
+  template <class T>
+  KeyBuilder& add(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+    return add_bytes(&value, sizeof value);
+  }
+  KeyBuilder& add(const std::string& text) { return add_bytes(text.data(), text.size()); }
+  template <class T>
+  KeyBuilder& add_array(std::span<const T> values) {
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+    return add_bytes(values.data(), values.size_bytes());
+  }
+
+  StageKey key() const;
+
+ private:
+  KeyBuilder& add_bytes(const void* bytes, std::size_t size);
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace opaline

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which result of a scene's stages depends on what: the one notion that the disk cache and the session share.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "opaline/cache/stage_key.h"
+#include "opaline/render/precompute.h"
+
+namespace opaline {
+
+/// Keys of a mesh of the world, after loading, mending and moving: its places alone (what throws shadows), and
+/// with the normals; and a ball around it.
+struct MeshKeys {
+  StageKey shape, all;
+  Vec3d center{};
+  double radius = 0;
+};
+MeshKeys mesh_keys(const Mesh& mesh);
+std::vector<MeshKeys> mesh_keys(const World& world);
+
+/// Of a group's samples placed anew: its meshes, their count and random numbers.
+StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group);
+
+/// Of the samples of key `from`, carried along to the group's meshes as they are now.
+StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes);
+
+/// Of the light that enters at samples from one light: the samples, where and how large the light is but not
+/// its colour, the index of refraction, random numbers, and every mesh that could throw a shadow from this
+/// light onto the group. Shadow rays are Embree's: its version and the machine's instruction set belong to
+/// it. in    light: recentred
+StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
+                      std::size_t group, const Light& light);
+
+/// Of the tree: its samples, each light's transfer and colour.
+StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
+                    std::span<const Light> lights);
+
+/// Whether a mesh could be in the way between a light and a group's meshes, to judge by the balls around them
+/// all; at most too cautious.
+bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
+                const Light& light);
+
+}  // namespace opaline

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Samples that stay where they are on a surface while it moves or bends.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "opaline/core/monitor.h"
+#include "opaline/geometry/world.h"
+#include "opaline/sampling/sample_surface.h"
+
+namespace opaline {
+
+/// A surface before and after: the same meshes in the same order, by their places in two worlds.
+struct CarryInput {
+  const World& from;
+  std::span<const std::uint32_t> from_meshes;
+  const World& to;
+  std::span<const std::uint32_t> to_meshes;
+  const SurfaceSamples& samples;  ///< on `from`
+  Monitor* monitor = nullptr;
+};
+
+/// Whether the meshes have the same triangles, so that samples can be carried.
+bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, const World& to,
+               std::span<const std::uint32_t> to_meshes);
+
+struct CarriedSamples {
+  SurfaceSamples surface;
+  bool rigid = false;  ///< the whole surface moved as one, within 1e-6 of its size: shares are as they were
+  std::size_t added = 0, removed = 0;
+};
+
+/// Each sample at its place of its triangle (barycentrics), with the normal there. Where the surface bends,
+/// every share is divided anew. Where it is squeezed until samples of one sheet are closer than kClosest
+/// radii some go; where it is stretched until a ball of kWidest radii is empty some come: the others stay.
+/// The result depends on the two surfaces alone, not on what lay between them.
+CarriedSamples carry_samples(const CarryInput& input);
+
+inline constexpr float kClosest = 0.6f, kWidest = 1.5f;
+
+}  // namespace opaline

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene that is edited and rendered again and again: what an edit leaves valid is kept.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "opaline/cache/stage_cache.h"
+#include "opaline/cache/stage_keys.h"
+#include "opaline/render/render.h"
+
+namespace opaline {
+
+/// Work of one edit, counted where it is done.
+struct SessionWork {
+  std::size_t meshes_loaded = 0;    ///< read and mended, or built
+  std::size_t samples_placed = 0;   ///< by throwing darts, or where a carried surface was stretched
+  std::size_t samples_carried = 0;  ///< along with their triangles
+  std::size_t samples_removed = 0;  ///< of these, where the surface was squeezed
+  std::size_t lights_traced = 0;    ///< from all samples of a group, each
+  std::uint64_t sample_rays = 0;    ///< shadow rays from samples
+  std::size_t nodes_built = 0;      ///< of trees
+  std::size_t found = 0;            ///< results taken from the cache
+  std::size_t queries = 0;          ///< points at which exitance was evaluated
+};
+
+/// Keeps the last scene's stage results, each with the key of what it was computed from; the next scene takes
+/// over those with equal keys, looks for the others in the cache, and computes what is left:
+///
+///   edit                                what is computed
+///   camera, film                        camera rays and what they see
+///   a light's colour or power           sums over lights, trees; no ray from a sample
+///   a medium                            evaluation; its samples stay while they are dense enough and at most
+///                                       twice as dense (in spacing) as it asks for
+///   eta                                 the light that enters, trees, evaluation
+///   a light moved, added or removed     that light's share, trees, evaluation
+///   an object moved as a whole          its samples go along; light that enters it, and others where the
+///                                       shadow of a ball around it fell or falls
+///   a mesh bent, the same triangles     samples go along with their triangles (carry_samples); all else of
+///   it anything else                       what depends on it
+///
+/// Pictures are those of a new session, bit for bit, but for samples that went along or stayed denser. Those
+/// are the samples of the last surface that was sampled anew, wherever it has been since: a picture depends
+/// on that surface and the scene, not on the edits in between.
+class Session {
+ public:
+  /// cache: where to look for what is not at hand, and to keep it; null: nowhere. Outlives the session.
+  explicit Session(StageCache* cache = nullptr);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Places the scene's samples and holds on to them: every later scene carries these along, or, where its
+  /// surfaces are others, has its own without forgetting them. So frames of a shot are the same whichever
+  /// process renders which of them.
+  /// error as edit
+  void anchor(Scene scene, Monitor* monitor = nullptr);
+
+  /// Takes the scene as it is now: loads meshes that changed and plans. Samples at hand may change the plan.
+  /// error as make_world; the session then holds the scene before
+  void edit(Scene scene);
+
+  /// Computes what the scene needs for its method and is not there; a second call does nothing.
+  /// error Error{interrupted}: what was complete stays
+  void prepare(Monitor* monitor = nullptr);
+
+  /// The picture of the scene; prepares it first.
+  RenderResult render(Monitor* monitor = nullptr);
+
+  const Scene& scene() const { return scene_; }
+  const World& world() const { return *world_; }
+  const Plan& plan() const { return plan_; }
+  const RayScene& rays() const { return *rays_; }                       ///< after prepare
+  std::span<const TranslucentGroup> groups() const { return groups_; }  ///< after prepare
+  const SessionWork& work() const { return work_; }                     ///< of the last edit and since
+  const std::vector<std::string>& decisions() const {
+    return decisions_;
+  }  ///< what was kept, and what not; a line each
+  const std::vector<StageCost>& costs() const { return costs_; }  ///< rays, sampling, irradiance, octree
+
+ private:
+  struct Part;
+
+  bool is_needed() const { return scene_.settings.method == Method::hierarchical && !plan_.groups.empty(); }
+  void keep_spacing();
+  void bring_rays();
+  std::vector<Part> arranged_parts();
+  void bring_samples(Part& part, const PrecomputeInput& input, std::size_t group);
+  void keep_samples(Part& part);
+  void place_anew(Part& part, const PrecomputeInput& input, std::size_t group, const StageKey& key);
+  void carry_along(Part& part, const PrecomputeInput& input, const StageKey& key);
+  void bring_lights(Part& part, const PrecomputeInput& input, std::size_t group,
+                    const std::vector<Light>& lights);
+  void bring_tree(Part& part, const std::vector<Light>& lights);
+  void bring_kernel(Part& part);
+  void assemble();
+  void decide(const Part& part, const std::string& text);
+
+  StageCache* cache_;
+  Scene scene_;
+  std::shared_ptr<const World> world_;
+  std::vector<StageKey> shape_keys_;  // what each mesh was loaded from
+  std::vector<MeshKeys> mesh_keys_;
+  Plan plan_;
+  std::unique_ptr<RayScene> rays_;
+  std::vector<MeshKeys> rays_keys_;
+  std::vector<Part> parts_;  // a group's, without what groups_ holds
+  std::vector<TranslucentGroup> groups_;
+  bool prepared_ = false, anchored_ = false;
+  SessionWork work_;
+  std::vector<std::string> decisions_;
+  std::vector<StageCost> costs_;
+};
+
+}  // namespace opaline

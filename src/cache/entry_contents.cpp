@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cache/entry_contents.h"
+
+#include <algorithm>
+
+namespace opaline {
+namespace {
+
+herr_t leave_open(hid_t) {
+  return 0;
+}
+
+struct Member {
+  const char* name;
+  std::size_t offset;
+  hid_t number;       // HDF5's type of its numbers
+  hsize_t count = 1;  // of them
+};
+
+Hdf5Handle array_of(hid_t number, hsize_t count) {
+  return {H5Tarray_create2(number, 1, &count), H5Tclose};
+}
+
+/// A struct as it lies in memory, so that reading is copying.
+Hdf5Handle struct_of(std::size_t size, std::initializer_list<Member> members) {
+  Hdf5Handle type(H5Tcreate(H5T_COMPOUND, size), H5Tclose);
+  for (const Member& m : members) {
+    const Hdf5Handle array = array_of(m.number, m.count);
+    H5Tinsert(type.id(), m.name, m.offset, m.count > 1 ? array.id() : m.number);
+  }
+  return type;
+}
+
+}  // namespace
+
+template <>
+Hdf5Handle hdf5_type<float>() {
+  return {H5T_NATIVE_FLOAT, leave_open};
+}
+
+template <>
+Hdf5Handle hdf5_type<Vec3f>() {
+  return array_of(H5T_NATIVE_FLOAT, 3);
+}
+
+template <>
+Hdf5Handle hdf5_type<SurfaceSample>() {
+  using S = SurfaceSample;
+  static_assert(sizeof(S) == 56, "every member is in the list below");
+  return struct_of(sizeof(S), {{"mesh", offsetof(S, mesh), H5T_NATIVE_UINT32},
+                               {"triangle", offsetof(S, triangle), H5T_NATIVE_UINT32},
+                               {"u", offsetof(S, u), H5T_NATIVE_FLOAT},
+                               {"v", offsetof(S, v), H5T_NATIVE_FLOAT},
+                               {"position", offsetof(S, position), H5T_NATIVE_FLOAT, 3},
+                               {"normal", offsetof(S, normal), H5T_NATIVE_FLOAT, 3},
+                               {"area", offsetof(S, area), H5T_NATIVE_FLOAT},
+                               {"centroid", offsetof(S, centroid), H5T_NATIVE_FLOAT, 3}});
+}
+
+template <>
+Hdf5Handle hdf5_type<OctreeNode>() {
+  using N = OctreeNode;
+  static_assert(sizeof(N) == 128 && offsetof(N, leaf) == 124, "every member is in the list below");
+  return struct_of(sizeof(N), {{"x", offsetof(N, x), H5T_NATIVE_FLOAT, 4},
+                               {"y", offsetof(N, y), H5T_NATIVE_FLOAT, 4},
+                               {"z", offsetof(N, z), H5T_NATIVE_FLOAT, 4},
+                               {"flux", offsetof(N, flux), H5T_NATIVE_FLOAT, 4},
+                               {"center", offsetof(N, center), H5T_NATIVE_FLOAT, 3},
+                               {"half", offsetof(N, half), H5T_NATIVE_FLOAT, 3},
+                               {"spread", offsetof(N, spread), H5T_NATIVE_FLOAT, 6},
+                               {"skip", offsetof(N, skip), H5T_NATIVE_UINT32},
+                               {"first", offsetof(N, first), H5T_NATIVE_UINT32},
+                               {"count", offsetof(N, count), H5T_NATIVE_UINT32},
+                               {"leaf", offsetof(N, leaf), H5T_NATIVE_UINT8}});
+}
+
+template <>
+Hdf5Handle hdf5_type<TreeSample>() {
+  using S = TreeSample;
+  static_assert(sizeof(S) == 32, "every member is in the list below");
+  return struct_of(sizeof(S), {{"x", offsetof(S, x), H5T_NATIVE_FLOAT},
+                               {"y", offsetof(S, y), H5T_NATIVE_FLOAT},
+                               {"z", offsetof(S, z), H5T_NATIVE_FLOAT},
+                               {"area", offsetof(S, area), H5T_NATIVE_FLOAT},
+                               {"flux", offsetof(S, flux), H5T_NATIVE_FLOAT, 4}});
+}
+
+void put_samples(Hdf5Writer& file, const SurfaceSamples& samples, std::span<const std::uint32_t> meshes) {
+  std::vector<SurfaceSample> local = samples.samples;
+  for (SurfaceSample& s : local) s.mesh = std::uint32_t(std::ranges::find(meshes, s.mesh) - meshes.begin());
+  file.put("samples", std::span<const SurfaceSample>(local));
+  file.put("area", samples.area);
+  file.put("radius", samples.radius);
+}
+
+std::optional<SurfaceSamples> get_samples(const Hdf5Reader& file, std::span<const std::uint32_t> meshes) {
+  auto samples = file.get<SurfaceSample>("samples");
+  const std::optional<double> area = file.number("area"), radius = file.number("radius");
+  if (!samples || !area || !radius) return {};
+  for (SurfaceSample& s : *samples) {
+    if (s.mesh >= meshes.size()) return {};
+    s.mesh = meshes[s.mesh];
+  }
+  return SurfaceSamples{std::move(*samples), *area, *radius};
+}
+
+void put_light(Hdf5Writer& file, const LightTransfer& transfer) {
+  file.put("weights", std::span(transfer.weights));
+  file.put("relative_error", transfer.relative_error);
+}
+
+std::optional<LightTransfer> get_light(const Hdf5Reader& file) {
+  auto weights = file.get<float>("weights");
+  const std::optional<double> error = file.number("relative_error");
+  if (!weights || !error) return {};
+  return LightTransfer{std::move(*weights), *error};
+}
+
+void put_octree(Hdf5Writer& file, const Octree& octree) {
+  file.put("nodes", std::span(octree.nodes));
+  file.put("samples", std::span(octree.samples));
+  file.put("normals", std::span(octree.normals));
+  file.put("flux_unit", double(octree.flux_unit));
+}
+
+std::optional<Octree> get_octree(const Hdf5Reader& file) {
+  auto nodes = file.get<OctreeNode>("nodes");
+  auto samples = file.get<TreeSample>("samples");
+  auto normals = file.get<Vec3f>("normals");
+  const std::optional<double> unit = file.number("flux_unit");
+  if (!nodes || !samples || !normals || !unit) return {};
+  return Octree{std::move(*nodes), std::move(*samples), std::move(*normals), float(*unit)};
+}
+
+}  // namespace opaline

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/cache/stage_keys.h"
+
+#include <embree3/rtcore_config.h>
+
+#include "opaline/irradiance/light_sampling.h"
+
+namespace opaline {
+namespace {
+
+// Raise a stage's number when it computes other values from the same input (test_stage_versions).
+constexpr std::uint64_t kSamplesVersion = 1, kCarriedVersion = 1, kTransferVersion = 1, kOctreeVersion = 1;
+
+const char* widest_instructions() {
+  if (__builtin_cpu_supports("avx512f")) return "avx512";
+  if (__builtin_cpu_supports("avx2")) return "avx2";
+  if (__builtin_cpu_supports("avx")) return "avx";
+  return __builtin_cpu_supports("sse4.2") ? "sse4.2" : "sse2";
+}
+
+/// Where a light is and how large, without its colour.
+struct AddPlace {
+  KeyBuilder& key;
+  void operator()(const PointLight& light) const { key.add(light.position); }
+  void operator()(const DirectionalLight& light) const { key.add(light.direction); }
+  void operator()(const SphereLight& light) const { key.add(light.center).add(light.radius); }
+  void operator()(const QuadLight& light) const { key.add(light.corner).add(light.u).add(light.v); }
+  void operator()(const Surroundings&) const {}
+};
+
+}  // namespace
+
+MeshKeys mesh_keys(const Mesh& mesh) {
+  KeyBuilder shape("mesh", 1);
+  shape.add_array(std::span(mesh.positions)).add_array(std::span(mesh.triangles));
+  MeshKeys keys{shape.key(), {}, {}, 0};
+  keys.all = KeyBuilder("mesh with normals", 1).add(keys.shape).add_array(std::span(mesh.normals)).key();
+  const Bounds box = bounds(mesh);
+  keys.center = 0.5 * (box.low + box.high);
+  for (const Vec3d& p : mesh.positions) keys.radius = std::max(keys.radius, length(p - keys.center));
+  return keys;
+}
+
+std::vector<MeshKeys> mesh_keys(const World& world) {
+  std::vector<MeshKeys> keys;
+  for (const Mesh& mesh : world.meshes) keys.push_back(mesh_keys(mesh));
+  return keys;
+}
+
+StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group) {
+  const GroupPlan& plan = input.plan.groups[group];
+  KeyBuilder key("samples", kSamplesVersion);
+  key.add(std::uint64_t(plan.samples)).add(sampling_seed(input.scene.settings, group));
+  for (const std::uint32_t m : plan.meshes) key.add(meshes[m].all);
+  return key.key();
+}
+
+StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes) {
+  KeyBuilder key("carried samples", kCarriedVersion);
+  key.add(from);
+  for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
+  return key.key();
+}
+
+StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
+                      std::size_t group, const Light& light) {
+  const GroupPlan& plan = input.plan.groups[group];
+  const Settings& settings = input.scene.settings;
+  KeyBuilder key("transfer", kTransferVersion);
+  key.add(std::string(RTC_VERSION_STRING)).add(std::string(widest_instructions()));
+  key.add(samples).add(input.scene.media[plan.medium].eta).add(std::uint64_t(light.source.index()));
+  std::visit(AddPlace{key}, light.source);
+  if (!is_delta(light))
+    key.add(settings.light_samples).add(light_seed(irradiance_seed(settings, group), light));
+  for (std::uint32_t m = 0; m < meshes.size(); ++m)
+    if (may_shadow(meshes, m, plan, light)) key.add(meshes[m].shape);
+  return key.key();
+}
+
+StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
+                    std::span<const Light> lights) {
+  KeyBuilder key("octree", kOctreeVersion);
+  key.add(samples);
+  for (std::size_t l = 0; l < lights.size(); ++l) key.add(transfers[l]).add(emission(lights[l]));
+  return key.key();
+}
+
+}  // namespace opaline

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/frames.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <set>
+
+#include "cli/metadata.h"
+#include "opaline/core/error.h"
+#include "opaline/image/image.h"
+#include "opaline/scene/load_scene.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::size_t kMostFrames = 100000;
+
+/// Takes a whole number off the front.
+std::optional<int> take_number(std::string_view& text) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || number < 0) return {};
+  text.remove_prefix(std::size_t(end - text.data()));
+  return number;
+}
+
+bool take(std::string_view& text, char c) {
+  if (!text.starts_with(c)) return false;
+  text.remove_prefix(1);
+  return true;
+}
+
+}  // namespace
+
+std::optional<std::vector<int>> parse_frames(const std::string& text) {
+  std::set<int> frames;
+  std::string_view rest = text;
+  do {
+    const std::optional<int> first = take_number(rest);
+    const std::optional<int> last = take(rest, '-') ? take_number(rest) : first;
+    const std::optional<int> step = take(rest, 'x') ? take_number(rest) : 1;
+    if (!first || !last || !step || *last < *first || *step < 1) return {};
+    for (std::int64_t frame = *first; frame <= *last; frame += *step) {
+      frames.insert(int(frame));
+      if (frames.size() > kMostFrames) return {};
+    }
+  } while (take(rest, ','));
+  if (!rest.empty()) return {};
+  return std::vector<int>(frames.begin(), frames.end());
+}
+
+void for_frames(const Log& log, const std::vector<int>& frames, const std::function<void(int)>& work) {
+  std::vector<int> failed;
+  for (const int frame : frames) {
+    if (!log.quiet && log.format == LogFormat::text) write_line(stdout, fmt::format("\nframe {}", frame));
+    if (!log.quiet) print_event(log, "frame", {{"frame", frame}});
+    try {
+      work(frame);
+    } catch (const std::exception& failure) {
+      const auto* error = dynamic_cast<const Error*>(&failure);
+      if (error != nullptr && error->kind == ErrorKind::interrupted) throw;
+      print_warning(log, fmt::format("frame {} failed: {}", frame, failure.what()));
+      failed.push_back(frame);
+    }
+  }
+  if (failed.empty()) return;
+  throw run_failed(
+      {}, fmt::format("{} of {} frames failed: {}", failed.size(), frames.size(), fmt::join(failed, ", ")));
+}
+
+void anchor_session(Session& session, const std::string& scene, const std::vector<std::string>& overrides) {
+  const int reference = load_scene(scene, overrides).settings.reference_frame;
+  Scene anchor = load_scene(scene, overrides, reference);
+  if (anchor.settings.method == Method::hierarchical) session.anchor(std::move(anchor));
+}
+
+std::string frame_hash(const std::string& path, const std::vector<std::string>& overrides,
+                       const Scene& scene) {
+  Scene both = scene;
+  const Scene reference = load_scene(path, overrides, scene.settings.reference_frame);
+  both.shapes.insert(both.shapes.end(), reference.shapes.begin(), reference.shapes.end());
+  return scene_hash(path, overrides, both);
+}
+
+RenderArguments arguments_of_frame(const RenderArguments& arguments, int frame) {
+  RenderArguments own = arguments;
+  for (std::string& output : own.outputs) output = with_frame(output, frame);
+  own.samples_ply = with_frame(own.samples_ply, frame);
+  own.resume = with_frame(own.resume, frame);
+  return own;
+}
+
+bool is_rendered(const RenderArguments& arguments, const std::string& hash, int frame) {
+  bool known = false;
+  std::vector<std::string> others = arguments.outputs;
+  if (!arguments.samples_ply.empty()) others.push_back(arguments.samples_ply);
+  for (const std::string& path : others)
+    if (!std::filesystem::exists(path)) return false;
+  for (const std::string& path : arguments.outputs) {
+    if (output_format(path) != OutputFormat::exr) continue;
+    try {
+      const Metadata stated = read_image(path).metadata;
+      for (const auto& entry : frame_metadata(arguments, hash, frame))
+        if (std::ranges::find(stated, entry) == stated.end()) return false;
+    } catch (const Error&) {
+      return false;  // no picture: to be written over
+    }
+    known = true;
+  }
+  return known;
+}
+
+}  // namespace opaline

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One frame after the other; one that fails does not stop the others.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "opaline/session/session.h"
+
+namespace opaline {
+
+/// "1-24", "1-24x2", "1,5,7-9" in rising order, each once; nothing if it is none of these, or more than
+/// 100000.
+std::optional<std::vector<int>> parse_frames(const std::string& text);
+
+/// Calls work(frame) for each; what goes wrong with a frame is printed, naming it, and the others go on.
+/// error Error{run_failed} at the end, naming the frames that failed; Error{interrupted} at once
+void for_frames(const Log& log, const std::vector<int>& frames, const std::function<void(int)>& work);
+
+/// Gives the session the scene of the reference frame, if its method has samples.
+void anchor_session(Session& session, const std::string& scene, const std::vector<std::string>& overrides);
+
+/// What a picture of a frame is made from besides the program: as scene_hash, with the reference frame's
+/// meshes.
+std::string frame_hash(const std::string& path, const std::vector<std::string>& overrides,
+                       const Scene& scene);
+
+/// The command's arguments with the frame's number in the names of its files.
+RenderArguments arguments_of_frame(const RenderArguments& arguments, int frame);
+
+/// Whether all the outputs are there and each EXR says that this frame was made by this version from this
+/// hash with this command; false without an EXR, for other files say nothing.
+bool is_rendered(const RenderArguments& arguments, const std::string& hash, int frame);
+
+}  // namespace opaline

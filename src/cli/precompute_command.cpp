@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <tbb/global_control.h>
+
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/frames.h"
+#include "cli/stages.h"
+#include "opaline/scene/load_scene.h"
+
+namespace opaline {
+namespace {
+
+void precompute_frame(const PrecomputeArguments& arguments, Session& session, StageCache& cache, int frame) {
+  StageRunner stages(arguments.log);
+  stages.run("loading", [&] {
+    Scene scene = load_scene(arguments.scene, arguments.overrides, frame);
+    scene.settings.method = Method::hierarchical;  // what else is there to prepare
+    session.edit(std::move(scene));
+    return 0;
+  });
+  stages.run_unmeasured("rays", [&] { session.prepare(&stages.monitor()); });
+  for (const StageCost& cost : session.costs()) stages.note(cost);
+  print_decisions(arguments.log, session.decisions(), cache.warning());
+}
+
+}  // namespace
+
+void precompute_command(const PrecomputeArguments& arguments) {
+  std::optional<tbb::global_control> threads;
+  if (arguments.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
+  StageCache cache(arguments.cache, arguments.cache_bytes);
+  Session session(&cache);
+  if (arguments.frames.empty()) return precompute_frame(arguments, session, cache, 1);
+  anchor_session(session, arguments.scene, arguments.overrides);
+  for_frames(arguments.log, arguments.frames,
+             [&](int frame) { precompute_frame(arguments, session, cache, frame); });
+}
+
+}  // namespace opaline

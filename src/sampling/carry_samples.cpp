@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/sampling/carry_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "opaline/core/error.h"
+#include "opaline/core/parallel.h"
+#include "sampling/stretched_cloud.h"
+#include "sampling/surface_shares.h"
+#include "sampling/triangle_list.h"
+
+namespace opaline {
+namespace {
+
+struct Frame {
+  Vec3d origin, x, y, z;
+};
+
+Frame frame_of(const Mesh& mesh, std::uint32_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const Vec3d origin = mesh.positions[a], x = normalized(mesh.positions[b] - origin),
+              z = normalized(cross(x, mesh.positions[c] - origin));
+  return {origin, x, cross(z, x), z};
+}
+
+/// A turn and a shift.
+struct Motion {
+  Frame from, to;
+  Vec3d turn(const Vec3d& v) const {
+    return to.x * dot(v, from.x) + to.y * dot(v, from.y) + to.z * dot(v, from.z);
+  }
+  Vec3d operator()(const Vec3d& p) const { return to.origin + turn(p - from.origin); }
+};
+
+double double_area(const Mesh& mesh, std::size_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return length(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]));
+}
+
+/// The motion that takes the first mesh's largest triangle along, if it does so with every vertex of all.
+std::optional<Motion> common_motion(const CarryInput& input) {
+  const Mesh &before = input.from.meshes[input.from_meshes[0]], &after = input.to.meshes[input.to_meshes[0]];
+  std::uint32_t largest = 0;
+  for (std::uint32_t t = 0; t < before.triangles.size(); ++t)
+    if (double_area(before, t) > double_area(before, largest)) largest = t;
+  const Motion motion{frame_of(before, largest), frame_of(after, largest)};
+  for (std::size_t m = 0; m < input.from_meshes.size(); ++m) {
+    const std::vector<Vec3d>& p = input.from.meshes[input.from_meshes[m]].positions;
+    const std::vector<Vec3d>& q = input.to.meshes[input.to_meshes[m]].positions;
+    const Bounds box = bounds(input.from.meshes[input.from_meshes[m]]);
+    const double most = 1e-6 * length(box.high - box.low);
+    for (std::size_t i = 0; i < p.size(); ++i)
+      if (!(length(motion(p[i]) - q[i]) <= most)) return {};
+  }
+  return motion;
+}
+
+/// Index into from_meshes of each mesh of the world before.
+std::vector<std::size_t> places_of(std::span<const std::uint32_t> meshes) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    places.resize(std::max<std::size_t>(places.size(), meshes[i] + 1));
+    places[meshes[i]] = i;
+  }
+  return places;
+}
+
+SurfaceSamples moved(const CarryInput& input, const Motion& motion) {
+  SurfaceSamples result = input.samples;
+  const std::vector<std::size_t> place = places_of(input.from_meshes);
+  parallel_chunks(result.samples.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      SurfaceSample& s = result.samples[i];
+      const Vec3d offset = Vec3d(s.centroid) - Vec3d(s.position);
+      s.mesh = input.to_meshes[place[s.mesh]];
+      const SurfacePoint point = surface_point(input.to.meshes[s.mesh], s.triangle, s.u, s.v);
+      s.position = point.position;
+      s.normal = point.normal;
+      s.centroid = Vec3f(Vec3d(point.position) + motion.turn(offset));
+    }
+  });
+  return result;
+}
+
+/// Every sample at its place of the new surface, by the triangle's place in the list.
+std::vector<SampleGrid::Place> carried_places(const CarryInput& input) {
+  std::vector<std::uint32_t> first{0};  // of each mesh's triangles in the list
+  for (const std::uint32_t m : input.from_meshes)
+    first.push_back(first.back() + std::uint32_t(input.from.meshes[m].triangles.size()));
+  const std::vector<std::size_t> place = places_of(input.from_meshes);
+  std::vector<SampleGrid::Place> places;
+  for (const SurfaceSample& s : input.samples.samples)
+    places.push_back({first[place[s.mesh]] + s.triangle, s.u, s.v});
+  return places;
+}
+
+SurfaceSamples divided_anew(const TriangleList& triangles, const SampleGrid& grid, double radius,
+                            Monitor* monitor) {
+  const std::vector<SurfaceShare> shares = surface_shares(triangles, grid, float(radius), monitor);
+  std::vector<std::uint32_t> order(grid.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    const SampleGrid::Place &p = grid.place(a), &q = grid.place(b);
+    return std::tie(p.triangle, p.u, p.v) < std::tie(q.triangle, q.u, q.v);
+  });
+  SurfaceSamples result{std::vector<SurfaceSample>(order.size()), triangles.area(), radius};
+  parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const SampleGrid::Place& place = grid.place(order[i]);
+      const SurfaceShare& share = shares[order[i]];
+      const TriangleId id = triangles.id(place.triangle);
+      const SurfacePoint point = surface_point(triangles.mesh(id), id.triangle, place.u, place.v);
+      const Vec3f offset = share.area > 0 ? Vec3f(share.moment / share.area) : Vec3f{};
+      result.samples[i] = {id.mesh,        id.triangle,  place.u,           place.v,
+                           point.position, point.normal, float(share.area), point.position + offset};
+    }
+  });
+  return result;
+}
+
+}  // namespace
+
+bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, const World& to,
+               std::span<const std::uint32_t> to_meshes) {
+  return !from_meshes.empty() &&
+         std::ranges::equal(from_meshes, to_meshes, [&](std::uint32_t a, std::uint32_t b) {
+           return from.meshes[a].positions.size() == to.meshes[b].positions.size() &&
+                  from.meshes[a].triangles == to.meshes[b].triangles;
+         });
+}
+
+CarriedSamples carry_samples(const CarryInput& input) {
+  if (const std::optional<Motion> motion = common_motion(input)) return {moved(input, *motion), true, 0, 0};
+  const TriangleList before(input.from, input.from_meshes), after(input.to, input.to_meshes);
+  if (input.monitor != nullptr) input.monitor->begin("sampling", after.size());
+  StretchedCloud cloud(before, after, float(input.samples.radius), carried_places(input));
+  CarriedSamples result;
+  result.removed = cloud.remove_crowded(kClosest);
+  result.added = cloud.fill_gaps(kWidest);
+  result.surface = divided_anew(after, cloud.grid(), input.samples.radius, input.monitor);
+  return result;
+}
+
+}  // namespace opaline

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sampling/stretched_cloud.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <unordered_map>
+
+#include "opaline/core/parallel.h"
+#include "opaline/core/random.h"
+#include "opaline/sampling/sample_surface.h"
+
+namespace opaline {
+namespace {
+
+struct Standing {
+  Vec3f position, normal;
+};
+
+std::vector<Standing> standing_on(const TriangleList& triangles,
+                                  const std::vector<SampleGrid::Place>& places) {
+  std::vector<Standing> all(places.size());
+  parallel_chunks(places.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const TriangleList::Corners corners = triangles.corners(triangles.id(places[i].triangle));
+      all[i] = {corners.at(places[i].u, places[i].v), corners.geometric_normal()};
+    }
+  });
+  return all;
+}
+
+Vec3f lowest(const TriangleList& triangles) {
+  Vec3f low(INFINITY);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const TriangleList::Corners c = triangles.corners(triangles.id(t));
+    low = component_min(low, Vec3f(component_min(c.a, component_min(c.b, c.c))));
+  }
+  return low;
+}
+
+/// Samples one after the other, found by cells as wide as the distance asked for.
+class GrowingCloud {
+ public:
+  GrowingCloud(const Vec3f& low, float distance) : low_(low), distance_(distance) {}
+
+  bool is_clear(const Standing& s) const {
+    const auto [x, y, z] = cell_of(s.position);
+    for (std::int64_t i = x - 1; i <= x + 1; ++i)
+      for (std::int64_t j = y - 1; j <= y + 1; ++j)
+        for (std::int64_t k = z - 1; k <= z + 1; ++k)
+          if (const auto cell = cells_.find(key(i, j, k)); cell != cells_.end())
+            for (const Standing& other : cell->second) {
+              const Vec3f d = other.position - s.position;
+              if (dot(d, d) < distance_ * distance_ && same_sheet(s.normal, other.normal)) return false;
+            }
+    return true;
+  }
+  void add(const Standing& s) {
+    const auto [x, y, z] = cell_of(s.position);
+    cells_[key(x, y, z)].push_back(s);
+  }
+
+ private:
+  std::array<std::int64_t, 3> cell_of(const Vec3f& p) const {
+    const Vec3f c = (p - low_) / distance_;
+    return {std::int64_t(std::floor(c.x)), std::int64_t(std::floor(c.y)), std::int64_t(std::floor(c.z))};
+  }
+  static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
+    return morton_key(std::uint64_t(x + 1), std::uint64_t(y + 1), std::uint64_t(z + 1));
+  }
+
+  Vec3f low_;
+  float distance_;
+  std::unordered_map<std::uint64_t, std::vector<Standing>> cells_;
+};
+
+}  // namespace
+
+StretchedCloud::StretchedCloud(const TriangleList& before, const TriangleList& after, float radius,
+                               std::vector<SampleGrid::Place> places)
+    : before_(before), after_(after), radius_(radius), places_(std::move(places)) {}
+
+std::size_t StretchedCloud::remove_crowded(float radii) {
+  const std::vector<Standing> standing = standing_on(after_, places_);
+  // Who stays is drawn by lot, the same one in every frame.
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> lots(places_.size());
+  for (std::uint32_t i = 0; i < lots.size(); ++i) {
+    const SampleGrid::Place& p = places_[i];
+    lots[i] = {
+        hash_bits(std::uint64_t(std::bit_cast<std::uint32_t>(p.u)) << 32 | std::bit_cast<std::uint32_t>(p.v),
+                  p.triangle),
+        i};
+  }
+  std::ranges::sort(lots);
+  GrowingCloud cloud(lowest(after_), radii * radius_);
+  std::vector<std::uint32_t> kept;
+  for (const auto& [lot, i] : lots) {
+    if (!cloud.is_clear(standing[i])) continue;
+    cloud.add(standing[i]);
+    kept.push_back(i);
+  }
+  std::ranges::sort(kept);
+  const std::size_t removed = places_.size() - kept.size();
+  std::vector<SampleGrid::Place> places;
+  for (const std::uint32_t i : kept) places.push_back(places_[i]);
+  places_ = std::move(places);
+  return removed;
+}
+
+std::size_t StretchedCloud::fill_gaps(float radii) {
+  // A gap between samples that was as wide before is no matter of stretch.
+  constexpr double kGrown = 1.2 * 1.2;
+  constexpr double kTriesPerArea = 4;  // in squared clearances
+  const float clearance = radii * radius_;
+  GrowingCloud cloud(lowest(after_), clearance);
+  for (const Standing& s : standing_on(after_, places_)) cloud.add(s);
+  std::size_t added = 0;
+  for (std::size_t t = 0; t < after_.size(); ++t) {
+    const auto area = [t](const TriangleList& list) {
+      return list.cumulative(t) - (t > 0 ? list.cumulative(t - 1) : 0);
+    };
+    if (!(area(after_) > kGrown * area(before_))) continue;
+    const TriangleList::Corners corners = after_.corners(after_.id(t));
+    const Vec3f normal = corners.geometric_normal();
+    const double tries = std::ceil(kTriesPerArea * area(after_) / double(clearance * clearance));
+    for (std::uint64_t k = 0; double(k) < tries; ++k) {
+      auto [u, v] = r2_point(k, {unit_double(hash_bits(1, 2 * t)), unit_double(hash_bits(1, 2 * t + 1))});
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const Standing s{corners.at(float(u), float(v)), normal};
+      if (!cloud.is_clear(s)) continue;
+      cloud.add(s);
+      places_.push_back({std::uint32_t(t), float(u), float(v)});
+      ++added;
+    }
+  }
+  return added;
+}
+
+SampleGrid StretchedCloud::grid() const {
+  const std::vector<Standing> standing = standing_on(after_, places_);
+  SampleGrid grid(lowest(after_), 2 * radius_);
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // by cell
+  for (std::uint32_t i = 0; i < standing.size(); ++i) order.emplace_back(grid.key(standing[i].position), i);
+  std::ranges::sort(order);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    if (i == 0 || order[i].first != order[i - 1].first) grid.reserve_cell(order[i].first);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    SampleGrid::Cell& cell = grid.cell(order[i].first);
+    if (cell.round_count++ == 0) cell.round_first = std::uint32_t(i);
+  }
+  grid.end_round([&](std::uint32_t i) {
+    const std::uint32_t s = order[i].second;
+    return SampleGrid::Sample{standing[s].position, standing[s].normal, places_[s]};
+  });
+  return grid;
+}
+
+}  // namespace opaline

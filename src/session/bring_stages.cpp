@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Each stage's result: kept, from the cache, or computed; under its key only once it is whole.
+#include <fmt/format.h>
+
+#include "opaline/sampling/carry_samples.h"
+#include "session/session_part.h"
+
+namespace opaline {
+namespace {
+
+bool is_from_this_plan(const SampleOrigin& origin, const PrecomputeInput& input, std::size_t group) {
+  return origin.key != StageKey{} && origin.count == input.plan.groups[group].samples &&
+         origin.seed == sampling_seed(input.scene.settings, group);
+}
+
+void renumber(std::vector<SurfaceSample>& samples, const std::vector<std::uint32_t>& from,
+              const std::vector<std::uint32_t>& to) {
+  if (from == to) return;
+  for (SurfaceSample& s : samples) s.mesh = to[std::size_t(std::ranges::find(from, s.mesh) - from.begin())];
+}
+
+}  // namespace
+
+void Session::bring_samples(Part& part, const PrecomputeInput& input, std::size_t group) {
+  const StageKey anew = samples_key(input, mesh_keys_, group);
+  if (anew == part.samples_key) return keep_samples(part);
+  if (anew == part.origin.key) {  // back where they were placed
+    part.surface = std::move(part.origin.surface);
+    part.meshes = part.origin.meshes;
+    part.samples_key = anew;
+    return keep_samples(part);
+  }
+  if (!is_from_this_plan(part.origin, input, group) ||
+      !can_carry(*part.origin.world, part.origin.meshes, *world_, part.plan.meshes))
+    return place_anew(part, input, group, anew);
+  const StageKey carried = carried_samples_key(part.origin.key, part.plan, mesh_keys_);
+  if (carried == part.samples_key) return keep_samples(part);
+  carry_along(part, input, carried);
+}
+
+void Session::keep_samples(Part& part) {
+  renumber(part.surface.samples, part.meshes, part.plan.meshes);
+  part.meshes = part.plan.meshes;
+  if (!part.is_carried()) {
+    part.origin.world = world_;
+    part.origin.meshes = part.meshes;
+  }
+  decide(part, fmt::format("{} samples kept", part.surface.samples.size()));
+}
+
+void Session::place_anew(Part& part, const PrecomputeInput& input, std::size_t group, const StageKey& key) {
+  const Settings& settings = input.scene.settings;
+  if (anchored_ && !part.is_carried()) part.origin.surface = std::move(part.surface);
+  part.samples_key = {};
+  if (!anchored_) part.origin = {};
+  std::optional<SurfaceSamples> found;
+  if (cache_ != nullptr) found = cache_->find_samples(key, part.plan.meshes);
+  work_.found += found ? 1 : 0;
+  if (found) {
+    part.surface = std::move(*found);
+  } else {
+    part.surface = place_samples(input, group);
+    work_.samples_placed += part.surface.samples.size();
+    if (cache_ != nullptr) cache_->keep_samples(key, part.surface, part.plan.meshes);
+  }
+  part.meshes = part.plan.meshes;
+  if (!anchored_)
+    part.origin = {world_,
+                   part.meshes,
+                   key,
+                   sampling_seed(settings, group),
+                   part.plan.samples,
+                   part.surface.area,
+                   {},
+                   settings.samples.has_value(),
+                   settings.sample_spacing};
+  part.samples_key = key;
+  decide(part,
+         fmt::format("{} samples {}", part.surface.samples.size(), found ? "from the cache" : "placed anew"));
+}
+
+void Session::carry_along(Part& part, const PrecomputeInput& input, const StageKey& key) {
+  if (!part.is_carried()) part.origin.surface = std::move(part.surface);
+  part.samples_key = {};
+  std::optional<SurfaceSamples> found;
+  if (cache_ != nullptr) found = cache_->find_samples(key, part.plan.meshes);
+  if (found) {
+    part.surface = std::move(*found);
+    ++work_.found;
+    decide(part, fmt::format("{} samples from the cache", part.surface.samples.size()));
+  } else {
+    CarriedSamples carried = carry_samples({*part.origin.world, part.origin.meshes, *world_, part.plan.meshes,
+                                            part.origin.surface, input.monitor});
+    part.surface = std::move(carried.surface);
+    work_.samples_carried += part.surface.samples.size() - carried.added;
+    work_.samples_placed += carried.added;
+    work_.samples_removed += carried.removed;
+    if (cache_ != nullptr) cache_->keep_samples(key, part.surface, part.plan.meshes);
+    decide(part, carried.rigid ? fmt::format("{} samples went along", part.surface.samples.size())
+                               : fmt::format("{} samples went along, {} added, {} removed",
+                                             part.surface.samples.size(), carried.added, carried.removed));
+  }
+  part.meshes = part.plan.meshes;
+  part.samples_key = key;
+}
+
+void Session::bring_lights(Part& part, const PrecomputeInput& input, std::size_t group,
+                           const std::vector<Light>& lights) {
+  std::vector<StageKey> keys;
+  std::vector<LightTransfer> transfers(lights.size());
+  std::vector<Light> missing;
+  std::vector<std::size_t> places;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    keys.push_back(transfer_key(input, part.samples_key, mesh_keys_, group, lights[l]));
+    const auto old = std::ranges::find(part.light_keys, keys[l]);
+    std::optional<LightTransfer> found;
+    if (old != part.light_keys.end()) {
+      transfers[l] = part.transfers[std::size_t(old - part.light_keys.begin())];
+      decide(part, fmt::format("light of {} kept", lights[l].name));
+    } else if (cache_ != nullptr && (found = cache_->find_light(keys[l]))) {
+      transfers[l] = std::move(*found);
+      ++work_.found;
+      decide(part, fmt::format("light of {} from the cache", lights[l].name));
+    } else {
+      missing.push_back(lights[l]);
+      places.push_back(l);
+      decide(part, fmt::format("light of {} traced", lights[l].name));
+    }
+  }
+  if (!missing.empty()) {
+    const std::uint64_t before = rays_->statistics().rays;
+    std::vector<LightTransfer> traced = light_samples(input, group, part.surface.samples, missing);
+    work_.sample_rays += rays_->statistics().rays - before;
+    work_.lights_traced += missing.size();
+    for (std::size_t i = 0; i < missing.size(); ++i) {
+      if (cache_ != nullptr) cache_->keep_light(keys[places[i]], traced[i]);
+      transfers[places[i]] = std::move(traced[i]);
+    }
+  }
+  part.light_keys = std::move(keys);
+  part.transfers = std::move(transfers);
+}
+
+void Session::bring_tree(Part& part, const std::vector<Light>& lights) {
+  const StageKey key = octree_key(part.samples_key, part.light_keys, lights);
+  if (key == part.tree_key) return decide(part, "tree kept");
+  part.tree_key = {};
+  part.irradiance = combine_lights(part.transfers, lights);
+  part.irradiance_noise = combined_noise(part.transfers, lights);
+  std::optional<Octree> found;
+  if (cache_ != nullptr) found = cache_->find_octree(key);
+  if (found) {
+    part.octree = std::move(*found);
+    ++work_.found;
+  } else {
+    part.octree = gather_flux(part.surface.samples, part.irradiance);
+    work_.nodes_built += part.octree.nodes.size();
+    if (cache_ != nullptr) cache_->keep_octree(key, part.octree);
+  }
+  part.tree_key = key;
+  decide(part, found ? "tree from the cache" : "tree built");
+}
+
+void Session::bring_kernel(Part& part) {
+  const Medium& medium = scene_.media[part.plan.medium];
+  KeyBuilder key("kernel", 1);
+  std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
+  key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(medium.profile);
+  key.add(part.surface.spacing()).add(world_->diagonal);
+  key.add(scene_.settings.near_field).add(scene_.settings.near_irradiance);
+  if (key.key() == part.kernel_key) return;
+  part.kernel_key = {};
+  part.kernel.emplace(group_kernel(part.profile, part.surface, *world_, scene_.settings));
+  part.kernel_key = key.key();
+}
+
+}  // namespace opaline

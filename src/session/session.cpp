@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/session/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "session/session_part.h"
+#include "session/shape_key.h"
+
+namespace opaline {
+namespace {
+
+/// For each new shape the index of an old one with its key, each old one once.
+std::vector<std::optional<std::size_t>> kept_shapes(const std::vector<StageKey>& before,
+                                                    const std::vector<StageKey>& now) {
+  std::vector<std::optional<std::size_t>> kept(now.size());
+  std::vector<bool> taken(before.size());
+  for (std::size_t i = 0; i < now.size(); ++i)
+    for (std::size_t j = 0; j < before.size() && !kept[i]; ++j)
+      if (!taken[j] && before[j] == now[i]) {
+        kept[i] = j;
+        taken[j] = true;
+      }
+  return kept;
+}
+
+}  // namespace
+
+Session::Session(StageCache* cache) : cache_(cache) {}
+Session::~Session() = default;
+
+void Session::edit(Scene scene) {
+  std::vector<StageKey> keys;
+  for (const Shape& shape : scene.shapes) keys.push_back(shape_key(shape));
+  std::size_t loaded = 0;
+  std::shared_ptr<const World> world = world_;
+  std::vector<MeshKeys> meshes = mesh_keys_;
+  if (world == nullptr || keys != shape_keys_) {
+    const auto kept = kept_shapes(shape_keys_, keys);
+    world =
+        std::make_shared<const World>(update_world(scene, world != nullptr ? *world : World(), kept, loaded));
+    meshes = mesh_keys(*world);
+  }
+  Plan plan = make_plan(scene, *world);
+  scene_ = std::move(scene);
+  world_ = std::move(world);
+  shape_keys_ = std::move(keys);
+  mesh_keys_ = std::move(meshes);
+  plan_ = std::move(plan);
+  work_ = {};
+  work_.meshes_loaded = loaded;
+  decisions_.clear();
+  costs_.clear();
+  prepared_ = false;
+  keep_spacing();
+}
+
+void Session::anchor(Scene scene, Monitor* monitor) {
+  scene.settings.method = Method::hierarchical;
+  edit(std::move(scene));
+  parts_ = arranged_parts();
+  bring_rays();
+  for (std::size_t g = 0; g < parts_.size(); ++g)
+    bring_samples(parts_[g], {scene_, *world_, *rays_, plan_, monitor}, g);
+  anchored_ = true;
+}
+
+// Samples that the settings do not ask for by number stay while their spacing does.
+void Session::keep_spacing() {
+  constexpr double kDensest = 2, kSparsest = 1.1;  // spacing asked for over the one at hand, and the inverse
+  const Settings& settings = scene_.settings;
+  if (settings.samples) return;
+  for (GroupPlan& group : plan_.groups) {
+    const auto part = std::ranges::find_if(parts_, [&](const Part& p) { return p.plan.name == group.name; });
+    if (part == parts_.end() || part->origin.count == 0 || part->origin.count == group.samples ||
+        part->origin.count_was_set || part->origin.spacing_setting != settings.sample_spacing)
+      continue;
+    const double asked = group.area / double(group.samples),
+                 there = part->origin.area / double(part->origin.count);
+    if (asked > kDensest * kDensest * there || there > kSparsest * kSparsest * asked) continue;
+    group.samples = part->origin.count;
+    group.spacing = std::sqrt(group.area / double(group.samples));
+    group.reason = "as many as there are: near enough to " + group.reason;
+  }
+}
+
+void Session::prepare(Monitor* monitor) {
+  if (prepared_) return;
+  costs_.clear();
+  const auto timed = [&](const char* stage, const auto& work) {
+    const Stopwatch watch;
+    work();
+    costs_.push_back(watch.cost(stage));
+  };
+  timed("rays", [&] { bring_rays(); });
+  prepared_ = !is_needed();
+  if (prepared_) return;
+  parts_ = arranged_parts();
+  const PrecomputeInput input{scene_, *world_, *rays_, plan_, monitor};
+  const std::vector<Light> lights = recentred_lights(scene_, *world_);
+  const auto each = [&](const auto& work) {
+    for (std::size_t g = 0; g < parts_.size(); ++g) work(parts_[g], g);
+  };
+  timed("sampling", [&] { each([&](Part& part, std::size_t g) { bring_samples(part, input, g); }); });
+  timed("irradiance",
+        [&] { each([&](Part& part, std::size_t g) { bring_lights(part, input, g, lights); }); });
+  timed("octree", [&] {
+    each([&](Part& part, std::size_t) {
+      bring_tree(part, lights);
+      bring_kernel(part);
+    });
+  });
+  assemble();
+  prepared_ = true;
+}
+
+RenderResult Session::render(Monitor* monitor) {
+  prepare(monitor);
+  RenderResult result = opaline::render({scene_, *world_, *rays_, groups_, monitor});
+  work_.queries += result.queries;
+  return result;
+}
+
+void Session::bring_rays() {
+  const auto same = [](const MeshKeys& a, const MeshKeys& b) { return a.all == b.all; };
+  if (rays_ != nullptr && std::ranges::equal(rays_keys_, mesh_keys_, same)) return;
+  rays_ = nullptr;  // not both at once
+  rays_ = std::make_unique<RayScene>(*world_);
+  rays_keys_ = mesh_keys_;
+}
+
+/// A part for each group of the plan, by name; what groups_ held is theirs again.
+std::vector<Session::Part> Session::arranged_parts() {
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    Part& part = parts_[g];
+    TranslucentGroup& group = groups_[g];
+    part.surface = std::move(group.surface);
+    part.transfers = std::move(group.transfers);
+    part.irradiance = std::move(group.irradiance);
+    part.octree = std::move(group.octree);
+    part.kernel = std::move(group.kernel);
+  }
+  groups_.clear();
+  std::vector<Part> parts(plan_.groups.size());
+  for (std::size_t g = 0; g < parts.size(); ++g) {
+    const GroupPlan& plan = plan_.groups[g];
+    const auto old = std::ranges::find_if(
+        parts_, [&](const Part& p) { return p.plan.name == plan.name && p.plan.shared == plan.shared; });
+    if (old != parts_.end()) {
+      parts[g] = std::move(*old);
+      old->plan.name.clear();
+    }
+    parts[g].plan = plan;
+    parts[g].profile = make_diffuse_profile(scene_.media[plan.medium]);
+  }
+  return parts;
+}
+
+void Session::assemble() {
+  for (Part& part : parts_)
+    groups_.push_back({part.plan, part.profile, std::move(part.surface), std::move(part.transfers),
+                       std::move(part.irradiance), part.irradiance_noise, std::move(part.octree),
+                       std::move(*part.kernel)});
+}
+
+void Session::decide(const Part& part, const std::string& text) {
+  decisions_.push_back(part.plan.name + ": " + text);
+}
+
+}  // namespace opaline

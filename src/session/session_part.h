@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One group's results, each with its key; a key of zeros stands for a result that is not there.
+#pragma once
+
+#include "opaline/session/session.h"
+
+namespace opaline {
+
+/// Samples that were placed anew, and where: others are carried from them.
+struct SampleOrigin {
+  std::shared_ptr<const World> world;
+  std::vector<std::uint32_t> meshes;  // in that world
+  StageKey key;
+  std::uint64_t seed = 0;
+  std::size_t count = 0;       // asked for
+  double area = 0;             // of the surface then
+  SurfaceSamples surface;      // while the part's own are carried; else the part's own are these
+  bool count_was_set = false;  // by settings.samples
+  std::optional<double> spacing_setting;
+};
+
+struct Session::Part {
+  GroupPlan plan;
+  DiffuseProfile profile;
+  SampleOrigin origin;
+  StageKey samples_key, tree_key, kernel_key;
+  SurfaceSamples surface;
+  std::vector<std::uint32_t> meshes;  // that the surface's samples name
+  std::vector<StageKey> light_keys;
+  std::vector<LightTransfer> transfers;  // one a light
+  std::vector<RgbF> irradiance;
+  double irradiance_noise = 0;
+  Octree octree;
+  std::optional<SplitKernel> kernel;
+
+  bool is_carried() const { return samples_key != origin.key; }
+};
+
+}  // namespace opaline

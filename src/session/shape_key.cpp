@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/shape_key.h"
+
+#include <fstream>
+#include <iterator>
+
+namespace opaline {
+namespace {
+
+struct AddSource {
+  KeyBuilder& key;
+  void operator()(const MeshFile& mesh) const {
+    std::ifstream file(mesh.path, std::ios::binary | std::ios::ate);
+    std::string bytes(file ? std::size_t(file.tellg()) : 0, '\0');
+    file.seekg(0).read(bytes.data(), std::streamsize(bytes.size()));
+    key.add(mesh.path).add(bytes).add(mesh.fill_holes).add(mesh.fit_size.value_or(0));
+  }
+  void operator()(const SphereShape& s) const { key.add(s.center).add(s.radius); }
+  void operator()(const BoxShape& s) const { key.add(s.low).add(s.high); }
+  void operator()(const QuadShape& s) const { key.add(s.corner).add(s.u).add(s.v); }
+  void operator()(const SlabShape& s) const { key.add(s.center).add(s.width).add(s.depth).add(s.thickness); }
+  void operator()(const TorusShape& s) const { key.add(s.center).add(s.major_radius).add(s.minor_radius); }
+};
+
+}  // namespace
+
+StageKey shape_key(const Shape& shape) {
+  KeyBuilder key("shape", 1);
+  const bool may_be_open = !shape.medium;  // then an open quad is no reason for a warning
+  key.add(std::uint64_t(shape.source.index())).add(shape.to_world).add(shape.normals).add(may_be_open);
+  key.add(shape.name);  // messages have it
+  std::visit(AddSource{key}, shape.source);
+  return key.key();
+}
+
+}  // namespace opaline

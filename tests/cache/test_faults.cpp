@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whatever ends a write, the cache holds whole entries only, and the run goes on.
+#include <hdf5.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "cache_test.h"
+
+namespace opaline {
+namespace {
+
+using namespace test;
+
+StageKey key(std::uint64_t i) {
+  return {i, ~i};
+}
+
+/// Runs work() in a child process that ends with its result; the child's number.
+template <class Work>
+pid_t in_child(const Work& work) {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(work());
+  return child;
+}
+
+int exit_code(pid_t child) {
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// Kills writers at moments spread over one and a half writes, from the first on. Counts those that left an
+/// entry.
+void kill_writers(int times) {
+  const ScratchFolder folder;
+  const std::string path = folder.path.string();
+  const SurfaceSamples samples = some_samples(4000);
+  const auto write = [&](std::uint64_t i) {
+    StageCache(path).keep_samples(key(i), samples, kMeshes);
+    return 0;
+  };
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < 5; ++i) ASSERT_EQ(exit_code(in_child([&] { return write(~0u); })), 0);
+  const double one = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 5;
+  int written = 0;
+  for (int i = 0; i < times; ++i) {
+    const pid_t child = in_child([&] { return write(std::uint64_t(i)); });
+    std::this_thread::sleep_for(std::chrono::duration<double>(1.5 * one * i / times));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    StageCache cache(path);
+    const auto found = cache.find_samples(key(std::uint64_t(i)), kMeshes);
+    ASSERT_EQ(cache.warning(), "") << i;
+    if (found) {
+      ASSERT_TRUE(same_bytes(found->samples, samples.samples)) << i;
+      ++written;
+      std::filesystem::remove(folder.file("samples-" + hex(key(std::uint64_t(i))) + ".h5"));
+    }
+  }
+  EXPECT_GT(written, times / 20);
+  EXPECT_LT(written, times - times / 20);
+  // What the dead left is no entry, and goes once it is old.
+  EXPECT_EQ(whole_entries(path), 1);
+  const auto old = std::filesystem::file_time_type::clock::now() - std::chrono::hours(2);
+  std::size_t leftovers = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder.path))
+    if (file.path().filename().string().starts_with(".opaline-") && file.path().extension() == ".h5") {
+      std::filesystem::last_write_time(file.path(), old);
+      ++leftovers;
+    }
+  EXPECT_GT(leftovers, 0u);
+  prune_cache(path, StageCache::kDefaultBytes);
+  EXPECT_EQ(folder.entries(), 2u);  // the entry and the lock
+}
+
+// Claim: kill -9 at any moment of a write leaves a whole entry or none, and the next writer is not held up.
+// Source: the issue. Tolerance: none; that kills hit before and after the rename is asked for, too. Fails if:
+// entries are written under their own name.
+TEST(CacheFaults, KilledWriters) {
+  kill_writers(100);
+}
+TEST(LongCacheFaults, KilledWriters) {
+  kill_writers(10000);
+}
+
+// Claim: a disk that fills up at any point of the write leaves the old entry or none and nothing beside it,
+// says so once, and HDF5 keeps nothing open. Source: the issue; FullDisk. Fails if: a result of HDF5 or of
+// the header's write is not looked at.
+TEST(CacheFaults, FullDisk) {
+  const ScratchFolder folder;
+  const SurfaceSamples samples = some_samples(4000);
+  const LightTransfer light = some_light(10);
+  StageCache(folder.path.string()).keep_light(key(1), light);
+  for (std::size_t limit = 0; limit < 220000; limit += 1777) {
+    StageCache cache(folder.path.string());
+    {
+      const FullDisk disk(limit);
+      cache.keep_samples(key(2), samples, kMeshes);
+      cache.keep_light(key(3), some_light(1));  // small enough, but the disk is full: not tried
+    }
+    ASSERT_NE(cache.warning().find("not all was kept"), std::string::npos) << limit;
+    ASSERT_EQ(folder.entries(), 2u) << limit;
+    ASSERT_EQ(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL), 0) << limit;
+  }
+  StageCache cache(folder.path.string());
+  EXPECT_TRUE(cache.find_light(key(1)));
+  cache.keep_samples(key(2), samples, kMeshes);
+  EXPECT_EQ(cache.warning(), "");
+  EXPECT_EQ(whole_entries(folder.path.string()), 2);
+}
+
+// Claim: from a folder that may not be written entries are read; what is new is said not to be kept. Source:
+// the issue. Root may write everywhere, so it becomes nobody. Fails if: a hit must be marked as used.
+TEST(CacheFaults, ReadOnlyFolder) {
+  const ScratchFolder folder;
+  StageCache(folder.path.string()).keep_samples(key(1), some_samples(100), kMeshes);
+  ::chmod(folder.path.c_str(), 0555);
+  const int result = exit_code(in_child([&] {
+    if (::geteuid() == 0 && ::setuid(65534) != 0) return 2;
+    StageCache cache(folder.path.string());
+    if (!cache.find_samples(key(1), kMeshes) || !cache.warning().empty()) return 3;
+    cache.keep_samples(key(2), some_samples(100), kMeshes);
+    return cache.warning().find("Permission denied") == std::string::npos ? 4 : 0;
+  }));
+  EXPECT_EQ(result, 0);
+  ::chmod(folder.path.c_str(), 0755);
+  EXPECT_EQ(whole_entries(folder.path.string()), 1);
+}
+
+// Claim: a folder that cannot be made is an error before any work. Source: stage_cache.h. Fails if: the
+// constructor swallows it.
+TEST(CacheFaults, NoFolder) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("plain"), "x");
+  for (const char* path : {"plain", "plain/below"}) EXPECT_ANY_THROW(StageCache(folder.file(path))) << path;
+  StageCache(folder.file("a/b/c"));
+  EXPECT_TRUE(std::filesystem::is_directory(folder.file("a/b/c")));
+}
+
+// Claim: processes that fill one small cache with the same entries at once, while others go for room, find
+// whole entries or none and complain of nothing. Source: the issue. Fails if: temporaries share a name, or a
+// vanished file is an error.
+TEST(CacheFaults, TwoProcesses) {
+  const ScratchFolder folder;
+  const auto fill = [&] {
+    for (std::uint64_t i = 0; i < 60; ++i) {
+      StageCache cache(folder.path.string(), 300000);  // some five entries
+      const std::size_t count = 1000 + 10 * (i % 7);
+      const auto found = cache.find_samples(key(i % 7), kMeshes);
+      if (found && !same_bytes(found->samples, some_samples(count).samples)) return 1;
+      if (!found) cache.keep_samples(key(i % 7), some_samples(count), kMeshes);
+      if (!cache.warning().empty()) return 2;
+    }
+    return 0;
+  };
+  const pid_t one = in_child(fill), two = in_child(fill), three = in_child(fill);
+  EXPECT_EQ(exit_code(one), 0);
+  EXPECT_EQ(exit_code(two), 0);
+  EXPECT_EQ(exit_code(three), 0);
+  EXPECT_GT(whole_entries(folder.path.string()), 0);
+  EXPECT_EQ(folder.entries(), std::size_t(whole_entries(folder.path.string())) + 1);
+}
+
+}  // namespace
+}  // namespace opaline

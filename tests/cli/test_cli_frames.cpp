@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `opaline render --frames`: a range in one process, in several, and started again.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "opaline/image/image.h"
+#include "run_program.h"
+
+namespace opaline {
+namespace {
+
+/// A blob that bends from frame to frame, a mesh file each, under a light that moves; 6 frames.
+struct Shot : SceneFolder {
+  static constexpr int kFrames = 6;
+
+  Shot() {
+    for (int frame = 1; frame <= kFrames; ++frame) put_bytes(mesh(frame), bent_ball(.004 * frame));
+    put_bytes(scene, R"({
+  "media": {"marble": {"preset": "marble"}},
+  "shapes": [{"name": "blob", "file": "blob.##.obj", "medium": "marble"}],
+  "lights": [{"name": "key", "type": "point", "intensity": 1000,
+              "position": {"keyed": {"1": [20, 30, 40], "6": [0, 30, 50]}, "between": "spline"}}],
+  "camera": {"position": {"keyed": {"1": [0, 0, 50], "6": [10, 0, 50]}}},
+  "film": {"resolution": [24, 24]},
+  "settings": {"samples": 800}
+}
+)");
+  }
+  std::string mesh(int frame) const { return file("blob.0" + std::to_string(frame) + ".obj"); }
+  std::string picture(int frame, const std::string& name = "out") const {
+    return file(name + ".000" + std::to_string(frame) + ".exr");
+  }
+
+  Outcome render(const std::string& frames, const std::string& name = "out",
+                 const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"render",   scene,  "-o",    file(name + ".####.exr"),
+                                   "--frames", frames, "--log", "json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  }
+
+  /// Bytes of all pictures of that name, frame by frame.
+  std::vector<std::string> pictures(const std::string& name) const {
+    std::vector<std::string> bytes;
+    for (int frame = 1; frame <= kFrames; ++frame) bytes.push_back(bytes_of(picture(frame, name)));
+    return bytes;
+  }
+
+ private:
+  static std::string bent_ball(double bend) {
+    std::string text;
+    constexpr int kRings = 12, kSides = 16;
+    for (int r = 0; r <= kRings; ++r)
+      for (int s = 0; s < kSides; ++s) {
+        const double a = M_PI * r / kRings, b = 2 * M_PI * s / kSides, y = 10 * std::cos(a);
+        text += "v " + std::to_string(10 * std::sin(a) * std::cos(b) + bend * y * y) + ' ' +
+                std::to_string(y) + ' ' + std::to_string(10 * std::sin(a) * std::sin(b)) + '\n';
+      }
+    for (int r = 0; r < kRings; ++r)
+      for (int s = 0; s < kSides; ++s) {
+        const int a = 1 + r * kSides + s, b = 1 + r * kSides + (s + 1) % kSides;
+        const auto face = [&](int p, int q, int t) {
+          text += "f " + std::to_string(p) + ' ' + std::to_string(q) + ' ' + std::to_string(t) + '\n';
+        };
+        face(a, b, a + kSides);
+        face(b, b + kSides, a + kSides);
+      }
+    return text;
+  }
+};
+
+std::vector<std::string> decisions_of(const Outcome& outcome) {
+  std::vector<std::string> all;
+  for (const nlohmann::json& event : events_of(outcome.out))
+    if (event["event"] == "reuse")
+      for (const std::string line : event["decisions"]) all.push_back(line);
+  return all;
+}
+
+// Claim: a frame's bytes are the same from one process for all, from one for each in any order, and with a
+// cache that others filled. Source: session.h, anchor. Fails if: a frame's samples are carried from the last.
+TEST(CliFrames, AnyProcessAnyOrder) {
+  const Shot shot;
+  ASSERT_EQ(shot.render("1-6", "one").exit_code, 0);
+  const std::vector<std::string> expected = shot.pictures("one");
+  for (const std::string& bytes : expected) EXPECT_FALSE(bytes.empty());
+  EXPECT_NE(expected[0], expected[1]);
+  for (const char* frame : {"4", "1", "6", "2,3", "5"}) ASSERT_EQ(shot.render(frame, "each").exit_code, 0);
+  EXPECT_TRUE(shot.pictures("each") == expected);
+  const std::vector<std::string> cache{"--cache", shot.file("cache")};
+  ASSERT_EQ(
+      run_program({"precompute", shot.scene, "--cache", cache[1], "--frames", "1-6", "--quiet"}).exit_code,
+      0);
+  const Outcome cached = shot.render("1-6", "cached", cache);
+  ASSERT_EQ(cached.exit_code, 0) << cached.out;
+  EXPECT_TRUE(shot.pictures("cached") == expected);
+  for (const std::string& line : decisions_of(cached))
+    EXPECT_TRUE(line.ends_with("from the cache") || line.ends_with("kept")) << line;
+}
+
+// Claim: frames that are there are left alone, those that something else made are not: another scene value,
+// another mesh, another frame's picture, half a file. Source: frames.h. Fails if: existence is enough.
+TEST(CliFrames, Resumes) {
+  const Shot shot;
+  ASSERT_EQ(shot.render("1-3").exit_code, 0);
+  const auto rendered = [&](const std::string& frames, const std::vector<std::string>& more = {}) {
+    const Outcome outcome = shot.render(frames, "out", more);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+    std::size_t count = 0;
+    for (const nlohmann::json& event : events_of(outcome.out)) count += event["event"] == "done";
+    return count;
+  };
+  EXPECT_EQ(rendered("1-4"), 1u);
+  EXPECT_EQ(rendered("1-4"), 0u);
+  EXPECT_EQ(rendered("1-4", {"--set", "media.marble.eta=1.4"}), 4u);
+  EXPECT_EQ(rendered("1-4"), 4u);
+  std::filesystem::copy_file(shot.mesh(5), shot.mesh(2), std::filesystem::copy_options::overwrite_existing);
+  EXPECT_EQ(rendered("1-4"), 1u);
+  std::filesystem::copy_file(shot.picture(1), shot.picture(2),
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_EQ(rendered("1-4"), 1u);
+  put_bytes(shot.picture(3), bytes_of(shot.picture(3)).substr(0, 500));
+  EXPECT_EQ(rendered("1-4"), 1u);
+}
+
+// Claim: a bad frame is named, the others are rendered, and the exit code is 3. Source: the issue. Fails if:
+// the first failure ends the run, or is forgotten.
+TEST(CliFrames, OneBadFrame) {
+  const Shot shot;
+  put_bytes(shot.mesh(3), "v 0 0 nan\n");
+  std::filesystem::remove(shot.mesh(5));
+  const Outcome outcome = shot.render("1-6");
+  EXPECT_EQ(outcome.exit_code, 3);
+  const std::string message = event_of(events_of(outcome.out), "error")["message"];
+  EXPECT_TRUE(contains(message, "2 of 6 frames failed: 3, 5")) << message;
+  for (int frame = 1; frame <= 6; ++frame)
+    EXPECT_EQ(std::filesystem::exists(shot.picture(frame)), frame != 3 && frame != 5) << frame;
+}
+
+// Claim: ranges that are none, and names that all frames would share, are exit 2 before the work. Source:
+// `opaline render --help`. Fails if: 5-1 is taken for nothing to do.
+TEST(CliFrames, Mistakes) {
+  const Shot shot;
+  for (const char* frames : {"", "5-1", "1-", "a", "-3", "1-4x0", "1,", "1-999999999"})
+    EXPECT_EQ(shot.render(frames).exit_code, 2) << frames;
+  EXPECT_EQ(run_program({"render", shot.scene, "-o", shot.file("a.exr"), "--frames", "1-2"}).exit_code, 2);
+  EXPECT_EQ(run_program({"precompute", shot.scene, "--frames", "1-2"}).exit_code, 2);
+}
+
+/// Runs a script of scenes/ with the program under test.
+int run_script(const std::string& variables, const std::string& script, const std::string& words) {
+  const std::string command = "OPALINE='" OPALINE_PROGRAM "' " + variables + ' ' + OPALINE_SCENES_DIR + '/' +
+                              script + ' ' + words + " >&2";
+  return std::system(command.c_str());
+}
+
+// Claim: the scripts for GNU parallel and Slurm render a shot to the same bytes as one process; the array's
+// tasks are started as Slurm does, with its variables. Source: the scripts' first lines. Fails if: a word of
+// their command is no longer an option.
+TEST(CliFrames, Scripts) {
+  const Shot shot;
+  ASSERT_EQ(shot.render("1-6", "one").exit_code, 0);
+  const auto words = [&](const std::string& name) {
+    return shot.scene + ' ' + shot.file(name + ".####.exr") + ' ' + shot.file(name + "-cache");
+  };
+  ASSERT_EQ(run_script("", "frames-parallel", "3 1-6 " + words("parallel")), 0);
+  EXPECT_TRUE(shot.pictures("parallel") == shot.pictures("one"));
+  for (int task = 1; task <= 6; ++task)
+    ASSERT_EQ(run_script("SLURM_CPUS_PER_TASK=1 SLURM_ARRAY_TASK_ID=" + std::to_string(task), "frames.sbatch",
+                         words("slurm")),
+              0);
+  EXPECT_TRUE(shot.pictures("slurm") == shot.pictures("one"));
+  EXPECT_NE(run_script("", "frames.sbatch", words("slurm")), 0);
+  EXPECT_NE(run_script("", "frames-parallel", ""), 0);
+}
+
+}  // namespace
+}  // namespace opaline
