@@ -85,6 +85,54 @@ Hdf5Handle hdf5_type<TreeSample>() {
                                {"flux", offsetof(S, flux), H5T_NATIVE_FLOAT, 4}});
 }
 
+template <>
+Hdf5Handle hdf5_type<std::uint32_t>() {
+  return {H5T_NATIVE_UINT32, leave_open};
+}
+
+template <>
+Hdf5Handle hdf5_type<Exitance>() {
+  using E = Exitance;
+  static_assert(sizeof(E) == 48, "every member is in the list below");
+  return struct_of(sizeof(E), {{"exitance", offsetof(E, exitance), H5T_NATIVE_FLOAT, 3},
+                               {"irradiance", offsetof(E, irradiance), H5T_NATIVE_FLOAT, 3},
+                               {"near", offsetof(E, near), H5T_NATIVE_FLOAT, 3},
+                               {"error", offsetof(E, error), H5T_NATIVE_FLOAT, 3}});
+}
+
+template <>
+Hdf5Handle hdf5_type<SurfaceCache::Vertex>() {
+  using V = SurfaceCache::Vertex;
+  static_assert(sizeof(V) == 96 && offsetof(V, value) == 0, "every member is in the list below");
+  return struct_of(sizeof(V), {{"value", offsetof(V, value), H5T_NATIVE_FLOAT, 12},
+                               {"position", offsetof(V, position), H5T_NATIVE_FLOAT, 3},
+                               {"slope", offsetof(V, slope), H5T_NATIVE_FLOAT, 9}});
+}
+
+template <>
+Hdf5Handle hdf5_type<SurfaceCache::Patch>() {
+  using P = SurfaceCache::Patch;
+  static_assert(sizeof(P) == 16, "every member is in the list below");
+  return struct_of(sizeof(P), {{"vertices", offsetof(P, vertices), H5T_NATIVE_UINT32, 3},
+                               {"lattice", offsetof(P, lattice), H5T_NATIVE_UINT32}});
+}
+
+template <>
+Hdf5Handle hdf5_type<SurfaceCache::Lattice>() {
+  using L = SurfaceCache::Lattice;
+  static_assert(sizeof(L) == 8, "every member is in the list below");
+  return struct_of(sizeof(L), {{"first", offsetof(L, first), H5T_NATIVE_UINT32},
+                               {"segments", offsetof(L, segments), H5T_NATIVE_UINT32}});
+}
+
+template <>
+Hdf5Handle hdf5_type<SurfaceCache::Split>() {
+  using S = SurfaceCache::Split;
+  static_assert(sizeof(S) == 8, "every member is in the list below");
+  return struct_of(sizeof(S), {{"first", offsetof(S, first), H5T_NATIVE_UINT32},
+                               {"segments", offsetof(S, segments), H5T_NATIVE_UINT32}});
+}
+
 void put_samples(Hdf5Writer& file, const SurfaceSamples& samples, std::span<const std::uint32_t> meshes) {
   std::vector<SurfaceSample> local = samples.samples;
   for (SurfaceSample& s : local) s.mesh = std::uint32_t(std::ranges::find(meshes, s.mesh) - meshes.begin());
@@ -130,6 +178,54 @@ std::optional<Octree> get_octree(const Hdf5Reader& file) {
   const std::optional<double> unit = file.number("flux_unit");
   if (!nodes || !samples || !normals || !unit) return {};
   return Octree{std::move(*nodes), std::move(*samples), std::move(*normals), float(*unit)};
+}
+
+void put_exitance(Hdf5Writer& file, const SurfaceCache& exitance, std::span<const std::uint32_t> meshes) {
+  std::vector<std::uint32_t> triangles;
+  std::vector<SurfaceCache::Split> splits;
+  for (const std::uint32_t m : meshes) {
+    triangles.push_back(std::uint32_t(exitance.splits[m].size()));
+    splits.insert(splits.end(), exitance.splits[m].begin(), exitance.splits[m].end());
+  }
+  const std::vector<float> own(exitance.own_irradiance.begin(), exitance.own_irradiance.end());
+  file.put("own_irradiance", std::span(own));
+  file.put("triangles", std::span<const std::uint32_t>(triangles));
+  file.put("splits", std::span<const SurfaceCache::Split>(splits));
+  file.put("patches", std::span(exitance.patches));
+  file.put("vertices", std::span(exitance.vertices));
+  file.put("lattices", std::span(exitance.lattices));
+  file.put("lattice_nodes", std::span(exitance.lattice_nodes));
+  file.put("nodes", std::span(exitance.nodes));
+}
+
+std::optional<SurfaceCache> get_exitance(const Hdf5Reader& file, std::span<const std::uint32_t> meshes,
+                                         std::size_t world_meshes) {
+  const auto own = file.get<float>("own_irradiance");
+  const auto triangles = file.get<std::uint32_t>("triangles");
+  const auto splits = file.get<SurfaceCache::Split>("splits");
+  auto patches = file.get<SurfaceCache::Patch>("patches");
+  auto vertices = file.get<SurfaceCache::Vertex>("vertices");
+  auto lattices = file.get<SurfaceCache::Lattice>("lattices");
+  auto lattice_nodes = file.get<std::uint32_t>("lattice_nodes");
+  auto nodes = file.get<Exitance>("nodes");
+  if (!own || own->size() != 3 || !triangles || triangles->size() != meshes.size() || !splits || !patches ||
+      !vertices || !lattices || !lattice_nodes || !nodes)
+    return {};
+  SurfaceCache exitance{{(*own)[0], (*own)[1], (*own)[2]},
+                        {},
+                        std::move(*patches),
+                        std::move(*vertices),
+                        std::move(*lattices),
+                        std::move(*lattice_nodes),
+                        std::move(*nodes)};
+  exitance.splits.resize(world_meshes);
+  auto next = splits->begin();
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    if (splits->end() - next < std::ptrdiff_t((*triangles)[m])) return {};
+    exitance.splits[meshes[m]].assign(next, next + std::ptrdiff_t((*triangles)[m]));
+    next += std::ptrdiff_t((*triangles)[m]);
+  }
+  return exitance;
 }
 
 }  // namespace opaline

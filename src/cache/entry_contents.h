@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cache/hdf5_file.h"
+#include "opaline/evaluate/surface_cache.h"
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/octree/octree.h"
 #include "opaline/sampling/sample_surface.h"
@@ -20,5 +21,9 @@ std::optional<LightTransfer> get_light(const Hdf5Reader& file);
 
 void put_octree(Hdf5Writer& file, const Octree& octree);
 std::optional<Octree> get_octree(const Hdf5Reader& file);
+
+void put_exitance(Hdf5Writer& file, const SurfaceCache& exitance, std::span<const std::uint32_t> meshes);
+std::optional<SurfaceCache> get_exitance(const Hdf5Reader& file, std::span<const std::uint32_t> meshes,
+                                         std::size_t world_meshes);
 
 }  // namespace opaline

@@ -76,7 +76,7 @@ std::string file_name(const EntryName& name) {
 }
 
 std::optional<EntryName> parse_file_name(const std::string& name) {
-  static const std::regex form("(samples|light|octree)-([0-9a-f]{16})([0-9a-f]{16})\\.h5");
+  static const std::regex form("(samples|light|octree|exitance)-([0-9a-f]{16})([0-9a-f]{16})\\.h5");
   std::smatch parts;
   if (!std::regex_match(name, parts, form)) return {};
   return EntryName{parts[1], {std::stoull(parts[2], nullptr, 16), std::stoull(parts[3], nullptr, 16)}};

@@ -61,6 +61,13 @@ std::optional<Octree> StageCache::find_octree(const StageKey& key) {
   return find("octree", key, get_octree);
 }
 
+std::optional<SurfaceCache> StageCache::find_exitance(const StageKey& key,
+                                                      std::span<const std::uint32_t> meshes,
+                                                      std::size_t world_meshes) {
+  return find("exitance", key,
+              [&](const Hdf5Reader& file) { return get_exitance(file, meshes, world_meshes); });
+}
+
 void StageCache::keep_samples(const StageKey& key, const SurfaceSamples& samples,
                               std::span<const std::uint32_t> meshes) {
   keep("samples", key, [&](Hdf5Writer& file) { put_samples(file, samples, meshes); });
@@ -72,6 +79,11 @@ void StageCache::keep_light(const StageKey& key, const LightTransfer& transfer) 
 
 void StageCache::keep_octree(const StageKey& key, const Octree& octree) {
   keep("octree", key, [&](Hdf5Writer& file) { put_octree(file, octree); });
+}
+
+void StageCache::keep_exitance(const StageKey& key, const SurfaceCache& exitance,
+                               std::span<const std::uint32_t> meshes) {
+  keep("exitance", key, [&](Hdf5Writer& file) { put_exitance(file, exitance, meshes); });
 }
 
 std::string StageCache::warning() const {

@@ -9,7 +9,8 @@ namespace opaline {
 namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
-constexpr std::uint64_t kSamplesVersion = 1, kCarriedVersion = 1, kTransferVersion = 1, kOctreeVersion = 1;
+constexpr std::uint64_t kSamplesVersion = 1, kCarriedVersion = 1, kTransferVersion = 1, kOctreeVersion = 1,
+                        kExitanceVersion = 1;
 
 const char* widest_instructions() {
   if (__builtin_cpu_supports("avx512f")) return "avx512";
@@ -82,6 +83,15 @@ StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers
   KeyBuilder key("octree", kOctreeVersion);
   key.add(samples);
   for (std::size_t l = 0; l < lights.size(); ++l) key.add(transfers[l]).add(emission(lights[l]));
+  return key.key();
+}
+
+StageKey exitance_key(const StageKey& tree, const StageKey& kernel, std::span<const MeshKeys> meshes,
+                      const GroupPlan& group, const Settings& settings) {
+  KeyBuilder key("exitance", kExitanceVersion);
+  key.add(tree).add(kernel).add(settings.tolerance).add(settings.instruction_set);
+  key.add(std::string(widest_instructions()));
+  for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
   return key.key();
 }
 

@@ -72,7 +72,7 @@ class Builder {
     std::vector<Refined> active = ill_told_patches();
     while (!active.empty()) {
       for (Refined& r : active) set_nodes(r);
-      if (cache_.vertices.size() + cache_.nodes.size() > input_.most_places) return {};
+      if (cache_.places() > input_.most_places) return {};
       const std::vector<Exitance> at_nodes = evaluated();
       for (std::size_t i = 0; i < at_nodes.size(); ++i) cache_.nodes[new_nodes_[i]] = at_nodes[i];
       new_nodes_.clear();

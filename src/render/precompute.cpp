@@ -5,7 +5,7 @@
 
 #include "opaline/core/random.h"
 #include "opaline/irradiance/light_sampling.h"
-#include "render/surface_caches.h"
+#include "opaline/render/surface_caches.h"
 
 namespace opaline {
 namespace {
@@ -95,7 +95,13 @@ Precompute precompute(const PrecomputeInput& input) {
   }
   result.costs = {sampling, irradiance, octree};
   const Stopwatch exitance_watch;
-  if (make_surface_caches(input, result.groups)) result.costs.push_back(exitance_watch.cost("exitance"));
+  const std::vector<std::size_t> most = most_cache_places(input, result.groups);
+  bool made = false;
+  for (std::size_t g = 0; g < most.size(); ++g) {
+    result.groups[g].surface_cache = make_group_cache(input, result.groups[g], most[g]);
+    made = made || result.groups[g].surface_cache;
+  }
+  if (made) result.costs.push_back(exitance_watch.cost("exitance"));
   return result;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/surface_caches.h"
+#include "opaline/render/surface_caches.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "render/camera_rays.h"
 
@@ -32,34 +33,46 @@ std::vector<double> expected_points(const PrecomputeInput& input) {
   return points;
 }
 
+bool is_worth_beginning(const PrecomputeInput& input, const TranslucentGroup& group,
+                        std::size_t most_places) {
+  return most_places > 0 && double(least_cache_places(input.world, group.plan.meshes, group.kernel)) <=
+                                kBegin / kMost * double(most_places);
+}
+
 }  // namespace
 
-bool make_surface_caches(const PrecomputeInput& input, std::span<TranslucentGroup> groups) {
+std::vector<std::size_t> most_cache_places(const PrecomputeInput& input,
+                                           std::span<const TranslucentGroup> groups, std::size_t pictures) {
+  const EvaluatorKind evaluator = input.scene.settings.evaluator;
+  const bool wanted = evaluator == EvaluatorKind::surface_cache;
+  std::vector<std::size_t> most(groups.size(), wanted ? std::numeric_limits<std::size_t>::max() : 0);
+  if (groups.empty() || evaluator != EvaluatorKind::automatic) return most;
+  const std::vector<double> points = expected_points(input);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (const std::uint32_t m : groups[g].plan.meshes)
+      most[g] += std::size_t(kMost * double(pictures) * points[m]);
+  return most;
+}
+
+bool may_use(const SurfaceCache& cache, const PrecomputeInput& input, const TranslucentGroup& group,
+             std::size_t most_places) {
+  return is_worth_beginning(input, group, most_places) && cache.places() <= most_places;
+}
+
+std::optional<SurfaceCache> make_group_cache(const PrecomputeInput& input, const TranslucentGroup& group,
+                                             std::size_t most_places) {
+  if (!is_worth_beginning(input, group, most_places)) return {};
   const Settings& settings = input.scene.settings;
-  const bool automatic = settings.evaluator == EvaluatorKind::automatic;
-  if (groups.empty() || (!automatic && settings.evaluator != EvaluatorKind::surface_cache)) return false;
-  const std::vector<double> points = automatic ? expected_points(input) : std::vector<double>();
-  bool made = false;
-  for (TranslucentGroup& group : groups) {
-    SurfaceCacheInput wanted{.world = input.world,
+  if (input.monitor != nullptr) input.monitor->begin("exitance", 0);
+  return make_surface_cache({.world = input.world,
                              .meshes = group.plan.meshes,
                              .octree = group.octree,
                              .kernel = group.kernel,
                              .tolerance = settings.tolerance,
                              .instruction_set = settings.instruction_set,
                              .irradiance_noise = group.irradiance_noise,
-                             .monitor = input.monitor};
-    if (automatic) {
-      double seen = 0;
-      for (const std::uint32_t m : group.plan.meshes) seen += points[m];
-      if (double(least_cache_places(input.world, group.plan.meshes, group.kernel)) > kBegin * seen) continue;
-      wanted.most_places = std::size_t(kMost * seen);
-    }
-    if (input.monitor != nullptr) input.monitor->begin("exitance", 0);
-    group.surface_cache = make_surface_cache(wanted);
-    made = made || group.surface_cache.has_value();
-  }
-  return made;
+                             .most_places = most_places,
+                             .monitor = input.monitor});
 }
 
 }  // namespace opaline

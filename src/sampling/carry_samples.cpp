@@ -85,15 +85,17 @@ SurfaceSamples moved(const CarryInput& input, const Motion& motion) {
   return result;
 }
 
-/// Every sample at its place of the new surface, by the triangle's place in the list.
-std::vector<SampleGrid::Place> carried_places(const CarryInput& input) {
-  std::vector<std::uint32_t> first{0};  // of each mesh's triangles in the list
-  for (const std::uint32_t m : input.from_meshes)
-    first.push_back(first.back() + std::uint32_t(input.from.meshes[m].triangles.size()));
+/// Every sample by its triangle's place in the list.
+std::vector<SampleGrid::Place> carried_places(const CarryInput& input, const TriangleList& triangles) {
   const std::vector<std::size_t> place = places_of(input.from_meshes);
+  std::vector<std::vector<std::uint32_t>> listed(input.from_meshes.size());  // place of each mesh's triangles
+  for (std::size_t m = 0; m < listed.size(); ++m)
+    listed[m].resize(input.from.meshes[input.from_meshes[m]].triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    listed[place[triangles.id(t).mesh]][triangles.id(t).triangle] = t;
   std::vector<SampleGrid::Place> places;
   for (const SurfaceSample& s : input.samples.samples)
-    places.push_back({first[place[s.mesh]] + s.triangle, s.u, s.v});
+    places.push_back({listed[place[s.mesh]][s.triangle], s.u, s.v});
   return places;
 }
 
@@ -134,9 +136,10 @@ bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, co
 
 CarriedSamples carry_samples(const CarryInput& input) {
   if (const std::optional<Motion> motion = common_motion(input)) return {moved(input, *motion), true, 0, 0};
-  const TriangleList before(input.from, input.from_meshes), after(input.to, input.to_meshes);
+  const TriangleList before(input.from, input.from_meshes),
+      after(input.to, input.to_meshes, before, input.from_meshes);
   if (input.monitor != nullptr) input.monitor->begin("sampling", after.size());
-  StretchedCloud cloud(before, after, float(input.samples.radius), carried_places(input));
+  StretchedCloud cloud(before, after, float(input.samples.radius), carried_places(input, before));
   CarriedSamples result;
   result.removed = cloud.remove_crowded(kClosest);
   result.added = cloud.fill_gaps(kWidest);

@@ -22,8 +22,9 @@ std::vector<Standing> standing_on(const TriangleList& triangles,
   std::vector<Standing> all(places.size());
   parallel_chunks(places.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
-      const TriangleList::Corners corners = triangles.corners(triangles.id(places[i].triangle));
-      all[i] = {corners.at(places[i].u, places[i].v), corners.geometric_normal()};
+      const std::uint32_t t = places[i].triangle;
+      all[i] = {triangles.corners(triangles.id(t)).at(places[i].u, places[i].v),
+                triangles.geometric_normal(t)};
     }
   });
   return all;
@@ -116,13 +117,10 @@ std::size_t StretchedCloud::fill_gaps(float radii) {
   for (const Standing& s : standing_on(after_, places_)) cloud.add(s);
   std::size_t added = 0;
   for (std::size_t t = 0; t < after_.size(); ++t) {
-    const auto area = [t](const TriangleList& list) {
-      return list.cumulative(t) - (t > 0 ? list.cumulative(t - 1) : 0);
-    };
-    if (!(area(after_) > kGrown * area(before_))) continue;
+    if (!(after_.area(t) > kGrown * before_.area(t))) continue;
     const TriangleList::Corners corners = after_.corners(after_.id(t));
-    const Vec3f normal = corners.geometric_normal();
-    const double tries = std::ceil(kTriesPerArea * area(after_) / double(clearance * clearance));
+    const Vec3f normal = after_.geometric_normal(t);
+    const double tries = std::ceil(kTriesPerArea * after_.area(t) / double(clearance * clearance));
     for (std::uint64_t k = 0; double(k) < tries; ++k) {
       auto [u, v] = r2_point(k, {unit_double(hash_bits(1, 2 * t)), unit_double(hash_bits(1, 2 * t + 1))});
       if (u + v > 1) u = 1 - u, v = 1 - v;
@@ -150,7 +148,7 @@ SampleGrid StretchedCloud::grid() const {
   }
   grid.end_round([&](std::uint32_t i) {
     const std::uint32_t s = order[i].second;
-    return SampleGrid::Sample{standing[s].position, standing[s].normal, places_[s]};
+    return SampleGrid::Sample{standing[s].position, places_[s]};
   });
   return grid;
 }

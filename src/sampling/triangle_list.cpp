@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_sort.h>
 
+#include <algorithm>
 #include <numeric>
 #include <tuple>
 
@@ -48,11 +49,24 @@ TriangleList::TriangleList(const World& world, std::span<const std::uint32_t> me
   tbb::parallel_sort(keyed, [](const Keyed& a, const Keyed& b) {
     return std::tie(a.key, a.id.mesh, a.id.triangle) < std::tie(b.key, b.id.mesh, b.id.triangle);
   });
+  std::ranges::transform(keyed, ids_.begin(), &Keyed::id);
+  measure();
+}
+
+TriangleList::TriangleList(const World& world, std::span<const std::uint32_t> meshes,
+                           const TriangleList& before, std::span<const std::uint32_t> meshes_before)
+    : world_(world), ids_(before.ids_) {
+  for (TriangleId& id : ids_)
+    id.mesh = meshes[std::size_t(std::ranges::find(meshes_before, id.mesh) - meshes_before.begin())];
+  measure();
+}
+
+// Areas and normals.
+void TriangleList::measure() {
   normals_.resize(ids_.size());
   cumulative_.resize(ids_.size());
-  parallel_chunks(keyed.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+  parallel_chunks(ids_.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
-      ids_[i] = keyed[i].id;
       const Corners t = corners(ids_[i]);
       const Vec3d normal = cross(t.b - t.a, t.c - t.a);
       cumulative_[i] = 0.5 * length(normal);

@@ -19,6 +19,9 @@ struct TriangleId {
 class TriangleList {
  public:
   TriangleList(const World& world, std::span<const std::uint32_t> meshes);
+  /// The same triangles of meshes that were `before` and have moved or bent since, in its order.
+  TriangleList(const World& world, std::span<const std::uint32_t> meshes, const TriangleList& before,
+               std::span<const std::uint32_t> meshes_before);
 
   std::size_t size() const { return cumulative_.size(); }
   double area() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
@@ -49,6 +52,8 @@ class TriangleList {
   }
 
  private:
+  void measure();
+
   const World& world_;
   std::vector<TriangleId> ids_;
   std::vector<double> cumulative_;

@@ -2,6 +2,7 @@
 // Each stage's result: kept, from the cache, or computed; under its key only once it is whole.
 #include <fmt/format.h>
 
+#include "opaline/render/surface_caches.h"
 #include "opaline/sampling/carry_samples.h"
 #include "session/session_part.h"
 
@@ -172,6 +173,32 @@ void Session::bring_kernel(Part& part) {
   part.kernel_key = {};
   part.kernel.emplace(group_kernel(part.profile, part.surface, *world_, scene_.settings));
   part.kernel_key = key.key();
+}
+
+// Whether a cache is used depends on the scene alone, not on what is at hand.
+void Session::bring_exitance(Part& part, TranslucentGroup& group, const PrecomputeInput& input,
+                             std::size_t most_places) {
+  if (most_places == 0) return;
+  const StageKey key = exitance_key(part.tree_key, part.kernel_key, mesh_keys_, group.plan, scene_.settings);
+  if (key != part.exitance_key) part.surface_cache.reset();
+  const bool at_hand = part.surface_cache.has_value();
+  std::optional<SurfaceCache> found;
+  if (!at_hand && cache_ != nullptr)
+    found = cache_->find_exitance(key, group.plan.meshes, world_->meshes.size());
+  work_.found += found ? 1 : 0;
+  if (found) part.surface_cache = std::move(found);
+  if (!part.surface_cache) {
+    part.surface_cache = make_group_cache(input, group, most_places);
+    if (!part.surface_cache) return;
+    work_.places_evaluated += part.surface_cache->places();
+    if (cache_ != nullptr) cache_->keep_exitance(key, *part.surface_cache, group.plan.meshes);
+  }
+  part.exitance_key = key;
+  if (!may_use(*part.surface_cache, input, group, most_places)) return;
+  group.surface_cache = std::move(part.surface_cache);
+  part.surface_cache.reset();
+  decide(part, at_hand ? "exitance of the surface kept"
+                       : fmt::format("exitance of the surface {}", found ? "from the cache" : "evaluated"));
 }
 
 }  // namespace opaline

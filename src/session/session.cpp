@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "opaline/render/surface_caches.h"
 #include "session/session_part.h"
 #include "session/shape_key.h"
 
@@ -113,6 +114,11 @@ void Session::prepare(Monitor* monitor) {
     });
   });
   assemble();
+  const std::vector<std::size_t> most = most_cache_places(input, groups_, pictures_);
+  if (std::ranges::any_of(most, [](std::size_t places) { return places > 0; }))
+    timed("exitance", [&] {
+      for (std::size_t g = 0; g < groups_.size(); ++g) bring_exitance(parts_[g], groups_[g], input, most[g]);
+    });
   prepared_ = true;
 }
 
@@ -141,6 +147,7 @@ std::vector<Session::Part> Session::arranged_parts() {
     part.irradiance = std::move(group.irradiance);
     part.octree = std::move(group.octree);
     part.kernel = std::move(group.kernel);
+    if (group.surface_cache) part.surface_cache = std::move(group.surface_cache);
   }
   groups_.clear();
   std::vector<Part> parts(plan_.groups.size());

@@ -32,6 +32,8 @@ struct Session::Part {
   double irradiance_noise = 0;
   Octree octree;
   std::optional<SplitKernel> kernel;
+  StageKey exitance_key;
+  std::optional<SurfaceCache> surface_cache;  // the group's while it is of use for the picture
 
   bool is_carried() const { return samples_key != origin.key; }
 };

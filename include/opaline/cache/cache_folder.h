@@ -13,7 +13,7 @@ namespace opaline {
 
 struct CacheEntry {
   std::string file;   ///< its name in the folder
-  std::string stage;  ///< "samples", "light" or "octree"
+  std::string stage;  ///< "samples", "light", "octree" or "exitance"
   StageKey key;
   std::uint64_t bytes = 0;
   std::filesystem::file_time_type last_used;  ///< written or read

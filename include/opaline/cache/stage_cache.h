@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "opaline/cache/stage_key.h"
+#include "opaline/evaluate/surface_cache.h"
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/octree/octree.h"
 #include "opaline/sampling/sample_surface.h"
@@ -30,11 +31,16 @@ class StageCache {
   std::optional<SurfaceSamples> find_samples(const StageKey& key, std::span<const std::uint32_t> meshes);
   std::optional<LightTransfer> find_light(const StageKey& key);
   std::optional<Octree> find_octree(const StageKey& key);
+  /// world_meshes: how many the world has.
+  std::optional<SurfaceCache> find_exitance(const StageKey& key, std::span<const std::uint32_t> meshes,
+                                            std::size_t world_meshes);
 
   void keep_samples(const StageKey& key, const SurfaceSamples& samples,
                     std::span<const std::uint32_t> meshes);
   void keep_light(const StageKey& key, const LightTransfer& transfer);
   void keep_octree(const StageKey& key, const Octree& octree);
+  void keep_exitance(const StageKey& key, const SurfaceCache& exitance,
+                     std::span<const std::uint32_t> meshes);
 
   /// One line that names every entry that could not be used and why something was not kept; empty: all well.
   std::string warning() const;

@@ -10,8 +10,8 @@
 
 namespace opaline {
 
-/// Keys of a mesh of the world, after loading, mending and moving: its places alone (what throws shadows), and
-/// with the normals; and a ball around it.
+/// Keys of a mesh of the world, after loading, mending and moving: its places alone (what throws shadows),
+/// and with the normals; and a ball around it.
 struct MeshKeys {
   StageKey shape, all;
   Vec3d center{};
@@ -41,5 +41,10 @@ StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers
 /// all; at most too cautious.
 bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
                 const Light& light);
+
+/// Of the exitance all over a group's surfaces: its tree, its kernel, its meshes with their normals, the
+/// tolerance, and the instruction set, which rounds.
+StageKey exitance_key(const StageKey& tree, const StageKey& kernel, std::span<const MeshKeys> meshes,
+                      const GroupPlan& group, const Settings& settings);
 
 }  // namespace opaline

@@ -50,6 +50,9 @@ struct SurfaceCache {
   std::vector<std::uint32_t> lattice_nodes;
   std::vector<Exitance> nodes;
 
+  /// Where the exitance was evaluated.
+  std::size_t places() const { return vertices.size() + nodes.size(); }
+
   /// As `evaluate` at a place of a triangle of the group; irradiance: there, or null to interpolate it.
   /// error p99 of the difference from brute force over max(it, 1e-3 of its p99) <= tolerance, per channel,
   /// over the

@@ -17,22 +17,23 @@ namespace opaline {
 
 /// Work of one edit, counted where it is done.
 struct SessionWork {
-  std::size_t meshes_loaded = 0;    ///< read and mended, or built
-  std::size_t samples_placed = 0;   ///< by throwing darts, or where a carried surface was stretched
-  std::size_t samples_carried = 0;  ///< along with their triangles
-  std::size_t samples_removed = 0;  ///< of these, where the surface was squeezed
-  std::size_t lights_traced = 0;    ///< from all samples of a group, each
-  std::uint64_t sample_rays = 0;    ///< shadow rays from samples
-  std::size_t nodes_built = 0;      ///< of trees
-  std::size_t found = 0;            ///< results taken from the cache
-  std::size_t queries = 0;          ///< points at which exitance was evaluated
+  std::size_t meshes_loaded = 0;     ///< read and mended, or built
+  std::size_t samples_placed = 0;    ///< by throwing darts, or where a carried surface was stretched
+  std::size_t samples_carried = 0;   ///< along with their triangles
+  std::size_t samples_removed = 0;   ///< of these, where the surface was squeezed
+  std::size_t lights_traced = 0;     ///< from all samples of a group, each
+  std::uint64_t sample_rays = 0;     ///< shadow rays from samples
+  std::size_t nodes_built = 0;       ///< of trees
+  std::size_t found = 0;             ///< results taken from the cache
+  std::size_t places_evaluated = 0;  ///< of surface caches
+  std::size_t queries = 0;           ///< points of the picture at which exitance was looked up or evaluated
 };
 
 /// Keeps the last scene's stage results, each with the key of what it was computed from; the next scene takes
 /// over those with equal keys, looks for the others in the cache, and computes what is left:
 ///
 ///   edit                                what is computed
-///   camera, film                        camera rays and what they see
+///   camera, film                        camera rays and what they see; a surface cache is looked up again
 ///   a light's colour or power           sums over lights, trees; no ray from a sample
 ///   a medium                            evaluation; its samples stay while they are dense enough and at most
 ///                                       twice as dense (in spacing) as it asks for
@@ -64,6 +65,10 @@ class Session {
   /// error as make_world; the session then holds the scene before
   void edit(Scene scene);
 
+  /// How many pictures are to be made of the same surfaces in the same light, 1 at first: with the evaluator
+  /// `automatic` a surface cache is made if it pays for all of them.
+  void expect_pictures(std::size_t pictures) { pictures_ = pictures; }
+
   /// Computes what the scene needs for its method and is not there; a second call does nothing.
   /// error Error{interrupted}: what was complete stays
   void prepare(Monitor* monitor = nullptr);
@@ -80,7 +85,10 @@ class Session {
   const std::vector<std::string>& decisions() const {
     return decisions_;
   }  ///< what was kept, and what not; a line each
-  const std::vector<StageCost>& costs() const { return costs_; }  ///< rays, sampling, irradiance, octree
+  const std::vector<StageCost>& costs() const {
+    return costs_;
+  }  ///< rays, sampling, irradiance, octree, and exitance if
+     ///< there are surface caches
 
  private:
   struct Part;
@@ -97,6 +105,8 @@ class Session {
                     const std::vector<Light>& lights);
   void bring_tree(Part& part, const std::vector<Light>& lights);
   void bring_kernel(Part& part);
+  void bring_exitance(Part& part, TranslucentGroup& group, const PrecomputeInput& input,
+                      std::size_t most_places);
   void assemble();
   void decide(const Part& part, const std::string& text);
 
@@ -110,6 +120,7 @@ class Session {
   std::vector<MeshKeys> rays_keys_;
   std::vector<Part> parts_;  // a group's, without what groups_ holds
   std::vector<TranslucentGroup> groups_;
+  std::size_t pictures_ = 1;
   bool prepared_ = false, anchored_ = false;
   SessionWork work_;
   std::vector<std::string> decisions_;

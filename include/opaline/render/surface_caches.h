@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which groups have their exitance evaluated all over, ahead of the picture.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "opaline/render/precompute.h"
+
+namespace opaline {
+
+/// For each group of the plan the most places that a surface cache may have: any number if the settings ask
+/// for one, 0 if they ask for another evaluator; if they leave it open a part of the points at which the
+/// camera sees the group, times the pictures. A crop counts as the whole picture, whose bytes it shares.
+std::vector<std::size_t> most_cache_places(const PrecomputeInput& input,
+                                           std::span<const TranslucentGroup> groups,
+                                           std::size_t pictures = 1);
+
+/// Whether make_group_cache would make this cache.
+bool may_use(const SurfaceCache& cache, const PrecomputeInput& input, const TranslucentGroup& group,
+             std::size_t most_places);
+
+/// None if it would take more than most_places, or so many vertices that it would look likely.
+std::optional<SurfaceCache> make_group_cache(const PrecomputeInput& input, const TranslucentGroup& group,
+                                             std::size_t most_places);
+
+}  // namespace opaline
