@@ -24,6 +24,10 @@ struct Box {
     low = component_min(low, p);
     high = component_max(high, p);
   }
+  double side2() const {
+    const Vec3d side = Vec3d(high) - Vec3d(low);
+    return dot(side, side);
+  }
   /// That makes integers of less than `end` of halves of offsets from `low`, the same for each axis; 0 where
   /// all is one point. Halves, for the whole may overflow.
   float scale(float end) const {
@@ -172,14 +176,29 @@ class ChunkCutter {
 std::vector<std::uint32_t> chunk_order(std::span<const Query> queries) {
   std::vector<std::uint32_t> order;
   order.reserve(queries.size());
-  Box box;
+  Box box, chunk;
+  double squares = 0;  // of the chunks' sides, were they cut from the order given
   for (std::uint32_t i = 0; i < queries.size(); ++i) {
     if (!is_finite(queries[i].position)) continue;
     order.push_back(i);
-    box.add(queries[i].position);
+    chunk.add(queries[i].position);
+    if (order.size() % kChunk == 0) {
+      squares += chunk.side2();
+      box.add(chunk.low);
+      box.add(chunk.high);
+      chunk = {};
+    }
   }
+  if (order.size() % kChunk != 0) {
+    box.add(chunk.low);
+    box.add(chunk.high);
+  }
+  // Patches of a surface have squares of sides that add up to its area or so (8 times the square of the whole
+  // box's side for the tiles of a picture of the bunny): such an order is kept, for what is near in memory is
+  // near at hand.
+  const double whole = box.side2(), chunks = double(order.size()) / kChunk;
   const float scale = box.scale(float(1 << kBits) - 0.001f);
-  if (scale == 0 || order.size() <= kChunk) return order;
+  if (scale == 0 || order.size() <= kChunk || squares < whole * std::min(12.0, 0.25 * chunks)) return order;
   std::vector<std::uint64_t> items(order.size());
   std::ranges::transform(order, items.begin(), [&](std::uint32_t i) {
     return hilbert_key(cell_of(queries[i].position, box.low, scale)) << 32 | i;

@@ -85,5 +85,17 @@ TEST(QueryOrder, ChunksAreCompact) {
   EXPECT_LT(mean, 1.8 * side * std::sqrt(.5));
 }
 
+// Claim: an order in which chunks are compact already, tile by tile as a picture has them, is kept. Source:
+// query_order.cpp: it is as good, and the queries are read in the order of memory. Tolerance: none. Fails if:
+// every order is sorted.
+TEST(QueryOrder, TilesStayAsTheyAre) {
+  std::vector<Query> queries;
+  for (int tile = 0; tile < 64; ++tile)
+    for (int i = 0; i < int(kChunk); ++i)
+      queries.push_back({{float(tile % 8 * 16 + i % 16), 0, float(tile / 8 * 16 + i / 16)}, {0, 1, 0}});
+  const std::vector<std::uint32_t> order = chunk_order(queries);
+  for (std::uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
+}
+
 }  // namespace
 }  // namespace opaline

@@ -75,16 +75,16 @@ struct EvaluateInput {
 };
 
 /// Radiant exitance at each query point, in their order; finite and >= 0.
-/// `dual_tree`: clusters of queries walk the tree together; a node stands as its centroid and second moment
-/// when a bound on what that leaves out is below a share of the cluster's exitance, in each channel. p99 of
-/// |result - brute force| / max(|brute force|, 1e-3 of the p99 of all) <= tolerance, per channel
-/// (test_dual_tree), as long as that p99 is over 1e-3 of the brightest possible exitance and the tolerance
-/// over what the far kernel's table leaves: 1e-3, where the mean free path is under the sample
-/// spacing 2.5e-3. Queries that are not finite get 0. `classic`: each query walks the tree from its root and
-/// takes a node as one flux at its centroid when the node's area over its squared distance is at most
-/// max_solid_angle and it lies wholly beyond h; leaves are summed sample by sample. `brute_force`: every
-/// sample, the limit of max_solid_angle -> 0 but for the order of sums. from  Jensen & Buhler 2002 sec. 3;
-/// near field: see SplitKernel
+/// `dual_tree`: clusters of queries walk the tree together; a node goes into a series around the cluster's
+/// centre, or stands as its centroid and second moment, when a bound on what that leaves out is below a share
+/// of the cluster's exitance, in each channel. p99 of |result - brute force| / max(|brute force|, 1e-3 of the
+/// p99 of all) <= tolerance, per channel (test_dual_tree), as long as that p99 is over 1e-3 of the brightest
+/// possible exitance and the tolerance over what the far kernel's table leaves: 1e-3, where the mean free
+/// path is under the sample spacing 2.5e-3. Queries that are not finite get 0. `classic`: each query walks
+/// the tree from its root and takes a node as one flux at its centroid when the node's area over its squared
+/// distance is at most max_solid_angle and it lies wholly beyond h; leaves are summed sample by sample.
+/// `brute_force`: every sample, the limit of max_solid_angle -> 0 but for the order of sums. from  Jensen &
+/// Buhler 2002 sec. 3; near field: see SplitKernel
 std::vector<Exitance> evaluate(const EvaluateInput& input);
 
 /// Kernel evaluations and nodes visited by one classic query: what its time is made of.
