@@ -7,7 +7,7 @@ namespace {
 
 using namespace test;
 
-static_assert(sizeof(Exitance) == 36);
+static_assert(sizeof(Exitance) == 48);
 
 // Claim: positions times 8, areas times 64, coefficients divided by 8 give the same exitance, bit for bit,
 // for every evaluator and both profiles; also by 1/1024. Source: the project's scale test. Tolerance: none.
