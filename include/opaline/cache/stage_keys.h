@@ -10,8 +10,8 @@
 
 namespace opaline {
 
-/// Keys of a mesh of the world, after loading, mending and moving: its places alone (what throws shadows), and
-/// with the normals; and a ball around it.
+/// Keys of a mesh of the world, after loading, mending and moving: its places alone (what throws shadows),
+/// and with the normals; and a ball around it.
 struct MeshKeys {
   StageKey shape, all;
   Vec3d center{};
