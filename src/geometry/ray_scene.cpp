@@ -42,8 +42,8 @@ struct alignas(32) RayScene::Vertex {
 };
 
 struct RayScene::MeshView {
-  const Vertex* vertices;                         // Embree's buffer
-  const std::array<std::uint32_t, 3>* triangles;  // likewise
+  std::vector<Vertex> vertices;  // shared with Embree, whose own buffers begin at any 16 bytes
+  const std::array<std::uint32_t, 3>* triangles;  // Embree's buffer
   bool faceted;
   float offset;
 };
@@ -56,7 +56,6 @@ bool count_memory(void* counter, ssize_t bytes, bool) {
   *static_cast<std::atomic<std::ptrdiff_t>*>(counter) += bytes;
   return true;
 }
-
 
 RTCIntersectContext coherent_context() {
   RTCIntersectContext context;
@@ -87,21 +86,23 @@ RayScene::RayScene(const World& world) : handles_(std::make_unique<Handles>()) {
 
 void RayScene::attach(const Mesh& mesh) {
   RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<Vertex*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vertex), mesh.positions.size()));
+  std::vector<Vertex> vertices(mesh.positions.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    vertices[i] = {Vec3f(mesh.positions[i]), mesh.normals.empty() ? Vec3f{} : mesh.normals[i]};
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0,
+                             sizeof(Vertex), vertices.size());
   auto* indices = static_cast<std::array<std::uint32_t, 3>*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               sizeof(std::array<std::uint32_t, 3>), mesh.triangles.size()));
   check_device(handles_->device);
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    vertices[i] = {Vec3f(mesh.positions[i]), mesh.normals.empty() ? Vec3f{} : mesh.normals[i]};
   std::ranges::copy(mesh.triangles, indices);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(handles_->scene, geometry, unsigned(meshes_.size()));
   rtcReleaseGeometry(geometry);
   const Bounds box = bounds(mesh);
   const float offset = float(length(box.high - box.low) * 0x1p-18);
-  meshes_.push_back({vertices, indices, mesh.normals.empty(), offset});
+  handles_->bytes += std::ptrdiff_t(vertices.size() * sizeof(Vertex));
+  meshes_.push_back({std::move(vertices), indices, mesh.normals.empty(), offset});
   largest_offset_ = std::max(largest_offset_, offset);
 }
 

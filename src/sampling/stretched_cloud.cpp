@@ -2,6 +2,7 @@
 #include "sampling/stretched_cloud.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <numeric>
 #include <unordered_map>
@@ -81,7 +82,27 @@ StretchedCloud::StretchedCloud(const TriangleList& before, const TriangleList& a
                                std::vector<SampleGrid::Place> places)
     : before_(before), after_(after), radius_(radius), places_(std::move(places)) {}
 
+bool StretchedCloud::is_crowded(float distance) const {
+  const SampleGrid all = grid();
+  std::atomic<bool> crowded{false};
+  parallel_chunks(all.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end && !crowded; ++i)
+      all.for_cells_near(all.position(i), distance, [&](const SampleGrid::Cell& cell) {
+        for (std::size_t j = cell.first; j < cell.first + cell.count; ++j) {
+          const Vec3f d = all.position(j) - all.position(i);
+          if (j != i && dot(d, d) < distance * distance &&
+              same_sheet(after_.geometric_normal(all.place(i).triangle),
+                         after_.geometric_normal(all.place(j).triangle)))
+            crowded = true;
+        }
+        return crowded.load();
+      });
+  });
+  return crowded;
+}
+
 std::size_t StretchedCloud::remove_crowded(float radii) {
+  if (!is_crowded(radii * radius_)) return 0;
   const std::vector<Standing> standing = standing_on(after_, places_);
   // Who stays is drawn by lot, the same one in every frame.
   std::vector<std::pair<std::uint64_t, std::uint32_t>> lots(places_.size());
@@ -113,11 +134,14 @@ std::size_t StretchedCloud::fill_gaps(float radii) {
   constexpr double kGrown = 1.2 * 1.2;
   constexpr double kTriesPerArea = 4;  // in squared clearances
   const float clearance = radii * radius_;
+  std::vector<std::size_t> grown;
+  for (std::size_t t = 0; t < after_.size(); ++t)
+    if (after_.area(t) > kGrown * before_.area(t)) grown.push_back(t);
+  if (grown.empty()) return 0;
   GrowingCloud cloud(lowest(after_), clearance);
   for (const Standing& s : standing_on(after_, places_)) cloud.add(s);
   std::size_t added = 0;
-  for (std::size_t t = 0; t < after_.size(); ++t) {
-    if (!(after_.area(t) > kGrown * before_.area(t))) continue;
+  for (const std::size_t t : grown) {
     const TriangleList::Corners corners = after_.corners(after_.id(t));
     const Vec3f normal = after_.geometric_normal(t);
     const double tries = std::ceil(kTriesPerArea * after_.area(t) / double(clearance * clearance));

@@ -23,6 +23,8 @@ class StretchedCloud {
   SampleGrid grid() const;
 
  private:
+  bool is_crowded(float distance) const;
+
   const TriangleList& before_;
   const TriangleList& after_;
   float radius_;

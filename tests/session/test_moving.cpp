@@ -222,5 +222,26 @@ TEST(Moving, OtherTopology) {
   EXPECT_TRUE(same_pixels(picture, cold_picture(ball.scene)));
 }
 
+// Claim: the frames of an anchored session do not depend on which came before, even where one has other
+// surfaces; unanchored they do. Source: session.h. Fails if: samples placed for a frame of its own become
+// what later ones carry.
+TEST(Moving, AnchoredFrames) {
+  Scene other = two_balls(), turned = moved_left({});
+  other.shapes[0].source = TorusShape{{-15, 10, 0}, 8, 3};
+  turned.shapes[0].to_world = {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {-15, 3, -15}};
+  const std::vector<Scene> frames = {moved_left({1, 2, 0}), other, turned};
+  const auto pictures = [&](bool anchored, const std::vector<std::size_t>& order) {
+    std::vector<Image> all(frames.size());
+    Session session;
+    if (anchored) session.anchor(two_balls());
+    for (const std::size_t i : order) all[i] = picture_of(session, frames[i]);
+    return all;
+  };
+  const auto forth = pictures(true, {0, 1, 2}), back = pictures(true, {2, 1, 0, 1, 2, 0});
+  for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_TRUE(same_pixels(forth[i], back[i])) << i;
+  EXPECT_FALSE(same_pixels(pictures(false, {0, 1, 2})[2], forth[2]));
+  EXPECT_TRUE(same_pixels(forth[1], cold_picture(other)));
+}
+
 }  // namespace
 }  // namespace opaline
