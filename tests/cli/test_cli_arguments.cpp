@@ -37,7 +37,7 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{}, "no command"},
       {{"rendr", scene}, "unknown command 'rendr' (did you mean 'render'?)"},
       {{"ifno", scene, "--spp", "4"}, "unknown command 'ifno' (did you mean 'info'?)"},
-      {{"draw", scene}, "unknown command 'draw' (expected one of render, info, compare, bench)"},
+      {{"draw", scene}, "unknown command 'draw' (expected one of render, info, compare, bench, cache, precompute)"},
       {{scene}, "unknown command '"},
       {{"--quiet", "rendr"}, "--quiet"},
       {{"render"}, "required"},

@@ -34,9 +34,10 @@ TEST(SampleFields, AgreeWithTheMesh) {
 // sphere; 9 to 21 % of samples faced inward where peers turned normals to a tracing ray. Tolerance: none.
 // Fails if: normals are flipped towards anything.
 TEST(SampleFields, NormalsFaceOutward) {
-  const World world = world_of({SphereShape{{3, 4, 5}, 25}});
+  const Vec3d center{3, 4, 5};
+  const World world = world_of({SphereShape{center, 25}});
   for (const SurfaceSample& s : samples_on(world, 3000).samples)
-    ASSERT_GT(dot(s.normal, normalized(s.position)), 0.99f);
+    ASSERT_GT(dot(s.normal, normalized(s.position - Vec3f(center - world.origin))), 0.99f);
 }
 
 }  // namespace
