@@ -140,14 +140,15 @@ TEST(Reuse, Methods) {
 
 // Claim: without a number of samples in the settings a medium's samples stay while they are as dense as it
 // asks for and at most twice as dense, and so the picture is that of this many samples; beyond, they are
-// placed anew and it is the cold one. Source: session.h; the spacing is the mean free path, 1/6 mm in blue.
+// placed anew and it is the cold one. Source: session.h; the spacing is one and a half mean free
+// paths, 1/6 mm in blue.
 // Fails if: the rule looks at one side only.
 TEST(Reuse, SpacingStillValid) {
   Scene scene = two_balls();
   scene.settings.samples = {};
   const auto scaled = [&](double by) {
     Scene edited = scene;
-    edited.media[0].coefficients = PhysicalMedium{{.002, .004, .007}, Rgb{4, 5, 6} * by};
+    edited.media[0].coefficients = PhysicalMedium{{.002, .004, .007}, Rgb{6, 7.5, 9} * by};
     return edited;
   };
   const struct {
