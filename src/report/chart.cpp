@@ -21,11 +21,19 @@ struct Axis {
   double place(double value) const {
     return from + (to - from) * std::log(value / low) / std::log(high / low);
   }
+  /// 1, 2, 5 where that is a handful, else whole decades or all digits.
   std::vector<double> ticks() const {
     std::vector<double> all = round_values(low, high);
-    if (all.size() > 9)
-      std::erase_if(all,
-                    [](double v) { return std::abs(v / std::pow(10, std::round(std::log10(v))) - 1) > .1; });
+    const auto digit = [](double value) {
+      return value / std::pow(10, std::floor(std::log10(value) + 1e-9));
+    };
+    if (all.size() > 9) std::erase_if(all, [&](double value) { return digit(value) > 1.5; });
+    if (all.size() > 2) return all;
+    all.clear();
+    const double decade = std::pow(10, std::floor(std::log10(low)));
+    for (const double scale : {decade, 10 * decade})
+      for (int i = 1; i < 10; ++i)
+        if (i * scale >= low && i * scale <= high) all.push_back(i * scale);
     return all;
   }
 };
@@ -156,8 +164,8 @@ std::string legend(const Chart& chart) {
 }  // namespace
 
 std::string chart_html(const PageScene& scene) {
+  if (scene.series.empty()) return "<p>No setting has an error.</p>\n";
   const Chart chart = layout(scene);
-  if (chart.points.empty()) return "<p>No setting has an error.</p>\n";
   std::vector<TradePoint> front;
   for (const std::size_t i : chart.front) front.push_back(chart.points[i]);
   std::string svg = fmt::format(

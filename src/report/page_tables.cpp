@@ -56,7 +56,7 @@ std::vector<double> time_targets(const PageScene& scene) {
   for (const TradeSeries& series : scene.series)
     for (const TradePoint& point : series.points) times.push_back(point.cpu);
   const auto [low, high] = std::ranges::minmax(times);
-  std::vector<double> values = round_values(low, high);
+  std::vector<double> values = round_values(low, 2.5 * high);  // one beyond the dearest at least
   values.resize(std::min(values.size(), kColumns));
   return values;
 }
@@ -80,14 +80,15 @@ std::string targets_table(const PageScene& scene, const std::vector<double>& tar
 
 std::string trade_tables_html(const PageScene& scene) {
   if (scene.series.empty()) return {};
-  return "<div class=\"pair\">\n<section><h3>Equal error</h3>\n<p>CPU seconds to an error of</p>\n" +
+  return "<h3>Equal error</h3>\n<p>CPU seconds to an error of</p>\n" +
          targets_table(scene, error_targets(scene), "%", 100, 1, cpu_at_error) +
-         "</section>\n<section><h3>Equal time</h3>\n<p>Error, %, after CPU seconds</p>\n" +
+         "<h3>Equal time</h3>\n<p>Error, %, after CPU seconds</p>\n" +
          targets_table(scene, time_targets(scene), "s", 1, 100, error_at_cpu) +
-         "</section>\n</div>\n<p class=\"small\">Between two measured settings along the straight line of "
+         "<p class=\"small\">Between two measured settings along the straight line of "
          "the "
          "chart (logarithm of the error over logarithm of the time). ≤: the nearest setting does better "
-         "already. ≈: <em>direct</em> beyond its last setting, its error falling with the root of the time. "
+         "already. ≈: <em>direct</em> beyond its last setting, its error falling with the root of the "
+         "shading's time. "
          "–: not reached.</p>\n";
 }
 
@@ -139,9 +140,7 @@ std::string budget_html(const PageScene& scene) {
              "<th scope=\"col\">error, %</th><th scope=\"col\" class=\"bar\">0 to 5 %</th>"
              "<th scope=\"col\">signed, %</th><th scope=\"col\">p99, %</th></tr>\n",
              body) +
-         "<p class=\"small\">The error of the model itself is not in any figure of this page: all are "
-         "against the "
-         "same diffusion model, not against light in a volume.</p>\n";
+         "<p class=\"small\">Not among them: the error of the diffusion model itself.</p>\n";
 }
 
 std::string settings_html(const PageScene& scene) {

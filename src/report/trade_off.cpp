@@ -14,6 +14,8 @@ double on_log_line(double x0, double y0, double x1, double y1, double x) {
 }
 
 std::string series_name(const Rung& rung) {
+  if (rung.method == "hierarchical" && rung.evaluator.empty() && rung.knob.empty())
+    return "hierarchical, as the scene has it";
   std::string name = rung.method;
   if (!rung.evaluator.empty()) name += ' ' + rung.evaluator;
   if (!rung.knob.empty()) name += ", " + rung.knob;
@@ -32,7 +34,8 @@ std::vector<TradeSeries> trade_series(std::span<const BenchRow> rows, const std:
     if (series == all.end()) series = all.insert(all.end(), {name, row.rung.method, {}});
     const ErrorFigures& worst = row.error->worst;
     const TradePoint point{i, row.job.cpu.median, std::max(worst.error, worst.error_floor),
-                           worst.error < worst.error_floor};
+                           worst.error < worst.error_floor,
+                           row.job.cpu.median - row.stages[kShadingStage].cpu.median};
     if (point.cpu > 0 && point.error > 0) series->points.push_back(point);
   }
   std::erase_if(all, [](const TradeSeries& series) { return series.points.empty(); });
@@ -60,7 +63,8 @@ Estimate cpu_at_error(const TradeSeries& series, double error) {
               on_log_line(points[i - 1].error, points[i - 1].cpu, points[i].error, points[i].cpu, error)};
   const TradePoint& last = points.back();
   if (series.method != "direct" || last.below_noise) return {};
-  return {Estimate::extrapolated, last.cpu * std::pow(last.error / error, 2)};
+  return {Estimate::extrapolated,
+          last.fixed_cpu + (last.cpu - last.fixed_cpu) * std::pow(last.error / error, 2)};
 }
 
 Estimate error_at_cpu(const TradeSeries& series, double cpu) {
@@ -72,7 +76,8 @@ Estimate error_at_cpu(const TradeSeries& series, double cpu) {
               on_log_line(points[i - 1].cpu, points[i - 1].error, points[i].cpu, points[i].error, cpu)};
   const TradePoint& last = points.back();
   if (series.method != "direct" || last.below_noise) return {Estimate::at_most, last.error};
-  return {Estimate::extrapolated, last.error * std::sqrt(last.cpu / cpu)};
+  return {Estimate::extrapolated,
+          last.error * std::sqrt((last.cpu - last.fixed_cpu) / (cpu - last.fixed_cpu))};
 }
 
 std::vector<double> round_values(double low, double high) {
