@@ -149,9 +149,10 @@ std::string to_page(const BenchReport& report) {
   std::string page = kPageFrame;
   replace(page, "{{title}}", escaped(titles));
   replace(page, "{{style}}", kPageStyle);
+  const std::string threads = note_of(report, "threads");
   replace(page, "{{lead}}",
-          escaped(fmt::format("{}, {}, {} threads, {}", note_of(report, "version"), note_of(report, "cpu"),
-                              note_of(report, "threads"), note_of(report, "date"))));
+          escaped(fmt::format("{}, {}, {} thread{}, {}", note_of(report, "version"), note_of(report, "cpu"),
+                              threads, threads == "1" ? "" : "s", note_of(report, "date"))));
   replace(page, "{{body}}", body + notes_html(report));
   replace(page, "{{script}}", kPageScript);
   return page;

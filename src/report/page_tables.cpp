@@ -61,6 +61,14 @@ std::vector<double> time_targets(const PageScene& scene) {
   return values;
 }
 
+/// The value at the end of the bars: the first round one that holds the largest.
+double bar_end(const PageScene& scene) {
+  double largest = 1e-4;
+  for (const BudgetRow& row : scene.report->budget)
+    if (row.scene == scene.subject->scene && row.error) largest = std::max(largest, row.error->worst.error);
+  return round_values(largest, 10 * largest).front();
+}
+
 using Find = std::function<Estimate(const TradeSeries&, double)>;
 
 std::string targets_table(const PageScene& scene, const std::vector<double>& targets, const char* unit,
@@ -87,7 +95,8 @@ std::string trade_tables_html(const PageScene& scene) {
          "<p class=\"small\">Between two measured settings along the straight line of "
          "the "
          "chart (logarithm of the error over logarithm of the time). ≤: the nearest setting does better "
-         "already. ≈: <em>direct</em> beyond its last setting, its error falling with the root of the "
+         "already, or the noise hides how good it is. ≈: <em>direct</em> beyond its last setting, its error "
+         "falling with the root of the "
          "shading's time. "
          "–: not reached.</p>\n";
 }
@@ -115,13 +124,14 @@ std::string frames_html(const PageScene& scene) {
 
 std::string budget_html(const PageScene& scene) {
   std::string body;
+  const double most = bar_end(scene);
   for (const BudgetRow& row : scene.report->budget) {
     if (row.scene != scene.subject->scene) continue;
     body += fmt::format("<tr><th scope=\"row\">{}</th><td class=\"words\">{}</td>", row.part.name,
                         escaped(row.part.setting));
     if (row.error) {
       const ErrorFigures& worst = row.error->worst;
-      const double width = std::clamp(100 * worst.error, 0.0, 5.0) / 5;
+      const double width = worst.error / most;
       body += fmt::format(
           "<td>{}</td><td class=\"bar\"><i style=\"width:{:.1f}%\"></i></td><td>{}{}</td><td>{}</td>",
           figure(100 * worst.error), 100 * width, worst.signed_mean > 0 ? "+" : "",
@@ -136,9 +146,11 @@ std::string budget_html(const PageScene& scene) {
          "converged "
          "one, nothing else changed; worst channel. The parts are not made to add up.</p>\n" +
          table_html(
-             "<tr><th scope=\"col\">part</th><th scope=\"col\" class=\"words\">what is changed</th>"
-             "<th scope=\"col\">error, %</th><th scope=\"col\" class=\"bar\">0 to 5 %</th>"
-             "<th scope=\"col\">signed, %</th><th scope=\"col\">p99, %</th></tr>\n",
+             fmt::format(
+                 "<tr><th scope=\"col\">part</th><th scope=\"col\" class=\"words\">what is changed</th>"
+                 "<th scope=\"col\">error, %</th><th scope=\"col\" class=\"bar\">0 to {:.4g} %</th>"
+                 "<th scope=\"col\">signed, %</th><th scope=\"col\">p99, %</th></tr>\n",
+                 100 * most),
              body) +
          "<p class=\"small\">Not among them: the error of the diffusion model itself.</p>\n";
 }

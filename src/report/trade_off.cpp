@@ -13,6 +13,11 @@ double on_log_line(double x0, double y0, double x1, double y1, double x) {
   return y0 * std::pow(y1 / y0, t);
 }
 
+/// A point below the noise stands too high: what leans on it is a bound.
+Estimate::Kind between(const TradePoint& a, const TradePoint& b) {
+  return a.below_noise || b.below_noise ? Estimate::at_most : Estimate::interpolated;
+}
+
 std::string series_name(const Rung& rung) {
   if (rung.method == "hierarchical" && rung.evaluator.empty() && rung.knob.empty())
     return "hierarchical, as the scene has it";
@@ -49,8 +54,10 @@ std::vector<std::size_t> pareto_front(std::span<const TradePoint> points) {
   std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
     return std::pair(points[a].cpu, points[a].error) < std::pair(points[b].cpu, points[b].error);
   });
-  for (const std::size_t i : order)
-    if (front.empty() || points[i].error < points[front.back()].error) front.push_back(i);
+  for (const std::size_t i : order) {
+    const TradePoint* best = front.empty() ? nullptr : &points[front.back()];
+    if (best == nullptr || (!best->below_noise && points[i].error < best->error)) front.push_back(i);
+  }
   return front;
 }
 
@@ -59,7 +66,7 @@ Estimate cpu_at_error(const TradeSeries& series, double error) {
   if (points.front().error <= error) return {Estimate::at_most, points.front().cpu};
   for (std::size_t i = 1; i < points.size(); ++i)
     if (points[i].error <= error)
-      return {Estimate::interpolated,
+      return {between(points[i - 1], points[i]),
               on_log_line(points[i - 1].error, points[i - 1].cpu, points[i].error, points[i].cpu, error)};
   const TradePoint& last = points.back();
   if (series.method != "direct" || last.below_noise) return {};
@@ -72,7 +79,7 @@ Estimate error_at_cpu(const TradeSeries& series, double cpu) {
   if (cpu < points.front().cpu) return {};
   for (std::size_t i = 1; i < points.size(); ++i)
     if (cpu < points[i].cpu)
-      return {Estimate::interpolated,
+      return {between(points[i - 1], points[i]),
               on_log_line(points[i - 1].cpu, points[i - 1].error, points[i].cpu, points[i].error, cpu)};
   const TradePoint& last = points.back();
   if (series.method != "direct" || last.below_noise) return {Estimate::at_most, last.error};

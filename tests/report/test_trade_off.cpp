@@ -9,12 +9,15 @@ namespace opaline {
 namespace {
 
 // Claim: the front holds what no other point beats in both, cheap to dear; of two alike the first. By hand.
-// Tolerance: none. Fails if: a point that is as accurate but dearer stays, or the order is that of the input.
+// Tolerance: none. Fails if: a point that is as accurate but dearer stays, the order is that of the input, or
+// it goes on below the noise.
 TEST(TradeOff, ParetoFront) {
   const std::vector<TradePoint> points{{0, 4, .01}, {1, 1, .1},  {2, 2, .1},
                                        {3, 2, .05}, {4, 8, .02}, {5, 8, .005}};
   EXPECT_EQ(pareto_front(points), (std::vector<std::size_t>{1, 3, 0, 5}));
   EXPECT_TRUE(pareto_front({}).empty());
+  EXPECT_EQ(pareto_front(std::vector<TradePoint>{{0, 1, .1}, {1, 2, .004, true}, {2, 3, .0039, true}}),
+            (std::vector<std::size_t>{0, 1}));
 }
 
 // Claim: between two settings the estimate lies on the straight line of the logarithms; a better setting than
@@ -41,13 +44,19 @@ TEST(TradeOff, BetweenAndBeyond) {
 }
 
 // Claim: an error that the noise hides stands at the noise, and is marked. Source: trade_off.h. Fails if: the
-// estimate below the noise, here negative, is drawn (a logarithm of it is none).
+// estimate below the noise, here negative, is drawn (a logarithm of it is none), or what leans on it is more
+// than a bound.
 TEST(TradeOff, BelowTheNoise) {
   const std::vector<BenchRow> rows{row_of("s", {"hierarchical", "", "", ""}, 1, -.002, .004)};
   const std::vector<TradeSeries> series = trade_series(rows, "s");
   ASSERT_EQ(series.size(), 1u);
   EXPECT_TRUE(series[0].points[0].below_noise);
   EXPECT_EQ(series[0].points[0].error, .004);
+  const std::vector<BenchRow> two{row_of("s", {"hierarchical", "", "samples", "1"}, 1, .04),
+                                  row_of("s", {"hierarchical", "", "samples", "2"}, 4, -.002, .01)};
+  const Estimate cpu = cpu_at_error(trade_series(two, "s")[0], .02);
+  EXPECT_EQ(cpu.kind, Estimate::at_most);
+  EXPECT_NEAR(cpu.value, 2, 1e-9);
 }
 
 // Claim: 1, 2, 5 times powers of ten within the bounds, both included. By hand. Fails if: rounding drops a

@@ -19,7 +19,7 @@ struct TradePoint {
   double cpu = 0;       ///< s, of the whole job
   double error = 0;     ///< relative, worst channel
   bool below_noise = false;
-  double fixed_cpu = 0;     ///< of it what more random values would not add to: all but the shading, s
+  double fixed_cpu = 0;  ///< of it what more random values would not add to: all but the shading, s
 };
 
 /// Settings that differ in the value of one knob, from cheap to dear.
@@ -34,6 +34,7 @@ struct TradeSeries {
 std::vector<TradeSeries> trade_series(std::span<const BenchRow> rows, const std::string& scene);
 
 /// Indices of the points that no other is both at least as cheap and at least as accurate as, cheap to dear.
+/// It ends where the noise begins: beyond, nothing tells them apart.
 std::vector<std::size_t> pareto_front(std::span<const TradePoint> points);
 
 /// A figure that was not measured itself.
@@ -43,7 +44,7 @@ struct Estimate {
     interpolated,  ///< on the straight line of log CPU and log error between two neighbours
     extrapolated,  ///< `direct` alone: its error falls with the root of the time, as any mean's of random
                    ///< values
-    at_most,       ///< the nearest setting does better already
+    at_most,       ///< the nearest setting does better already, or the noise hides how good it is
   } kind = none;
   double value = 0;
 };
