@@ -25,7 +25,8 @@ std::string tree_of(EvaluatorKind evaluator) {
 
 }  // namespace
 
-// Samples and near field are compared where the tree's own error is too small to hide them.
+// Samples and near field are compared where the tree's own error is too small to hide them, and samples where
+// as many rays in all go to the lights: more samples would otherwise take noise of the irradiance away too.
 std::vector<BudgetPart> error_budget(std::size_t planned_samples, const Settings& settings) {
   if (planned_samples == 0) return {};
   const std::size_t most = std::max(std::min(kFactor * planned_samples, kMostSamples), 2 * planned_samples);
@@ -33,14 +34,15 @@ std::vector<BudgetPart> error_budget(std::size_t planned_samples, const Settings
   const std::string factor = fmt::format("{:.3g}", double(most) / double(planned_samples));
   const int light_samples = int(std::min<long>(long(kFactor) * settings.light_samples, kMostLightSamples));
   const std::string tree = tree_of(settings.evaluator);
+  const Overrides many_rays{fmt::format("settings.light_samples={}", light_samples)};
   const Overrides fine{"settings.evaluator=dual_tree", "settings.tolerance=0.001"};
   const Overrides dense = fine + Overrides{"settings.samples=" + many, "settings.max_samples=" + many};
   return {
-      {"sampling", fmt::format("{} times the samples", factor), fine, dense},
+      {"sampling", fmt::format("{} times the samples", factor), fine + many_rays, dense},
       {"irradiance",
        fmt::format("{} in place of {} shadow rays to each area light", light_samples, settings.light_samples),
        {},
-       {fmt::format("settings.light_samples={}", light_samples)}},
+       many_rays},
       {"hierarchy",
        fmt::format("the exact sum in place of the tree ({})", tree),
        {"settings.evaluator=" + tree},

@@ -58,7 +58,7 @@ std::string answer_html(const PageScene& scene) {
     }
   }
   if (best == nullptr) return "<p class=\"answer\">No setting here reaches an error of 1 %.</p>\n";
-  std::string html = fmt::format("<p class=\"answer\">An error of 1 % costs <b>{}{} s</b> CPU by {}",
+  std::string html = fmt::format("<p class=\"answer\">An error of 1 % costs <b>{}{} s</b> CPU ({})",
                                  least.kind == Estimate::at_most ? "at most " : "", figure(least.value),
                                  escaped(best->name));
   for (const std::size_t row : rows_of(scene))

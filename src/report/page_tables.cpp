@@ -15,9 +15,9 @@ namespace {
 constexpr std::size_t kColumns = 5;
 constexpr double kTarget = .01;
 
-std::string table_html(const std::string& head, const std::string& body) {
-  return "<div class=\"scroll\"><table>\n<thead>\n" + head + "</thead>\n<tbody>\n" + body +
-         "</tbody>\n</table></div>\n";
+std::string table_html(const std::string& head, const std::string& body, const char* name = "") {
+  return fmt::format("<div class=\"scroll\"><table class=\"{}\">\n<thead>\n", name) + head +
+         "</thead>\n<tbody>\n" + body + "</tbody>\n</table></div>\n";
 }
 
 /// The name of a row, with its series' colour.
@@ -166,7 +166,6 @@ std::string settings_html(const PageScene& scene) {
                                        {"job", "× lambert", "job_ratio_median"},
                                        {"shading", "s", "shading_cpu_median"},
                                        {"shading", "× lambert", "shading_ratio_median"},
-                                       {"wall", "s", "job_wall_median"},
                                        {"peak", "MB", "job_memory_median"},
                                        {"error", "%", "error_worst"},
                                        {"told from", "%", "error_floor_worst"},
@@ -189,7 +188,7 @@ std::string settings_html(const PageScene& scene) {
   return "<h3>All settings</h3>\n<p>Medians; errors of the worst channel, below 0 where the noise hides "
          "them. An "
          "error below “told from” says nothing.</p>\n" +
-         table_html(head + "</tr>\n", body);
+         table_html(head + "</tr>\n", body, "dense");
 }
 
 }  // namespace opaline

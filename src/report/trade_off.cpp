@@ -23,7 +23,7 @@ std::string series_name(const Rung& rung) {
     return "hierarchical, as the scene has it";
   std::string name = rung.method;
   if (!rung.evaluator.empty()) name += ' ' + rung.evaluator;
-  if (!rung.knob.empty()) name += ", " + rung.knob;
+  if (!rung.knob.empty()) name += ", by " + rung.knob;
   return name;
 }
 

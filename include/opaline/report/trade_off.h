@@ -24,7 +24,7 @@ struct TradePoint {
 
 /// Settings that differ in the value of one knob, from cheap to dear.
 struct TradeSeries {
-  std::string name;  ///< "hierarchical dual_tree, tolerance"
+  std::string name;  ///< "hierarchical dual_tree, by tolerance"
   std::string method;
   std::vector<TradePoint> points;
 };
