@@ -8,12 +8,15 @@ set -euo pipefail
 root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 
 # Only what no other package of the list brings along; OpenImageIO's CMake targets do not load without its tools.
-# Both lists are for the scripts that source this file.
+# The lists are for the scripts that source this file.
 # shellcheck disable=SC2034
 build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev libopenimageio-dev
   openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhdf5-dev libxxhash-dev)
 # shellcheck disable=SC2034
 test_packages=(libgtest-dev parallel)
+# The report's page is tested in a browser, 98 MB to fetch and 300 MB on the disk: the slow tier alone needs it.
+# shellcheck disable=SC2034
+long_test_packages=(chromium-headless-shell)
 
 bunny_package=glmark2-data
 bunny_path=./usr/share/glmark2/models/bunny.obj

@@ -32,7 +32,7 @@ constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
   opaline render bunny.json -o bunny.exr --log json --threads 4
   opaline compare bunny.exr reference.exr --fail-above 1%
-  opaline bench bunny.json --csv bunny.csv --resolution 256x256
+  opaline bench bunny.json -o report --resolution 256x256
   opaline render bunny.json -o turned.exr --cache stages --set camera.position=[0,50,200]
   opaline render bunny.json -o out.####.exr --frames 1-24 --cache stages
   opaline cache ls stages
@@ -81,15 +81,27 @@ error     rms relative error against two halves of a reference (compare --halves
           "< 2": what could be told from the noise of the halves begins at 2 %
 p99       against the mean of the halves; in brackets the p99 of that mean's own noise
 
+-o writes a report into a folder: index.html (open it in a browser; no network is needed) with the trade of
+error against CPU time, pictures and where they are off, and the parts of the error, each rendered alone; the
+same figures as results.csv, budget.csv and results.json; pictures. Run it again after an interruption: what
+this program has finished on the same scene and settings is kept there and not repeated (a ratio then may pair
+runs from before and after).
+
+--against compares ratios to lambert and errors with an earlier results.json, rung by rung, and exits with 1 if
+one is worse beyond the noise: the ranges of a ratio lie apart by more than half their widths together, an
+error's square by more than three of its standard errors; less than 5 % is never a change.
+
 Halves that the bench renders are kept (--reference-dir) and used again while scene, meshes and settings are
 the same; delete them when `direct` itself has changed. An interrupted one goes on where it stopped.
 
 Examples:
-  opaline bench bunny.json --csv bunny.csv --quick
-  opaline bench bunny.json ball.json --csv all.csv --resolution 256x256 --repeats 5
+  opaline bench bunny.json -o report --quick
+  opaline bench bunny.json ball.json -o report --resolution 256x256 --repeats 5
+  opaline bench bunny.json -o new --resolution 256x256 --against report/results.json
   opaline bench bunny.json --csv bunny.csv --halves seed1.exr seed2.exr --rung near_field=false
 
-Exit codes: 0 done, 2 bad input, 3 a rung failed (its row says why) or the run did, 130 interrupted.)";
+Exit codes: 0 done, 1 worse than before (--against), 2 bad input, 3 a rung failed (its row says why) or the run
+did, 130 interrupted.)";
 
 constexpr const char* kCacheNotes =
     R"(An entry holds the result of one stage for one input: the samples of a group, the light that enters
@@ -243,9 +255,10 @@ void add_picture_options(CLI::App& app, Options& options) {
          "hierarchical: light under the surface; lambert: plain paint, fast; direct: the reference, slow")
       ->type_name("NAME")
       ->group(group);
-  app.add_option("--evaluator", options.evaluator,
-                 "dual_tree: to settings.tolerance; surface_cache: the same, interpolated; classic: as published; "
-                 "brute_force: the exact sum, slow; default: automatic, one of the first two")
+  app.add_option(
+         "--evaluator", options.evaluator,
+         "dual_tree: to settings.tolerance; surface_cache: the same, interpolated; classic: as published; "
+         "brute_force: the exact sum, slow; default: automatic, one of the first two")
       ->type_name("NAME")
       ->group(group);
   app.add_option("--entry-samples", options.entry_samples, "direct: places of entry for each pixel")
@@ -349,7 +362,11 @@ std::string rung_check(const std::string& text) {
 
 void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
   app.add_option("SCENE", bench.scenes, "scene files (JSON with comments)")->required()->type_name("FILE");
-  app.add_option("--csv", bench.csv, "where to write all figures")->required()->type_name("FILE");
+  app.add_option("-o,--output", bench.report, "write a report into this folder")->type_name("FOLDER");
+  app.add_option("--csv", bench.csv, "write all figures")->type_name("FILE");
+  app.add_option("--against", bench.against,
+                 "results.json of an earlier report: exit 1 if something got worse")
+      ->type_name("FILE");
   app.add_option("--resolution", options.resolution, "width and height of all pictures, e.g. 256x256")
       ->check(list_check(resolution_json, "WIDTHxHEIGHT, each 1 to 65536, such as 640x480"))
       ->type_name("WxH");
@@ -369,11 +386,11 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
       ->expected(2)
       ->type_name("FILE");
   app.add_option("--reference-error", options.reference_error,
-                 "noise of each half that the bench renders (default 2%)")
+                 "noise of each half that the bench renders (default 2%, 3% with --quick)")
       ->check(CLI::Validator([](std::string& text) { return positive_share_check(text); }, {}))
       ->type_name("SHARE");
   app.add_option("--reference-dir", bench.reference_dir,
-                 "keeps these halves; default: references beside the CSV")
+                 "keeps these halves; default: references in the report or beside the CSV")
       ->type_name("FOLDER");
   app.add_flag("--quick", bench.quick, "to try it: few rungs, 128 pixels wide");
   app.footer(kBenchNotes);
@@ -463,6 +480,8 @@ CompareArguments checked(CompareArguments compare, const Options& options) {
   return compare;
 }
 
+constexpr double kReferenceError = .02, kQuickReferenceError = .03;
+
 BenchArguments checked(BenchArguments bench, const Options& options) {
   if (!bench.halves.empty() && bench.scenes.size() > 1)
     throw usage_error("--halves are the reference of one scene", "a single scene",
@@ -470,7 +489,11 @@ BenchArguments checked(BenchArguments bench, const Options& options) {
   if (!bench.halves.empty() && !(options.reference_error.empty() && bench.reference_dir.empty()))
     throw usage_error(
         "with --halves no reference is rendered: leave --reference-error and --reference-dir out");
-  if (!options.reference_error.empty()) bench.reference_error = *share_of(options.reference_error);
+  if (bench.csv.empty() && bench.report.empty() && bench.against.empty())
+    throw usage_error("nothing is asked for", "-o FOLDER, --csv FILE or --against FILE");
+  bench.reference_error = options.reference_error.empty()
+                              ? (bench.quick ? kQuickReferenceError : kReferenceError)
+                              : *share_of(options.reference_error);
   for (const std::string& text : options.rungs) {
     const std::size_t equals = text.find('=');
     bench.rungs.push_back({"hierarchical", "", text.substr(0, equals), text.substr(equals + 1)});

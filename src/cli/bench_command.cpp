@@ -1,140 +1,70 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <stdlib.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <span>
+#include <sstream>
 
+#include "cli/bench_folder.h"
+#include "cli/bench_pictures.h"
 #include "cli/bench_report.h"
+#include "cli/bench_runs.h"
 #include "cli/bench_scene.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/machine.h"
-#include "cli/own_child.h"
-#include "cli/units.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/report/csv.h"
+#include "opaline/report/page.h"
+#include "opaline/report/regression.h"
+#include "opaline/report/results_json.h"
 
 namespace opaline {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the pictures that are thrown away at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_((fs::temp_directory_path() / "opaline-bench-XXXXXX").string()) {
-    if (::mkdtemp(path_.data()) == nullptr) throw run_failed(path_, "cannot make a temporary folder");
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+constexpr int kWorse = 1;  // the exit code
 
-  std::string file(std::size_t number) const { return fmt::format("{}/{}.exr", path_, number); }
-
- private:
-  std::string path_;
-};
-
-/// A rung on its way to a row.
-struct Job {
-  const BenchScene* scene;
-  const Rung* rung;
-  std::string picture;
-  std::vector<BenchRun> runs;
-  std::string failure;
-};
-
-std::string reference_folder(const BenchArguments& arguments) {
-  const fs::path beside = fs::path(arguments.csv).parent_path() / "references";
-  const std::string folder = arguments.reference_dir.empty() ? beside.string() : arguments.reference_dir;
+/// In the report, or beside the CSV, or nowhere for long.
+std::string reference_folder(const BenchArguments& arguments, const BenchFolder& report) {
+  std::string folder = arguments.reference_dir;
+  if (folder.empty())
+    folder = !report.is_report() && !arguments.csv.empty()
+                 ? (fs::path(arguments.csv).parent_path() / "references").string()
+                 : report.file("references");
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (failure) throw run_failed(folder, "cannot make the folder of references: " + failure.message());
   return folder;
 }
 
-std::vector<BenchScene> open_scenes(const BenchArguments& arguments, Monitor& monitor) {
-  std::set<std::string> seen;
+std::vector<BenchScene> open_scenes(const BenchArguments& arguments, const BenchFolder& report,
+                                    Monitor& monitor) {
+  std::set<std::string> seen, names;
   for (const std::string& file : arguments.scenes)
     if (!seen.insert(file).second) throw bad_file(file, "the scene is given twice");
   std::vector<BenchScene> scenes;
-  for (const std::string& file : arguments.scenes)
-    scenes.push_back(open_bench_scene(arguments, file, monitor));
-  const std::string folder = arguments.halves.empty() ? reference_folder(arguments) : std::string();
+  for (const std::string& file : arguments.scenes) {
+    BenchScene& scene = scenes.emplace_back(open_bench_scene(arguments, file, monitor));
+    const std::string name = scene.name;
+    for (int n = 2; !names.insert(scene.name).second; ++n) scene.name = fmt::format("{}-{}", name, n);
+  }
+  const std::string folder = arguments.halves.empty() ? reference_folder(arguments, report) : std::string();
   for (BenchScene& scene : scenes) prepare_reference(arguments, folder, scene, monitor);
   return scenes;
 }
 
-std::vector<Job> list_jobs(const std::vector<BenchScene>& scenes, const TemporaryFolder& folder) {
-  std::vector<Job> jobs;
-  for (const BenchScene& scene : scenes)
-    for (const Rung& rung : scene.rungs) jobs.push_back({&scene, &rung, folder.file(jobs.size()), {}, {}});
-  return jobs;
-}
-
-void run_once(const BenchArguments& arguments, Job& job, Monitor& monitor) {
-  const OwnChild child =
-      run_own_child(render_arguments(arguments, *job.scene, *job.rung, job.picture), monitor);
-  job.failure = child.failure;
-  if (job.failure.empty()) job.runs.push_back(bench_run(child));
-}
-
-/// Round by round, so that a machine that warms up or is busy for a while is so for all rungs.
-void run_all(const BenchArguments& arguments, std::vector<Job>& jobs, Monitor& monitor) {
-  double round_seconds = 0;
-  for (int round = 0; round < arguments.repeats; ++round) {
-    const auto start = std::chrono::steady_clock::now();
-    for (Job& job : jobs) {
-      if (!job.failure.empty()) continue;
-      run_once(arguments, job, monitor);
-      std::string line = fmt::format("bench: round {} of {}: {} {}: ", round + 1, arguments.repeats,
-                                     job.scene->file, name_of(*job.rung));
-      line += job.failure.empty() ? short_time(job.runs.back().job.wall_seconds) : "failed: " + job.failure;
-      write_line(stderr, line);
-    }
-    round_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (const int left = arguments.repeats - round - 1; left > 0)
-      write_line(stderr, fmt::format("bench: about {} left", short_time(left * round_seconds / (round + 1))));
-  }
-}
-
-/// Only after the last run: large pictures in this process would count as its children's memory.
-void add_errors(const std::vector<Job>& jobs, std::vector<BenchRow>& rows) {
-  const BenchScene* loaded = nullptr;
-  std::array<Layer, 2> halves;
-  std::vector<std::uint8_t> object;
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (jobs[i].scene != loaded) {
-      loaded = jobs[i].scene;
-      object.clear();
-      for (std::size_t h = 0; h < 2; ++h) {
-        const Image image = read_image(loaded->reference.halves[h]);
-        halves[h] = extract_layer(image, "");
-        const std::vector<std::uint8_t> shown = object_pixels(image);
-        object.resize(shown.size());
-        for (std::size_t p = 0; p < shown.size(); ++p) object[p] |= shown[p];
-      }
-    }
-    if (!jobs[i].failure.empty()) continue;
-    const Layer picture = extract_layer(read_image(jobs[i].picture), "");
-    rows[i].error = picture_error(picture, halves[0], halves[1], object);
-  }
-}
-
-std::vector<BenchRow> rows_of(const std::vector<Job>& jobs) {
+std::vector<BenchRow> rows_of(const std::vector<BenchJob>& jobs) {
   std::vector<BenchRow> rows;
-  const Job* lambert = nullptr;
-  for (const Job& job : jobs) {
+  const BenchJob* lambert = nullptr;
+  for (const BenchJob& job : jobs) {
     if (lambert == nullptr || lambert->scene != job.scene) lambert = &job;  // a scene's first rung
     // A failed rung's earlier rounds are not told.
     const bool failed = !job.failure.empty();
@@ -142,17 +72,15 @@ std::vector<BenchRow> rows_of(const std::vector<Job>& jobs) {
                              lambert->runs));
     rows.back().failure = job.failure;
   }
-  add_errors(jobs, rows);
   return rows;
 }
 
-/// The machine is described as it was before the first run.
-std::vector<std::pair<std::string, std::string>> all_notes(
-    const BenchArguments& arguments, const std::vector<BenchScene>& scenes,
-    std::vector<std::pair<std::string, std::string>> notes) {
+void add_notes(const BenchArguments& arguments, const std::vector<BenchScene>& scenes, std::size_t kept,
+               std::vector<std::pair<std::string, std::string>>& notes) {
   notes.emplace_back("command", "opaline" + arguments.command_line);
   notes.emplace_back("threads", std::to_string(arguments.threads));
   notes.emplace_back("repeats", std::to_string(arguments.repeats));
+  if (kept > 0) notes.emplace_back("kept", fmt::format("{} runs from before, in this folder", kept));
   for (const BenchScene& scene : scenes) {
     const BenchReference& reference = scene.reference;
     notes.emplace_back(
@@ -165,35 +93,82 @@ std::vector<std::pair<std::string, std::string>> all_notes(
                                    fmt::join(reference.halves, ", ")));
   }
   for (auto& [key, value] : notes) std::ranges::replace(value, '\n', ' ');
-  return notes;
+}
+
+/// What an earlier benchmark found; read before the work.
+std::vector<WatchedRung> read_before(const BenchArguments& arguments) {
+  if (arguments.against.empty()) return {};
+  std::ifstream file(arguments.against, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) throw bad_file(arguments.against, "cannot be read");
+  return parse_results(text.str(), arguments.against);
+}
+
+/// The page last: what it shows is there then.
+void write_report(const BenchArguments& arguments, const BenchFolder& folder, const BenchReport& report) {
+  const std::string csv = to_csv(bench_table(report));
+  if (!arguments.csv.empty()) {
+    write_file(arguments.csv, csv);
+    write_line(stderr, "bench: wrote " + arguments.csv);
+  }
+  if (!folder.is_report()) return;
+  write_file(folder.file("results.csv"), csv);
+  write_file(folder.file("budget.csv"), to_csv(budget_table(report)));
+  write_file(folder.file("results.json"), to_json(report));
+  write_file(folder.file("index.html"), to_page(report));
+  write_line(stderr, "bench: wrote " + folder.file("index.html"));
+}
+
+/// The exit code.
+int verdict(const BenchArguments& arguments, const std::vector<WatchedRung>& before,
+            const BenchReport& report) {
+  int code = 0;
+  if (!arguments.against.empty()) {
+    const Regression regression = compare_results(before, watched_rungs(report));
+    if (regression.compared == 0)
+      throw bad_file(arguments.against, "has no rung in common with this benchmark",
+                     "the same scenes, settings and resolution");
+    print_regression(regression, arguments.against);
+    if (std::ranges::any_of(regression.changes, &Change::is_worse)) code = kWorse;
+  }
+  const auto failed =
+      std::ranges::count_if(report.rows, [](const BenchRow& row) { return !row.failure.empty(); }) +
+      std::ranges::count_if(report.budget, [](const BudgetRow& row) { return !row.failure.empty(); });
+  if (failed > 0) {
+    write_line(stderr, fmt::format("opaline: error: {} of {} rungs failed; their rows say why", failed,
+                                   report.rows.size() + report.budget.size()));
+    code = int(ErrorKind::run_failed);
+  }
+  return code;
 }
 
 }  // namespace
 
 int bench_command(const BenchArguments& arguments) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not cost the CSV
-  AtomicFile(arguments.csv);      // what cannot be written at the end is said before the work
+  const std::vector<WatchedRung> before = read_before(arguments);
+  if (!arguments.csv.empty()) AtomicFile(arguments.csv);  // what cannot be written is said before the work
+  const BenchFolder folder(arguments.report);
   Monitor monitor;
   const InterruptHandler interrupt(monitor);
-  const auto machine = machine_notes();
-  const TemporaryFolder pictures;
-  const std::vector<BenchScene> scenes = open_scenes(arguments, monitor);
-  std::vector<Job> jobs = list_jobs(scenes, pictures);
-  run_all(arguments, jobs, monitor);
-
   BenchReport report;
+  report.notes = machine_notes();
+  const std::vector<BenchScene> scenes = open_scenes(arguments, folder, monitor);
+  std::vector<BenchJob> jobs = list_jobs(scenes);
+  const std::size_t kept = run_jobs(arguments, folder, jobs, monitor);
+  std::vector<BudgetJob> parts;
+  if (folder.is_report()) parts = run_budget(arguments, folder, scenes, monitor);
+
   report.rows = rows_of(jobs);
-  report.notes = all_notes(arguments, scenes, machine);
+  add_notes(arguments, scenes, kept, report.notes);
+  add_pictures(folder, scenes, jobs, report);
+  report.budget = budget_rows(folder, parts);
   advance(&monitor, 0);
-  write_file(arguments.csv, to_csv(bench_table(report)));
+  write_report(arguments, folder, report);
   print_bench(report);
-  write_line(stderr, "bench: wrote " + arguments.csv);
-  const auto failed = std::ranges::count_if(jobs, [](const Job& job) { return !job.failure.empty(); });
-  if (failed > 0)
-    write_line(stderr,
-               fmt::format("opaline: error: {} of {} rungs failed; their rows say why", failed, jobs.size()));
+  const int code = verdict(arguments, before, report);
   if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
-  return failed > 0 ? int(ErrorKind::run_failed) : 0;
+  return code;
 }
 
 }  // namespace opaline

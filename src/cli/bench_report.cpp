@@ -4,20 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "cli/log.h"
 #include "cli/units.h"
+#include "report/figures.h"
 
 namespace opaline {
 namespace {
-
-/// Three digits, and no more zeros than it takes.
-std::string figure(double value) {
-  if (value == 0 || !std::isfinite(value)) return fmt::format("{}", value);
-  const int places = 2 - int(std::floor(std::log10(std::abs(value))));
-  return fmt::format("{:.{}f}", value, std::clamp(places, 0, 4));
-}
 
 std::string median(const Spread& spread, double scale = 1) {
   return spread.runs > 0 ? figure(scale * spread.median) : "-";
@@ -107,6 +100,21 @@ void print_bench(const BenchReport& report) {
   for (const BenchRow& row : report.rows)
     if (!row.failure.empty())
       write_line(stdout, fmt::format("failed: {} {}: {}", row.scene, name_of(row.rung), row.failure));
+}
+
+void print_regression(const Regression& regression, const std::string& before) {
+  write_line(stdout, "");
+  write_line(stdout, fmt::format("against {}: {} settings compared, {} changes beyond the noise", before,
+                                 regression.compared, regression.changes.size()));
+  for (const Change& change : regression.changes) {
+    const bool is_error = change.figure == "error";
+    const double scale = is_error ? 100 : 1;
+    const char* unit = is_error ? " %" : "";
+    write_line(stdout, fmt::format("{}: {} {}: {} {}{} -> {}{}", change.is_worse ? "worse" : "better",
+                                   change.title, change.rung, change.figure, figure(scale * change.before),
+                                   unit, figure(scale * change.now), unit));
+  }
+  for (const std::string& name : regression.unmatched) write_line(stdout, "not in both: " + name);
 }
 
 }  // namespace opaline

@@ -76,9 +76,9 @@ std::string render_half(const BenchArguments& arguments, const std::string& fold
   const std::string stem = fmt::format("{}/{}-{:.16}-seed{}", folder, fs::path(scene.file).stem().string(),
                                        direct_scene_key(render, scene.scene), seed);
   const std::string half = stem + ".exr";
-  std::vector<std::string> line{
-      "render", scene.file, "--log",           "json", "--threads", std::to_string(arguments.threads), "-o",
-      half,     "--resume", stem + ".sums.exr"};
+  // By all cores: it is not timed, and its bytes do not depend on them.
+  std::vector<std::string> line{"render", scene.file, "--log",    "json",
+                                "-o",     half,       "--resume", stem + ".sums.exr"};
   add_sets(line, render.overrides);
   add_sets(line, {"settings.entry_samples=1000000000",
                   fmt::format("settings.until_error={}", arguments.reference_error)});
@@ -115,7 +115,10 @@ BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& 
   // Halves would be rounded to .05 %.
   scene.overrides.emplace_back("film.pixel_type=float");
   scene.scene = load_scene(file, scene.overrides);
-  scene.rungs = ladder({planned_samples(scene, monitor), arguments.quick});
+  scene.name = fs::path(file).stem().string();
+  scene.key = scene_hash(file, scene.overrides, scene.scene);
+  scene.planned_samples = planned_samples(scene, monitor);
+  scene.rungs = ladder({scene.planned_samples, arguments.quick});
   scene.rungs.insert(scene.rungs.end(), arguments.rungs.begin(), arguments.rungs.end());
   return scene;
 }
@@ -133,17 +136,22 @@ void prepare_reference(const BenchArguments& arguments, const std::string& folde
   scene.direct_seed = other_seed(scene.scene.settings.seed, reference.seeds);
 }
 
-std::vector<std::string> render_arguments(const BenchArguments& arguments, const BenchScene& scene,
-                                          const Rung& rung, const std::string& output) {
-  std::vector<std::string> line{
-      "render", scene.file, "--log", "json", "--threads", std::to_string(arguments.threads), "-o", output};
-  add_sets(line, scene.overrides);
-  add_sets(line, overrides_of(rung));
+std::vector<std::string> rung_overrides(const BenchScene& scene, const Rung& rung) {
+  std::vector<std::string> overrides = overrides_of(rung);
   if (rung.method == "direct") {
-    add_sets(line, {fmt::format("settings.seed={}", scene.direct_seed)});
+    overrides.push_back(fmt::format("settings.seed={}", scene.direct_seed));
     // Its knob is the number of entry samples, whatever noise the scene wants.
-    if (scene.scene.settings.until_error) add_sets(line, {"settings.until_error=1e-30"});
+    if (scene.scene.settings.until_error) overrides.emplace_back("settings.until_error=1e-30");
   }
+  return overrides;
+}
+
+std::vector<std::string> render_arguments(const BenchArguments& arguments, const BenchScene& scene,
+                                          const std::vector<std::string>& overrides) {
+  std::vector<std::string> line{"render", scene.file,  "--log",
+                                "json",   "--threads", std::to_string(arguments.threads)};
+  add_sets(line, scene.overrides);
+  add_sets(line, overrides);
   return line;
 }
 

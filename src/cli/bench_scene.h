@@ -24,8 +24,11 @@ struct BenchReference {
 
 struct BenchScene {
   std::string file;
+  std::string name;                    ///< without folders, for files; no two alike
+  std::string key;                     ///< scene_hash of what every run renders
   std::vector<std::string> overrides;  ///< of every run, before a rung's own
   Scene scene;                         ///< without its meshes
+  std::size_t planned_samples = 0;     ///< of the group with the most
   std::vector<Rung> rungs;
   BenchReference reference;
   std::uint64_t direct_seed = 0;  ///< of the direct rungs: not one of the reference's
@@ -40,8 +43,11 @@ BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& 
 void prepare_reference(const BenchArguments& arguments, const std::string& folder, BenchScene& scene,
                        Monitor& monitor);
 
-/// Command line of a rung's run, for run_own_child.
+/// What a rung's run is rendered with, besides the scene's own overrides.
+std::vector<std::string> rung_overrides(const BenchScene& scene, const Rung& rung);
+
+/// Command line of a run, for run_own_child; "-o" and the picture are still missing.
 std::vector<std::string> render_arguments(const BenchArguments& arguments, const BenchScene& scene,
-                                          const Rung& rung, const std::string& output);
+                                          const std::vector<std::string>& overrides);
 
 }  // namespace opaline

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/machine.h"
 
+#include <OpenImageIO/hash.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/utsname.h>
@@ -8,7 +9,10 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <sstream>
 #include <thread>
+
+#include "opaline/core/error.h"
 
 namespace opaline {
 namespace {
@@ -40,8 +44,18 @@ std::string compiler() {
 
 }  // namespace
 
+std::string program_hash() {
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  std::ostringstream bytes;
+  if (!(bytes << file.rdbuf())) throw run_failed("/proc/self/exe", "cannot read the program");
+  const std::string program = bytes.str();
+  return OIIO::SHA1(program.data(), program.size()).digest();
+}
+
 std::vector<std::pair<std::string, std::string>> machine_notes() {
   return {{"version", "opaline " OPALINE_VERSION},
+          {"commit", OPALINE_COMMIT},
+          {"program", program_hash().substr(0, 16)},
           {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
           {"cpu", cpu_model()},
           {"cores", std::to_string(std::thread::hardware_concurrency())},

@@ -8,7 +8,11 @@
 
 namespace opaline {
 
-/// version, date, cpu, cores, load (of the last minute, before the benchmark), system, compiler, build.
+/// version, commit, program (its hash), date, cpu, cores, load (of the last minute, before the benchmark),
+/// system, compiler, build.
 std::vector<std::pair<std::string, std::string>> machine_notes();
+
+/// Of the bytes of the executable that runs; hexadecimal.
+std::string program_hash();
 
 }  // namespace opaline

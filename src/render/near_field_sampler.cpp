@@ -12,7 +12,7 @@ namespace {
 
 // The exitance that hangs on which of the two irradiances is right, above which shadow rays are worth their
 // time.
-constexpr float kWorth = 0.01f;
+constexpr float kWorth = 0.02f;
 
 constexpr std::size_t kRings = 1024;
 

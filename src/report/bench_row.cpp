@@ -17,6 +17,14 @@ double shading_seconds(const BenchRun& run) {
   return shading ? cpu_seconds(*shading) : std::nan("");
 }
 
+/// CPU of the stages from `first` up to before `last`; NaN where none of them ran.
+double stages_seconds(const BenchRun& run, std::size_t first, std::size_t last) {
+  double sum = std::nan("");
+  for (std::size_t s = first; s < last; ++s)
+    if (const auto& stage = run.stages[s]) sum = (std::isnan(sum) ? 0 : sum) + cpu_seconds(*stage);
+  return sum;
+}
+
 /// Spread of a figure of each item.
 template <class Item, class Figure>
 Spread spread_over(std::span<const Item> items, const Figure& figure) {
@@ -66,6 +74,9 @@ BenchRow summarize(const std::string& scene, const Rung& rung, std::span<const B
   row.embree_rate = spread_over(runs, [](const BenchRun& run) { return run.rays / run.embree_seconds; });
   row.job_ratio = ratios(runs, lambert, [](const BenchRun& run) { return cpu_seconds(run.job); });
   row.shading_ratio = ratios(runs, lambert, shading_seconds);
+  row.once_cpu = spread_over(runs, [](const BenchRun& run) { return stages_seconds(run, 0, kShadingStage); });
+  row.frame_cpu = spread_over(
+      runs, [](const BenchRun& run) { return stages_seconds(run, kShadingStage, kBenchStages.size()); });
   return row;
 }
 

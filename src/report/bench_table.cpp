@@ -88,6 +88,7 @@ void add_names(Columns& columns) {
   columns.add("queries", "1", [](const BenchRow& row) { return count(row.queries); });
   columns.add("entry_samples", "1/pixel", [](const BenchRow& row) { return count(row.entry_samples); });
   columns.add("rays", "1", [](const BenchRow& row) { return count(row.rays); });
+  columns.add("picture", "", [](const BenchRow& row) { return row.picture; });
 }
 
 Columns all_columns() {
@@ -101,6 +102,10 @@ Columns all_columns() {
       "shading_rate", "Mray/s", 1e-6, [](const BenchRow& r) -> auto& { return r.shading_rate; });
   columns.add_spread(
       "embree_rate", "Mray/s", 1e-6, [](const BenchRow& r) -> auto& { return r.embree_rate; });
+  columns.add_spread(
+      "once_cpu", "s", 1, [](const BenchRow& r) -> auto& { return r.once_cpu; });
+  columns.add_spread(
+      "frame_cpu", "s", 1, [](const BenchRow& r) -> auto& { return r.frame_cpu; });
   columns.add_error("error", &ErrorFigures::error);
   columns.add_error("error_floor", &ErrorFigures::error_floor);
   columns.add_error("signed", &ErrorFigures::signed_mean);
@@ -115,7 +120,32 @@ Columns all_columns() {
   return columns;
 }
 
+/// The figures of a part of the error that a reader asks for; in %.
+std::vector<std::string> budget_cells(const BudgetRow& row) {
+  std::vector<std::string> cells{row.scene, row.part.name, row.part.setting};
+  if (!row.error) {
+    cells.insert(cells.end(), 6, "");
+  } else {
+    const auto& [channels, worst] = *row.error;
+    for (const double part :
+         {channels[0].error, channels[1].error, channels[2].error, worst.error, worst.signed_mean, worst.p99})
+      cells.push_back(number(100 * part));
+  }
+  cells.push_back(row.failure);
+  return cells;
+}
+
 }  // namespace
+
+CsvTable budget_table(const BenchReport& report) {
+  CsvTable table;
+  table.notes = {{"schema", fmt::format("opaline bench budget {}", kBenchSchema)}};
+  table.names = {"scene",   "part",        "setting",      "error_R",   "error_G",
+                 "error_B", "error_worst", "signed_worst", "p99_worst", "failure"};
+  table.units = {"", "", "", "%", "%", "%", "%", "%", "%", ""};
+  for (const BudgetRow& row : report.budget) table.rows.push_back(budget_cells(row));
+  return table;
+}
 
 CsvTable bench_table(const BenchReport& report) {
   CsvTable table;

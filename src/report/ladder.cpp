@@ -22,6 +22,7 @@ std::vector<Series> all_series(std::size_t samples) {
                     fourfold = scaled(samples, 4);
   return {
       {"lambert", "", "", {""}, {""}},
+      {"hierarchical", "", "", {""}, {""}},
       {"hierarchical", "dual_tree", "tolerance", {"0.1", "0.02", "0.005", "0.001"}, {"0.02"}},
       {"hierarchical", "surface_cache", "tolerance", {"0.02", "0.005"}, {"0.02"}},
       {"hierarchical", "classic", "max_solid_angle", {"0.4", "0.1", "0.05", "0.02"}, {"0.4", "0.1"}},

@@ -106,7 +106,8 @@ SurfaceSamples divided_anew(const TriangleList& triangles, const SampleGrid& gri
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
     const SampleGrid::Place &p = grid.place(a), &q = grid.place(b);
-    return std::tie(p.triangle, p.u, p.v) < std::tie(q.triangle, q.u, q.v);
+    const TriangleId of_p = triangles.id(p.triangle), of_q = triangles.id(q.triangle);
+    return std::tie(of_p.mesh, of_p.triangle, p.u, p.v) < std::tie(of_q.mesh, of_q.triangle, q.u, q.v);
   });
   SurfaceSamples result{std::vector<SurfaceSample>(order.size()), triangles.area(), radius};
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {

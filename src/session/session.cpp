@@ -115,10 +115,11 @@ void Session::prepare(Monitor* monitor) {
   });
   assemble();
   const std::vector<std::size_t> most = most_cache_places(input, groups_, pictures_);
-  if (std::ranges::any_of(most, [](std::size_t places) { return places > 0; }))
-    timed("exitance", [&] {
-      for (std::size_t g = 0; g < groups_.size(); ++g) bring_exitance(parts_[g], groups_[g], input, most[g]);
-    });
+  const Stopwatch exitance;
+  for (std::size_t g = 0; g < groups_.size(); ++g) bring_exitance(parts_[g], groups_[g], input, most[g]);
+  if (std::ranges::any_of(groups_,
+                          [](const TranslucentGroup& group) { return group.surface_cache.has_value(); }))
+    costs_.push_back(exitance.cost("exitance"));
   prepared_ = true;
 }
 

@@ -48,15 +48,15 @@ TEST(CliBench, QuickEndToEnd) {
       bench_line(folder, {"--repeats", "3", "--reference-error", "30%", "--rung", "max_solid_angle=-1"});
   const Outcome outcome = run_program(line);
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "1 of 7 rungs failed")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "1 of 9 rungs failed")) << outcome.err;
   EXPECT_TRUE(contains(outcome.out, "x lambert")) << outcome.out;
   const CsvTable table = table_of(folder);
-  ASSERT_EQ(table.rows.size(), 7u);
+  ASSERT_EQ(table.rows.size(), 9u);
   EXPECT_EQ(cell(table, 0, "rung"), "lambert");
-  EXPECT_NEAR(number(table, 4, "samples"), 125, 12);  // a quarter of the plan's 500; placement is random
+  EXPECT_NEAR(number(table, 6, "samples"), 125, 12);  // a quarter of the plan's 500; placement is random
   for (const char* column : {"job_ratio_median", "job_ratio_min", "shading_ratio_max"})
     EXPECT_EQ(number(table, 0, column), 1) << column;
-  for (std::size_t row = 0; row < 6; ++row) {
+  for (std::size_t row = 0; row < 8; ++row) {
     EXPECT_EQ(cell(table, row, "runs"), "3");
     EXPECT_EQ(cell(table, row, "failure"), "");
     EXPECT_GT(number(table, row, "job_ratio_min"), 0);
@@ -70,8 +70,8 @@ TEST(CliBench, QuickEndToEnd) {
     EXPECT_LT(std::abs(number(table, row, "signed_worst")), 100);
     EXPECT_EQ(cell(table, row, "octree_cpu_median").empty(), cell(table, row, "method") != "hierarchical");
   }
-  EXPECT_TRUE(contains(cell(table, 6, "failure"), "max_solid_angle")) << cell(table, 6, "failure");
-  EXPECT_EQ(cell(table, 6, "job_ratio_median"), "");
+  EXPECT_TRUE(contains(cell(table, 8, "failure"), "max_solid_angle")) << cell(table, 8, "failure");
+  EXPECT_EQ(cell(table, 8, "job_ratio_median"), "");
 
   // Again, from the references that are there: two pictures and their sums.
   const auto references = folder.path / "references";

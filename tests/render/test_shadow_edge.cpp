@@ -18,7 +18,7 @@ struct EdgeBound {
 
 class ShadowEdge : public testing::TestWithParam<EdgeBound> {};
 
-// Claim: across the edge of a shadow on a floor, at the default spacing of one mean free path, `hierarchical`
+// Claim: across the edge of a shadow on a floor, at a spacing of one mean free path, `hierarchical`
 // is within the bounds below of `direct`: narrower than the mean free path (0 mm) and wider (4.2 mm), both
 // profiles. Source: the same BSSRDF sampled at random, 262k entries a pixel; error over the brightest pixel.
 // Tolerance: 1.5 times the measured mean and max, in which direct's own noise, below .15 % rms, is contained.

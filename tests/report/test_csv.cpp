@@ -56,6 +56,7 @@ BenchRow measured_row() {
   error.channels[1].error = .0125;
   error.worst = error.channels[1];
   row.error = error;
+  row.picture = "pictures/bunny.exr";
   return row;
 }
 
@@ -68,11 +69,11 @@ TEST(BenchCsv, Schema) {
   failed.scene = "bunny, marble.json";
   failed.rung = {"direct", "", "", ""};
   failed.failure = "killed by signal 9 (Killed)";
-  const CsvTable written = bench_table({{{"threads", "1"}}, {measured_row(), failed}});
+  const CsvTable written = bench_table({{{"threads", "1"}}, {}, {measured_row(), failed}, {}});
   const CsvTable table = parse_csv(to_csv(written), "bench.csv");
-  EXPECT_EQ(kBenchSchema, 1);
+  EXPECT_EQ(kBenchSchema, 2);
   ASSERT_EQ(table.notes.size(), 2u);
-  EXPECT_EQ(table.notes[0], std::make_pair(std::string("schema"), std::string("opaline bench 1")));
+  EXPECT_EQ(table.notes[0], std::make_pair(std::string("schema"), std::string("opaline bench 2")));
   EXPECT_EQ(std::set(table.names.begin(), table.names.end()).size(), table.names.size());
   ASSERT_EQ(table.rows.size(), 2u);
   const struct {
@@ -101,6 +102,10 @@ TEST(BenchCsv, Schema) {
       {"sampling_wall_min", "s", "", ""},
       {"irradiance_memory_max", "MB", "", ""},
       {"octree_cpu_median", "s", "", ""},
+      {"exitance_cpu_median", "s", "", ""},
+      {"once_cpu_median", "s", "", ""},
+      {"frame_cpu_max", "s", "0.5", ""},
+      {"picture", "", "pictures/bunny.exr", ""},
   };
   for (const auto& c : cases) {
     const auto at = std::size_t(std::ranges::find(table.names, c.name) - table.names.begin());

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "opaline/report/error_budget.h"
 #include "opaline/report/ladder.h"
 #include "opaline/report/picture_error.h"
 #include "opaline/report/spread.h"
@@ -18,10 +19,10 @@
 namespace opaline {
 
 /// The stages of a rendering that are told apart.
-inline constexpr std::array<std::string_view, 7> kBenchStages{"loading", "rays",    "sampling", "irradiance",
-                                                              "octree",  "shading", "writing"};
-inline constexpr std::size_t kShadingStage = 5;
-static_assert(kBenchStages[kShadingStage] == "shading");
+inline constexpr std::array<std::string_view, 8> kBenchStages{"loading", "rays",     "sampling", "irradiance",
+                                                              "octree",  "exitance", "shading",  "writing"};
+inline constexpr std::size_t kShadingStage = 6;
+static_assert(kBenchStages[kShadingStage] == "shading");  // it and the later ones: again for each frame
 
 /// As the kernel accounts for it. It tells user from system by its ticks: their sum is the exact one.
 struct Cost {
@@ -53,13 +54,30 @@ struct BenchRow {
   Spread shading_rate, embree_rate;  ///< rays per CPU second, of the whole shading pass and of Embree alone
   /// CPU over the lambert rung's in the same round of the same benchmark, a ratio a round: drift cancels.
   Spread job_ratio, shading_ratio;
+  /// CPU of the stages before the shading, which do not depend on the camera, and of it and the later ones,
+  /// s.
+  Spread once_cpu, frame_cpu;
   std::optional<PictureError> error;
+  std::string picture;  ///< EXR beside the report, relative to its folder; empty: not kept
+};
+
+/// What the rows of a scene are measured on and against.
+struct BenchSubject {
+  std::string scene;      ///< as in the rows
+  std::string key;        ///< of what the scene's files and the bench's settings of it hold
+  std::string title;      ///< its name without folders
+  std::string reference;  ///< in words
+  double half_noise = 0;  ///< of one half of the reference, rms, worst channel
+  std::array<int, 2> resolution{};
+  std::string picture;  ///< of the reference, PNG; empty: not kept
 };
 
 /// Notes say where and how it was measured: key and value, in the order they are written.
 struct BenchReport {
   std::vector<std::pair<std::string, std::string>> notes;
+  std::vector<BenchSubject> subjects;  ///< in the order of the rows
   std::vector<BenchRow> rows;
+  std::vector<BudgetRow> budget;  ///< empty: not measured
 };
 
 /// The row of a rung's runs, without its error.

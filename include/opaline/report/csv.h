@@ -25,9 +25,12 @@ std::string to_csv(const CsvTable& table);
 CsvTable parse_csv(std::string_view text, const std::string& file);
 
 /// Raised whenever a column changes its name, unit or meaning, or goes.
-inline constexpr int kBenchSchema = 1;
+inline constexpr int kBenchSchema = 2;
 
 /// The schema is the first note. Empty cells were not measured; a failed rung's `failure` says why.
 CsvTable bench_table(const BenchReport& report);
+
+/// The parts of the error, a row each.
+CsvTable budget_table(const BenchReport& report);
 
 }  // namespace opaline
