@@ -11,8 +11,7 @@
 
 namespace opaline::test {
 
-inline constexpr double kEdgeFreePath =
-    0.5;  ///< of the floor, mm; the spacing of its samples as well
+inline constexpr double kEdgeFreePath = 0.5;  ///< of the floor, mm
 
 /// A floor of 20 x 20 mm under an opaque lid that ends at x = 0, 5 mm above it; the camera looks straight
 /// down from below the lid. narrow: a directional light from straight above. wide: a square light, 10 mm wide
@@ -35,7 +34,6 @@ inline Scene shadow_edge_scene(bool wide, ProfileKind profile) {
   scene.film.resolution = {32, 32};
   scene.film.crop = {{0, 16, 32, 17}};
   scene.film.half = false;
-  scene.settings.sample_spacing = kEdgeFreePath;
   return scene;
 }
 
