@@ -255,10 +255,9 @@ void add_picture_options(CLI::App& app, Options& options) {
          "hierarchical: light under the surface; lambert: plain paint, fast; direct: the reference, slow")
       ->type_name("NAME")
       ->group(group);
-  app.add_option(
-         "--evaluator", options.evaluator,
-         "dual_tree: to settings.tolerance; surface_cache: the same, interpolated; classic: as published; "
-         "brute_force: the exact sum, slow; default: automatic, one of the first two")
+  app.add_option("--evaluator", options.evaluator,
+                 "dual_tree: to settings.tolerance; surface_cache: the same, interpolated; classic: as published; "
+                 "brute_force: the exact sum, slow; default: automatic, one of the first two")
       ->type_name("NAME")
       ->group(group);
   app.add_option("--entry-samples", options.entry_samples, "direct: places of entry for each pixel")
