@@ -10,9 +10,9 @@ namespace {
 using namespace test;
 
 // Claim: a point light of intensity I over a sphere gives E = I / d^2 x cos x Ft at every sample that faces
-// it, 0 at every other, and states no error. Source: PHYSICS section 2, Fresnel by sine and tangent laws.
-// Tolerance: 1e-4 relative, float rounding at cos >= .02. Fails if: Ft is left out, taken at normal incidence
-// or averaged; d for d^2; the geometric normal for the shading one.
+// it, 0 at every other, and states no error. Source: the energy convention of scene.h, Fresnel by sine and
+// tangent laws. Tolerance: 1e-4 relative, float rounding at cos >= .02. Fails if: Ft is left out, taken at
+// normal incidence or averaged; d for d^2; the geometric normal for the shading one.
 TEST(DeltaLights, PointLightOverASphere) {
   const LitWorld scene(world_of({SphereShape{{1, 2, 3}, 10}}));
   const std::vector<SurfaceSample> samples = samples_on(scene.world, 2000).samples;

@@ -58,8 +58,8 @@ TEST(Linearity, WeightsAreOnePerLight) {
 }
 
 // Claim: E is the sum of colour x weight over lights, per channel, from 1e-30 to 1e12. Source: linearity;
-// PHYSICS section 6. Tolerance: 1e-5 relative. Fails if: sums lose the small light's floats, denormals are
-// flushed too early, or one colour serves all.
+// the extremes that must hold. Tolerance: 1e-5 relative. Fails if: sums lose the small light's floats,
+// denormals are flushed too early, or one colour serves all.
 TEST(Linearity, HoldsFromFaintToBlinding) {
   const Scene scene;
   const std::vector<Light> lights = all_kinds();
@@ -101,8 +101,8 @@ TEST(Linearity, ChannelsAreApart) {
   }
 }
 
-// Claim: pure red light leaves green and blue exactly 0, for every kind of light. Source: PHYSICS section 6.
-// Tolerance: none. Fails if: luminance or any matrix touches the colour.
+// Claim: pure red light leaves green and blue exactly 0, for every kind of light. Source: the extremes that
+// must hold. Tolerance: none. Fails if: luminance or any matrix touches the colour.
 TEST(Linearity, RedStaysRed) {
   const Scene scene;
   for (const Light& light : all_kinds()) {

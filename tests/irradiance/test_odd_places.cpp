@@ -41,8 +41,8 @@ TEST(OddPlaces, InsideIsDark) {
 }
 
 // Claim: a light exactly on a sample, or around it, gives finite irradiance >= 0 there, and lights the others
-// as it should. Source: PHYSICS section 6, "light inside or on the mesh -> finite". Tolerance: none. Fails
-// if: a point light's 1/0 or a sphere light's cone of a point within is let through.
+// as it should. Source: the extremes that must hold, "light inside or on the mesh -> finite". Tolerance:
+// none. Fails if: a point light's 1/0 or a sphere light's cone of a point within is let through.
 TEST(OddPlaces, OnASampleIsFinite) {
   const LitWorld scene(world_of({floor_quad(10)}));
   std::vector<SurfaceSample> samples = samples_on(scene.world, 100).samples;

@@ -71,8 +71,8 @@ TEST(WeightBytes, DoNotDependOnTheFloatMode) {
 }
 
 // Claim: all lengths times a power of two leave every weight's bits, but point lights' which fall by exactly
-// k^2. Source: PHYSICS section 6. Tolerance: none. Fails if: an offset or a smallest distance in mm is
-// written down.
+// k^2. Source: the extremes that must hold. Tolerance: none. Fails if: an offset or a smallest distance in mm
+// is written down.
 TEST(WeightBytes, ScaleByAPowerOfTwoIsExact) {
   const auto plain = Scene().transfers();
   for (const double k : {16., 1. / 256}) {
@@ -83,9 +83,9 @@ TEST(WeightBytes, ScaleByAPowerOfTwoIsExact) {
   }
 }
 
-// Claim: a scene 1e6 mm from the origin has the weights of the centred one. Source: PHYSICS section 6.
-// Tolerance: .1 % of the mean, rms; for area lights plus nothing, as the same points are drawn. Fails if:
-// lights are not moved with the world, or positions pass through floats before they are centred.
+// Claim: a scene 1e6 mm from the origin has the weights of the centred one. Source: the extremes that must
+// hold. Tolerance: .1 % of the mean, rms; for area lights plus nothing, as the same points are drawn. Fails
+// if: lights are not moved with the world, or positions pass through floats before they are centred.
 TEST(WeightBytes, FarFromTheOriginIsTheSame) {
   const auto at = [](const Vec3d& o) {
     const LitWorld scene(world_of({SphereShape{o, 10}}));

@@ -11,9 +11,9 @@ namespace {
 using namespace test;
 
 // Claim: on a convex body under constant radiance L, E = pi L (1 - F_bar), so the outgoing radiance of
-// PHYSICS section 2 is L: the white furnace. Source: the definition of F_bar. Tolerance: .2 % of the mean
-// over 1000 samples of 64 rays; every sample within 5 %. Fails if: directions are uniform without a factor 2
-// cos, or Ft is missing (4 % at 1.3, 9 % at 1.5).
+// the energy convention of scene.h is L: the white furnace. Source: the definition of F_bar. Tolerance: .2 %
+// of the mean over 1000 samples of 64 rays; every sample within 5 %. Fails if: directions are uniform without
+// a factor 2 cos, or Ft is missing (4 % at 1.3, 9 % at 1.5).
 TEST(SurroundingsLight, FurnaceOnASphere) {
   const LitWorld scene(world_of({SphereShape{{5, 0, 0}, 10}}));
   const std::vector<SurfaceSample> samples = samples_on(scene.world, 1000).samples;

@@ -50,9 +50,9 @@ const auto kFinite = [](const Sums& s, const Sums&) { EXPECT_GT(s.coverage, 0); 
 const auto kBlack = [](const Sums& s, const Sums&) { EXPECT_EQ(s.radiance, Rgb{}); };
 const auto kLit = [](const Sums& s, const Sums&) { EXPECT_GT(min_component(s.radiance), 0); };
 
-// Claim: none of these crashes, hangs, prints NaN or lies. Source: PHYSICS section 6; tolerances stand in the
-// rows. Fails when, for example: the flux is not scaled by its unit (1e-30 W), 1 - alpha' is computed by
-// subtraction, or a channel's centroid divides by a flux of zero.
+// Claim: none of these crashes, hangs, prints NaN or lies. Source: the extremes that must hold; tolerances
+// stand in the rows. Fails when, for example: the flux is not scaled by its unit (1e-30 W), 1 - alpha' is
+// computed by subtraction, or a channel's centroid divides by a flux of zero.
 TEST(Extremes, Pictures) {
   const std::vector<Row> rows{
       {"sigma_a 0: finite", [](Scene& s) { coefficients(s).sigma_a = {}; }, kLit},
@@ -174,8 +174,8 @@ TEST(Extremes, ScaleTroubleIsSaid) {
   EXPECT_EQ(warning_of(Rgb(2)), "");
 }
 
-// Claim: samples do not depend on the camera. Source: PHYSICS section 5 (a peer's samples follow the camera
-// and are none when it looks away). Fails when: sampling sees the camera.
+// Claim: samples do not depend on the camera. Source: what went wrong in earlier renderers (a peer's samples
+// follow the camera and are none when it looks away). Fails when: sampling sees the camera.
 TEST(Extremes, CameraDoesNotMoveSamples) {
   Scene other = lit_sphere();
   other.camera = {{900, 20, 0}, {950, 0, 0}, {0, 1, 0}, 20};

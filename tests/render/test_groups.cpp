@@ -24,24 +24,24 @@ double light_of_right_half(const Image& image) {
   return sum;
 }
 
-// Claim: translucent objects do not bleed into each other unless grouped. Source: PHYSICS section 5 (one point set for
-// all objects). Fails when: find_groups puts all shapes of a medium together.
+// Claim: translucent objects do not bleed into each other unless grouped. Source: what went wrong in earlier
+// renderers (one point set for all objects). Fails when: find_groups puts all shapes of a medium together.
 TEST(Groups, NoBleedUnlessGrouped) {
   EXPECT_EQ(light_of_right_half(Prepared(two_spheres("")).picture()), 0);
   EXPECT_GT(light_of_right_half(Prepared(two_spheres("pair")).picture()), 0);
 }
 
-// Claim: a shape without a group stays alone, even if a group has its name. Fails when: groups are found by the name
-// that is shown.
+// Claim: a shape without a group stays alone, even if a group has its name. Fails when: groups are found by
+// the name that is shown.
 TEST(Groups, LoneShapeJoinsNoGroupOfItsName) {
   Scene scene = two_spheres("");
   scene.shapes[1].group = scene.shapes[0].name;
   EXPECT_EQ(make_plan(scene, make_world(scene)).groups.size(), 2u);
 }
 
-// Claim: a box cut in two and grouped is the box in one piece, within 2 % over the picture (the cut's inner faces add
-// area that no light reaches). Source: PHYSICS, extremes: grouped = one object. Fails when: the group's second mesh is
-// forgotten, or each member has a tree of its own.
+// Claim: a box cut in two and grouped is the box in one piece, within 2 % over the picture (the cut's inner
+// faces add area that no light reaches). Source: the extremes that must hold: grouped = one object. Fails
+// when: the group's second mesh is forgotten, or each member has a tree of its own.
 TEST(Groups, GroupedIsOneObject) {
   Scene whole = single_shape(BoxShape{{-8, -4, -4}, {8, 4, 4}}, grey_medium(.5, .02, 1.3), 20000);
   whole.lights = {point_light({20, 60, 80}, {1e4, 1e4, 1e4})};

@@ -18,9 +18,10 @@ Scene lit_torus(double mean_free_path, std::optional<std::size_t> samples) {
   return scene;
 }
 
-// Claim: as the mean free path vanishes the hierarchical picture becomes the Lambert one, shadows included, with a
-// bounded number of samples. Source: PHYSICS, extremes: within .5 %. Fails when: the near field takes the samples'
-// irradiance instead of the one at the point (shadow edges blur), or the split is left out (samples show as dots).
+// Claim: as the mean free path vanishes the hierarchical picture becomes the Lambert one, shadows included,
+// with a bounded number of samples. Source: the extremes that must hold: within .5 %. Fails when: the near
+// field takes the samples' irradiance instead of the one at the point (shadow edges blur), or the split is
+// left out (samples show as dots).
 TEST(LambertLimit, VanishingMeanFreePath) {
   for (const double mean_free_path : {1e-3, 1e-6}) {
     Scene scene = lit_torus(mean_free_path, std::nullopt);
@@ -40,8 +41,8 @@ TEST(LambertLimit, VanishingMeanFreePath) {
   }
 }
 
-// Claim: the Lambert picture of a front-lit quad is A E Ft / (pi (1 - F_bar)) in closed form, 1e-4. Source: render.h.
-// Fails when: a factor pi or 1 - F_bar is missing.
+// Claim: the Lambert picture of a front-lit quad is A E Ft / (pi (1 - F_bar)) in closed form, 1e-4. Source:
+// render.h. Fails when: a factor pi or 1 - F_bar is missing.
 TEST(LambertLimit, ClosedFormOnAQuad) {
   Scene scene = single_shape(QuadShape{{-5, -5, 0}, {10, 0, 0}, {0, 10, 0}}, grey_medium(1, .1, 1.4), 100);
   scene.settings.method = Method::lambert;
@@ -55,7 +56,8 @@ TEST(LambertLimit, ClosedFormOnAQuad) {
     return 1 - 0.5 * (s * s + p * p);
   };
   const double entered = 3 * cos_light * transmitted(cos_light, 1.4);
-  const double expected = profile.total.x * entered * transmitted(1, 1.4) / (kPi * (1 - profile.average_reflectance));
+  const double expected =
+      profile.total.x * entered * transmitted(1, 1.4) / (kPi * (1 - profile.average_reflectance));
   scene.film.resolution = {33, 33};
   EXPECT_NEAR(channel(Prepared(scene).picture(), 16, 16, "R") / expected, 1, 1e-4);
 }

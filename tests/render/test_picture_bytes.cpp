@@ -39,8 +39,9 @@ bool same_bytes(const Image& a, const Image& b) {
          std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(float)) == 0;
 }
 
-// Claim: the picture's bytes depend on the scene alone. Source: DESIGN, bits do not move. Tolerance none.
-// Fails when: a sum is taken in the order in which threads finish (try unordered accumulation in surface_shares).
+// Claim: the picture's bytes depend on the scene alone. Source: bits do not move. Tolerance none.
+// Fails when: a sum is taken in the order in which threads finish (try unordered accumulation in
+// surface_shares).
 TEST(PictureBytes, SameForOneAndTwoThreadsAndTwoRuns) {
   const Image one = picture(mixed_scene(), 1);
   EXPECT_TRUE(same_bytes(one, picture(mixed_scene(), 2)));
@@ -54,8 +55,8 @@ TEST(PictureBytes, SeedMatters) {
   EXPECT_FALSE(same_bytes(picture(mixed_scene(), 2), picture(other, 2)));
 }
 
-// Claim: a crop's pixels are those of the whole picture. Tolerance none. Fails when: tiles start at the crop's corner
-// and light samples are keyed by place in the tile.
+// Claim: a crop's pixels are those of the whole picture. Tolerance none. Fails when: tiles start at the
+// crop's corner and light samples are keyed by place in the tile.
 TEST(PictureBytes, CropIsPartOfTheWhole) {
   Scene cropped = mixed_scene();
   cropped.film.crop = {{5, 3, 37, 29}};
@@ -108,9 +109,9 @@ double relative_difference(const Image& a, const Image& b) {
   return difference / sum;
 }
 
-// Claim: a change of units changes nothing: by a power of two no bit, by another factor no more than the other
-// samples' noise. Source: PHYSICS, extremes: same bytes; other k within 1 %. Fails when: any absolute epsilon (a ray
-// offset, a table's range) is in mm.
+// Claim: a change of units changes nothing: by a power of two no bit, by another factor no more than the
+// other samples' noise. Source: the extremes that must hold: same bytes; other k within 1 %. Fails when: any
+// absolute epsilon (a ray offset, a table's range) is in mm.
 TEST(PictureBytes, ScaleDoesNotMatter) {
   const Image one = picture(mixed_scene(), 2);
   for (const double k : {0.0009765625, 8.0, 4096.0}) {
@@ -125,8 +126,8 @@ TEST(PictureBytes, ScaleDoesNotMatter) {
   EXPECT_LT(relative_difference(one, picture(scaled(mixed_scene(), 3.7), 2)), 0.01);
 }
 
-// Claim: a scene 1e6 mm from the origin gives the same picture within .1 %. Source: PHYSICS, extremes. What is left is
-// the rounding of the mesh's doubles. Fails when: World keeps its origin at zero.
+// Claim: a scene 1e6 mm from the origin gives the same picture within .1 %. Source: the extremes that must
+// hold. What is left is the rounding of the mesh's doubles. Fails when: World keeps its origin at zero.
 TEST(PictureBytes, FarFromTheOrigin) {
   Scene far = mixed_scene();
   const Vec3d away{1e6, -1e6, 1e6};

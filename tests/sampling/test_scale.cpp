@@ -10,7 +10,7 @@ namespace {
 using namespace test;
 
 // Claim: with all coordinates times a power of two, the same triangles and barycentrics to the bit, positions
-// and radius times k, areas times k^2, exactly. Source: PHYSICS: scaling by a power of two changes exponents
+// and radius times k, areas times k^2, exactly. Source: scaling by a power of two changes exponents
 // only. Tolerance: none. Fails if: a length in mm (an epsilon, a smallest cell) is written into the sampler.
 TEST(SampleScale, ByAPowerOfTwoIsExact) {
   for (const auto& [name, world] : table_of_worlds()) {
