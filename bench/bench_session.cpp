@@ -34,6 +34,7 @@ double median(std::vector<double> values) {
 struct Edit {
   const char* name;
   std::function<void(Scene&)> apply;
+  std::size_t pictures = 1;  // expected of the same surfaces in the same light
 };
 
 void tint(Light& light) {
@@ -50,6 +51,7 @@ void print_edits(const Scene& base) {
   const std::vector<Edit> edits = {
       {"nothing", [](Scene&) {}},
       {"camera", [](Scene& s) { s.camera.position.x += 3; }},
+      {"camera, of 24 pictures", [](Scene& s) { s.camera.position.x += 3; }, 24},
       {"light colour", [](Scene& s) { tint(s.lights.at(0)); }},
       {"medium", [](Scene& s) { s.media.at(0).profile = ProfileKind::normalized_diffusion; }},
       {"eta", [](Scene& s) { s.media.at(0).eta += .1; }},
@@ -71,6 +73,7 @@ void print_edits(const Scene& base) {
     floor.push_back(user_seconds([&] { plain.render(); }));
     for (std::size_t e = 0; e < edits.size(); ++e) {
       Session session;
+      session.expect_pictures(edits[e].pictures);
       const double first = user_seconds([&] {
         session.edit(base);
         session.render();

@@ -57,8 +57,7 @@ double own_share(const ChannelProfile& profile, double h) {
   double flux = 0, moment = 0;
   constexpr int kRings = 1000;
   for (int i = 0; i < kRings; ++i) {
-    const double t = (i + 0.5) / kRings,
-                 ring = t * diffuse_reflectance_profile(profile, t * h) * (1 - far_weight(t));
+    const double t = (i + 0.5) / kRings, ring = near_ring(profile, h, t);
     flux += ring;
     moment += ring * t * t;
   }

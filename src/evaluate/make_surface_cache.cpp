@@ -82,16 +82,17 @@ class Builder {
   }
 
  private:
-  // At the queries noted since the last time.
+  // At the queries noted since the last time; without irradiance of their own, which leaves that part out.
   std::vector<Exitance> evaluated() {
+    const std::vector<RgbF> dark(queries_.size());
     std::vector<Exitance> result = evaluate({.octree = input_.octree,
                                              .kernel = input_.kernel,
                                              .queries = queries_,
+                                             .irradiance = dark,
                                              .tolerance = kEvaluationShare * input_.tolerance,
                                              .instruction_set = input_.instruction_set,
                                              .irradiance_noise = input_.irradiance_noise,
                                              .monitor = input_.monitor});
-    for (Exitance& e : result) e.exitance -= own_part(cache_.own_irradiance, e, e.irradiance);
     queries_.clear();
     return result;
   }

@@ -21,8 +21,7 @@ std::array<double, kRings> near_rings(const ChannelProfile& profile, double h) {
   std::array<double, kRings> rings;
   double sum = 0;
   for (std::size_t i = 0; i < kRings; ++i) {
-    const double t = (double(i) + 0.5) / kRings;
-    rings[i] = t * diffuse_reflectance_profile(profile, t * h) * (1 - far_weight(t));
+    rings[i] = near_ring(profile, h, (double(i) + 0.5) / kRings);
     sum += rings[i];
   }
   for (double& ring : rings) ring = sum > 0 ? ring / sum : 0;

@@ -9,8 +9,8 @@
 namespace opaline {
 namespace {
 
-// A cache is begun where its vertices are few against the points of the picture, and given up where its
-// places are not: a places are not: giving up costs little, and looking up far less than evaluating.
+// A cache is begun where its vertices are few against the points of the picture, and given up where its places
+// are not: a place costs about twice what a point does (they lie wider apart), looking up a tenth.
 constexpr double kBegin = 0.08, kMost = 0.4;
 
 // Points of the picture on each mesh, by rays to a few of its pixels.

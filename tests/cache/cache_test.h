@@ -44,6 +44,27 @@ inline Octree some_octree(std::size_t count) {
   return build_octree(flux);
 }
 
+inline Exitance some_value(std::uint64_t i) {
+  return {vector(i), vector(i + 1), vector(i + 2), vector(i + 3)};
+}
+
+/// On meshes 4 and 2 of a world of 6, the second with one triangle.
+inline SurfaceCache some_exitance(std::size_t count) {
+  SurfaceCache exitance;
+  exitance.own_irradiance = {.25f, .5f, .75f};
+  exitance.splits.resize(6);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    exitance.splits[4].push_back({i, i + 1});
+    exitance.patches.push_back({{i, i + 1, i + 2}, i % 3 == 0 ? SurfaceCache::kNone : i});
+    exitance.vertices.push_back({some_value(i), vector(i), {vector(i + 4), vector(i + 5), vector(i + 6)}});
+    exitance.lattices.push_back({i, 2});
+    exitance.lattice_nodes.push_back(7 * i);
+    exitance.nodes.push_back(some_value(i + 9));
+  }
+  exitance.splits[2].push_back({99, 1});
+  return exitance;
+}
+
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);

@@ -42,8 +42,21 @@ TEST(CacheEntries, RoundTrip) {
     EXPECT_TRUE(same_bytes(octree.samples, tree->samples));
     EXPECT_TRUE(same_bytes(octree.normals, tree->normals));
     EXPECT_EQ(octree.flux_unit, tree->flux_unit);
+    const SurfaceCache exitance = some_exitance(count);
+    writer.keep_exitance(kKey, exitance, kMeshes);
+    const auto cache = reader.find_exitance(kKey, std::vector<std::uint32_t>{0, 9}, 12);
+    ASSERT_TRUE(cache);
+    ASSERT_EQ(cache->splits.size(), 12u);
+    EXPECT_TRUE(same_bytes(exitance.splits[4], cache->splits[0]));
+    EXPECT_TRUE(same_bytes(exitance.splits[2], cache->splits[9]));
+    EXPECT_EQ(exitance.own_irradiance, cache->own_irradiance);
+    EXPECT_TRUE(same_bytes(exitance.patches, cache->patches));
+    EXPECT_TRUE(same_bytes(exitance.vertices, cache->vertices));
+    EXPECT_TRUE(same_bytes(exitance.lattices, cache->lattices));
+    EXPECT_TRUE(same_bytes(exitance.lattice_nodes, cache->lattice_nodes));
+    EXPECT_TRUE(same_bytes(exitance.nodes, cache->nodes));
     EXPECT_EQ(writer.warning() + reader.warning(), "");
-    EXPECT_EQ(folder.entries(), 4u);  // and the lock
+    EXPECT_EQ(folder.entries(), 5u);  // and the lock
   }
 }
 

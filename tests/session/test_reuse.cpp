@@ -61,6 +61,40 @@ TEST(Reuse, CameraAndFilm) {
     expect_row(row);
 }
 
+// Claim: with a surface cache a camera edit evaluates nothing anew, and edits of light, medium or tolerance
+// do; the picture is the cold one either way. Left to itself a session makes one when the pictures it expects
+// pay for it. Source: session.h. Fails if: exitance_key lacks the kernel or the tolerance, or the count of
+// pictures is not used.
+TEST(Reuse, SurfaceCache) {
+  Scene scene = two_balls();
+  scene.settings.evaluator = EvaluatorKind::surface_cache;
+  Session session;
+  picture_of(session, scene);
+  const std::size_t places = session.work().places_evaluated;
+  EXPECT_GT(places, 0u);
+  scene.camera.position = {80, 20, 90};
+  EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+  EXPECT_EQ(session.work().places_evaluated, 0u);
+  const std::vector<std::function<void(Scene&)>> edits = {
+      [](Scene& s) {
+        std::get<PointLight>(s.lights[0].source).intensity = {1, 2e4, 9};
+      },
+      [](Scene& s) { s.media[0].profile = ProfileKind::normalized_diffusion; },
+      [](Scene& s) { s.settings.tolerance = .02; }};
+  for (std::size_t e = 0; e < edits.size(); ++e) {
+    edits[e](scene);
+    EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene))) << e;
+    EXPECT_GT(session.work().places_evaluated, 0u) << e;
+  }
+  scene.settings.evaluator = EvaluatorKind::automatic;
+  Session alone, many;
+  many.expect_pictures(100000);
+  EXPECT_TRUE(same_pixels(picture_of(alone, scene), cold_picture(scene)));
+  EXPECT_EQ(alone.work().places_evaluated, 0u);
+  picture_of(many, scene);
+  EXPECT_GT(many.work().places_evaluated, 0u);
+}
+
 // Claim: colours and power of all kinds of lights trace no ray from a sample. Source: the table.
 TEST(Reuse, LightColour) {
   expect_row({"point",

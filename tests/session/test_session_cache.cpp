@@ -41,6 +41,26 @@ TEST(SessionCache, SecondComputesNothing) {
   EXPECT_TRUE(same_pixels(pictures[3], cold_picture(scenes[3])));
 }
 
+// Claim: a surface cache made once is found by another session, which evaluates no place. Source: one notion
+// of keys. Fails if: the key lacks the tree (the dimmed light's picture is the old one) or has the camera.
+TEST(SessionCache, SurfaceCacheIsFound) {
+  const ScratchFolder folder;
+  Scene scene = two_balls();
+  scene.settings.evaluator = EvaluatorKind::surface_cache;
+  Scene turned = scene, dimmed = scene;
+  turned.camera.position = {80, 20, 90};
+  std::get<PointLight>(dimmed.lights[0].source).intensity = {1, 2e4, 9};
+  for (const Scene* first : {&scene, &turned}) {
+    StageCache cache(folder.path.string());
+    Session session(&cache);
+    EXPECT_TRUE(same_pixels(picture_of(session, *first), cold_picture(*first)));
+    EXPECT_EQ(session.work().places_evaluated > 0, first == &scene);
+    EXPECT_TRUE(same_pixels(picture_of(session, dimmed), cold_picture(dimmed)));
+    EXPECT_EQ(session.work().places_evaluated > 0, first == &scene);
+    EXPECT_EQ(cache.warning(), "");
+  }
+}
+
 // Claim: a spoiled entry costs its stage alone and one warning; the picture is the same. Source: the issue.
 // Fails if: the result is computed but the key's entry not replaced (the second time warns again).
 TEST(SessionCache, SpoiledEntry) {

@@ -40,4 +40,9 @@ T far_weight(T t) {
   return t >= T(1) ? T(1) : t * t * t * (T(10) + t * (T(-15) + T(6) * t));
 }
 
+/// Density of the near field's light over t = r/h, up to a constant: t R_d(t h) (1 - w(t)).
+inline double near_ring(const ChannelProfile& profile, double h, double t) {
+  return t * diffuse_reflectance_profile(profile, t * h) * (1 - far_weight(t));
+}
+
 }  // namespace opaline

@@ -85,10 +85,8 @@ class Session {
   const std::vector<std::string>& decisions() const {
     return decisions_;
   }  ///< what was kept, and what not; a line each
-  const std::vector<StageCost>& costs() const {
-    return costs_;
-  }  ///< rays, sampling, irradiance, octree, and exitance if
-     ///< there are surface caches
+  /// Rays, sampling, irradiance, octree, and exitance where there are surface caches.
+  const std::vector<StageCost>& costs() const { return costs_; }
 
  private:
   struct Part;

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The options of each command.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/arguments.h"
+
+namespace opaline {
+
+/// What options write to whose text means something else, before it does.
+struct Options {
+  std::string method, evaluator, resolution, crop;
+  std::string until_error;
+  std::optional<std::uint64_t> entry_samples;
+  std::optional<std::uint64_t> spp;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> exposure;
+  std::vector<std::string> sets;
+  std::string log = "text";
+  std::string fail_above;
+  bool json = false;
+  std::string reference_error;
+  std::vector<std::string> rungs;
+  std::string frames;
+};
+
+void add_common_options(CLI::App& app, std::string& scene, Options& options);
+void add_picture_options(CLI::App& app, Options& options);
+void add_render_options(CLI::App& app, RenderArguments& render, Options& options);
+void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options);
+void add_compare_options(CLI::App& app, CompareArguments& compare, Options& options);
+void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options);
+void add_cache_commands(CLI::App& app, CacheArguments& cache, Options& options);
+
+}  // namespace opaline

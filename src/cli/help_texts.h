@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What --help prints below the options.
+#pragma once
+
+namespace opaline {
+
+inline constexpr const char* kExamples = R"(Examples:
+  opaline info bunny.json
+  opaline render bunny.json -o bunny.exr -o bunny.png
+  opaline render bunny.json -o draft.png --method lambert --resolution 256x256
+  opaline render bunny.json -o warm.exr --set media.marble.eta=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
+  opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
+  opaline render bunny.json -o bunny.exr --log json --threads 4
+  opaline compare bunny.exr reference.exr --fail-above 1%
+  opaline bench bunny.json -o report --resolution 256x256
+  opaline render bunny.json -o turned.exr --cache stages --set camera.position=[0,50,200]
+  opaline render bunny.json -o out.####.exr --frames 1-24 --cache stages
+  opaline cache ls stages
+
+Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the run failed (I/O, memory), 130 interrupted (Ctrl-C; old files stay).)";
+
+inline constexpr const char* kRenderNotes = R"(Every option that changes the picture is short for a --set:
+  --spp 4            --set film.samples_per_pixel=4
+  --resolution 64x48 --set film.resolution=[64,48]
+  --crop 0,0,16,16   --set film.crop=[0,0,16,16]
+  --method, --evaluator, --seed, --entry-samples, --until-error: --set settings.<name>=...
+  --exposure: --set film.exposure=...
+They are applied first, then each --set in its order: the last one wins.)";
+
+inline constexpr const char* kCompareNotes =
+    R"(Figures are of the relative error (a - b) / max(|b|, floor), floor being 1e-3 of the p99 of |b|, over the
+pixels that show an object: coverage A > 0 in the reference, or all of them if it has no A.
+  mean       of the absolute relative error; this is what --fail-above looks at
+  relMSE     mean of its square
+  p99, max   what 99 % and all of the values do not exceed
+  signed     mean with the sign: above 0 where the picture is too bright
+  FLIP       what a person sees who flips between the two: 0 nothing, 1 all (LDR-FLIP, 67 pixels a degree),
+             on the sRGB pictures after --exposure
+NaN and infinities are counted, and enter no mean; any in the picture fails the comparison.
+
+--halves takes two references with independent noise, such as two seeds, and prints the error that their noise
+does not raise: err^2 = mean of (h - d1)(h - d2) / (d^2 + (.01 max d)^2), d the mean of both. Below 0 it is
+'below noise'; not above twice its standard error it says nothing. What is wrong with both halves stays.
+
+Error pictures: .png shows the largest error over the channels from black (.01 % or less) over violet, red (1 %)
+and orange to white (100 % or more); grey: no object; green: not finite. .exr holds the signed relative errors.
+
+Examples:
+  opaline compare a.exr b.exr --error-picture error.png
+  opaline compare a.exr b.exr --layer diffuse --fail-above 1% --json
+  opaline compare a.exr --halves seed1.exr seed2.exr
+
+Exit codes: 0 done, 1 above the bound or not finite, 2 bad input, 3 the error picture cannot be written.)";
+
+inline constexpr const char* kBenchNotes =
+    R"(For each scene: lambert, hierarchical and direct at several settings, each run a process of its own, the
+repeats of all taking turns. Prints medians, and ratios to lambert (CPU of the whole job, of the shading pass)
+of one round each; the CSV has all figures with their smallest and largest values, and the machine.
+
+error     rms relative error against two halves of a reference (compare --halves), worst channel;
+          "< 2": what could be told from the noise of the halves begins at 2 %
+p99       against the mean of the halves; in brackets the p99 of that mean's own noise
+
+-o writes a report into a folder: index.html (open it in a browser; no network is needed) with the trade of
+error against CPU time, pictures and where they are off, and the parts of the error, each rendered alone; the
+same figures as results.csv, budget.csv and results.json; pictures. Run it again after an interruption: what
+this program has finished on the same scene and settings is kept there and not repeated (a ratio then may pair
+runs from before and after).
+
+--against compares ratios to lambert and errors with an earlier results.json, rung by rung, and exits with 1 if
+one is worse beyond the noise: the ranges of a ratio lie apart by more than half their widths together, an
+error's square by more than three of its standard errors; less than 5 % is never a change.
+
+Halves that the bench renders are kept (--reference-dir) and used again while scene, meshes and settings are
+the same; delete them when `direct` itself has changed. An interrupted one goes on where it stopped.
+
+Examples:
+  opaline bench bunny.json -o report --quick
+  opaline bench bunny.json ball.json -o report --resolution 256x256 --repeats 5
+  opaline bench bunny.json -o new --resolution 256x256 --against report/results.json
+  opaline bench bunny.json --csv bunny.csv --halves seed1.exr seed2.exr --rung near_field=false
+
+Exit codes: 0 done, 1 worse than before (--against), 2 bad input, 3 a rung failed (its row says why) or the run
+did, 130 interrupted.)";
+
+inline constexpr const char* kCacheNotes =
+    R"(An entry holds the result of one stage for one input: the samples of a group, the light that enters
+them from one light, their tree, or the exitance all over their surfaces. Its name ends in the key of that input. Entries are HDF5 files behind a
+header with a hash of the rest; one that does not match it is never read, but computed again.
+
+Exit codes: 0 done, 1 an entry cannot be used, 2 bad input, 3 the folder cannot be read or written.)";
+
+}  // namespace opaline

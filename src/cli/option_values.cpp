@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/option_values.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+namespace opaline {
+namespace {
+
+constexpr WholeRange kSide{1, 65536}, kPixel{0, 65536};
+
+/// "640x480" -> "[640,480]"; empty if it is not `count` whole numbers in the range with the separator between
+/// them.
+std::string json_list(std::string_view text, char separator, std::size_t count, WholeRange range) {
+  std::vector<std::uint64_t> numbers;
+  const char *at = text.data(), *end = text.data() + text.size();
+  while (numbers.size() < count) {
+    std::uint64_t& number = numbers.emplace_back();
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc{} || number < range.low || number > range.high) return {};
+    if (next == end) break;
+    if (*next != separator) return {};
+    at = next + 1;
+    if (numbers.size() == count) return {};
+  }
+  if (numbers.size() != count) return {};
+  return fmt::format("[{}]", fmt::join(numbers, ","));
+}
+
+/// is_good(text): whether it is what was expected.
+template <class IsGood>
+CLI::Validator check(const char* expected, const IsGood& is_good) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        return is_good(text) ? std::string() : fmt::format("expected {}, got {}", expected, text);
+      },
+      {});
+}
+
+}  // namespace
+
+std::string resolution_json(std::string_view text) {
+  return json_list(text, 'x', 2, kSide);
+}
+
+std::string crop_json(std::string_view text) {
+  return json_list(text, ',', 4, kPixel);
+}
+
+std::optional<double> share_of(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  if (percent) text.remove_suffix(1);
+  while (percent && text.ends_with(' ')) text.remove_suffix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !(value >= 0) || std::isinf(value))
+    return std::nullopt;
+  return percent ? value / 100 : value;
+}
+
+CLI::Validator resolution_check() {
+  return check("WIDTHxHEIGHT, each 1 to 65536, such as 640x480",
+               [](const std::string& text) { return !resolution_json(text).empty(); });
+}
+
+CLI::Validator crop_check() {
+  return check("four numbers x0,y0,x1,y1, each 0 to 65536",
+               [](const std::string& text) { return !crop_json(text).empty(); });
+}
+
+CLI::Validator whole_number(WholeRange range) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        std::uint64_t number = 0;
+        const char* end = text.data() + text.size();
+        const auto [next, error] = std::from_chars(text.data(), end, number);
+        if (error != std::errc{} || next != end || number < range.low || number > range.high)
+          return fmt::format("expected a whole number from {} to {}, got {}", range.low, range.high, text);
+        text = std::to_string(number);
+        return std::string();
+      },
+      {});
+}
+
+CLI::Validator share_check() {
+  return check("a share such as 1% or .01",
+               [](const std::string& text) { return share_of(text).has_value(); });
+}
+
+CLI::Validator positive_share_check() {
+  return check("a share such as 2% or .02", [](const std::string& text) {
+    const std::optional<double> share = share_of(text);
+    return share && *share > 0 && *share <= 1;
+  });
+}
+
+CLI::Validator rung_check() {
+  return check("a setting such as near_field=false", [](const std::string& text) {
+    const std::size_t equals = text.find('=');
+    return equals != std::string::npos && equals > 0 && equals + 1 < text.size();
+  });
+}
+
+}  // namespace opaline

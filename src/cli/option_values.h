@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the texts of options stand for, and what is wrong with them.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace opaline {
+
+struct WholeRange {
+  std::uint64_t low, high;
+};
+
+// As the scene's check has them: here the message can name the option.
+inline constexpr WholeRange kSpp{1, 65536}, kSeed{0, UINT64_MAX}, kThreads{1, 4096},
+    kEntrySamples{1, 1000000000}, kRepeats{3, 1000};
+
+/// "640x480" -> "[640,480]", "0,0,16,16" -> "[0,0,16,16]"; empty if it is neither.
+std::string resolution_json(std::string_view text);
+std::string crop_json(std::string_view text);
+
+/// "1%" or ".01" -> .01; nothing if it is neither, or below 0.
+std::optional<double> share_of(std::string_view text);
+
+CLI::Validator resolution_check();
+CLI::Validator crop_check();
+/// CLI11 would let a number beyond 64 bits wrap or stop at the end, and take 010 for 8.
+CLI::Validator whole_number(WholeRange range);
+CLI::Validator share_check();
+/// Of (0, 1].
+CLI::Validator positive_share_check();
+/// NAME=VALUE.
+CLI::Validator rung_check();
+
+}  // namespace opaline
