@@ -10,7 +10,7 @@ namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
 constexpr std::uint64_t kSamplesVersion = 1, kCarriedVersion = 1, kTransferVersion = 1, kOctreeVersion = 1,
-                        kExitanceVersion = 1;
+                        kExitanceVersion = 2;
 
 const char* widest_instructions() {
   if (__builtin_cpu_supports("avx512f")) return "avx512";
@@ -90,6 +90,7 @@ StageKey exitance_key(const StageKey& tree, const StageKey& kernel, std::span<co
                       const GroupPlan& group, const Settings& settings) {
   KeyBuilder key("exitance", kExitanceVersion);
   key.add(tree).add(kernel).add(settings.tolerance).add(settings.instruction_set);
+  key.add(settings.light_samples).add(settings.seed);
   key.add(std::string(widest_instructions()));
   for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
   return key.key();

@@ -19,8 +19,13 @@ constexpr double kEvaluationShare = 0.6, kInterpolationShare = 0.4;
 // the part that interpolation still misses (measured, test_surface_cache).
 constexpr float kRiseError = 0.6f, kRest = 0.4f;
 // In near-field radii, over which the far kernel varies: patches longer than kReach could hide what lies
-// between their vertices; nodes closer than kFinest see the noise of the samples.
-constexpr double kReach = 2, kFinest = 0.125;
+// between their vertices; nodes closer than kFinest see the noise of the samples; a
+// shadow's edge, as the near field blurs it, shows at vertices closer than kBlur.
+constexpr double kReach = 2, kFinest = 0.25, kBlur = 0.5;
+
+// Two vertices between which the light that depends on the irradiance at the place itself changes by more
+// than twice this part of all light may have a shadow's edge between them.
+constexpr float kJump = 0.02f;
 
 // A node's place: k of n segments along the edge of two vertices, for all patches there, or inside a patch.
 struct PlaceKey {
@@ -52,20 +57,21 @@ PlaceKey inner_key(std::uint32_t patch, std::uint32_t i, std::uint32_t j, std::u
 // A patch whose vertices alone do not tell.
 struct Refined {
   std::uint32_t patch, segments;
+  bool edge;  // a shadow's may run through it
   std::vector<std::uint32_t> nodes;
 };
 
 class Builder {
  public:
   explicit Builder(const SurfaceCacheInput& input) : input_(input) {
-    cache_.own_irradiance = input.kernel.own_irradiance;
+    if (!input.add_own_light) cache_.own_irradiance = input.kernel.own_irradiance;
     normals_ = cut_surface(input.world, input.meshes, kReach * double(input.kernel.radius), cache_);
   }
 
   std::optional<SurfaceCache> build() {
     for (std::size_t v = 0; v < normals_.size(); ++v)
       queries_.push_back({cache_.vertices[v].position, normals_[v]});
-    const std::vector<Exitance> at_vertices = evaluated();
+    const std::vector<Exitance> at_vertices = evaluated(vertex_doubts_);
     for (std::size_t v = 0; v < at_vertices.size(); ++v) cache_.vertices[v].value = at_vertices[v];
     set_floor();
     set_slopes();
@@ -73,8 +79,13 @@ class Builder {
     while (!active.empty()) {
       for (Refined& r : active) set_nodes(r);
       if (cache_.places() > input_.most_places) return {};
-      const std::vector<Exitance> at_nodes = evaluated();
-      for (std::size_t i = 0; i < at_nodes.size(); ++i) cache_.nodes[new_nodes_[i]] = at_nodes[i];
+      std::vector<PlaceDoubt> doubts;
+      const std::vector<Exitance> at_nodes = evaluated(doubts);
+      node_noise_.resize(cache_.nodes.size());
+      for (std::size_t i = 0; i < at_nodes.size(); ++i) {
+        cache_.nodes[new_nodes_[i]] = at_nodes[i];
+        node_noise_[new_nodes_[i]] = doubts[i].noise;
+      }
       new_nodes_.clear();
       std::erase_if(active, [&](Refined& r) { return !wants_more(r); });
     }
@@ -82,8 +93,9 @@ class Builder {
   }
 
  private:
-  // At the queries noted since the last time; without irradiance of their own, which leaves that part out.
-  std::vector<Exitance> evaluated() {
+  // At the queries noted since the last time; without irradiance of their own, which leaves that part out
+  // until it is added. doubts: as AddOwnLight's
+  std::vector<Exitance> evaluated(std::vector<PlaceDoubt>& doubts) {
     const std::vector<RgbF> dark(queries_.size());
     std::vector<Exitance> result = evaluate({.octree = input_.octree,
                                              .kernel = input_.kernel,
@@ -93,6 +105,12 @@ class Builder {
                                              .instruction_set = input_.instruction_set,
                                              .irradiance_noise = input_.irradiance_noise,
                                              .monitor = input_.monitor});
+    doubts.assign(queries_.size(), {});
+    if (input_.add_own_light) {
+      std::vector<SurfacePoint> points;
+      for (const Query& q : queries_) points.push_back({q.position, q.normal, q.normal});
+      input_.add_own_light(points, result, doubts);
+    }
     queries_.clear();
     return result;
   }
@@ -136,27 +154,49 @@ class Builder {
       for (Vec3f& slope : cache_.vertices[v].slope) slope *= areas[v] > 0 ? 1 / areas[v] : 0;
   }
 
-  bool is_too_much(const RgbF& error, const RgbF& exitance) const {
+  bool is_too_much(const RgbF& error, const RgbF& exitance, const RgbF& noise) const {
     for (std::size_t c = 0; c < 3; ++c)
       if (std::abs(error[c]) >
-          float(kInterpolationShare * input_.tolerance) * std::max(exitance[c], floor_[c]))
+          float(kInterpolationShare * input_.tolerance) * std::max(exitance[c], floor_[c]) + noise[c])
         return true;
     return false;
   }
 
   std::vector<Refined> ill_told_patches() const {
     std::vector<Refined> all;
-    for (std::uint32_t p = 0; p < cache_.patches.size(); ++p)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::array<std::uint32_t, 3>& corners = cache_.patches[p].vertices;
-        const SurfaceCache::Vertex &a = cache_.vertices[corners[k]],
-                                   &b = cache_.vertices[corners[(k + 1) % 3]];
-        const RgbF middle = (whole(a.value) + whole(b.value)) * 0.5f;
-        if (!is_too_much(rise_between(a, b) * kRiseError, middle)) continue;
-        all.push_back({p, 2, {}});
-        break;
-      }
+    for (std::uint32_t p = 0; p < cache_.patches.size(); ++p) {
+      const bool edge =
+          longest_side(p) > float(kBlur) * input_.kernel.radius &&
+          any_edge(p, [&](std::uint32_t a, std::uint32_t b) { return may_hide_shadow_edge(a, b); });
+      if (edge || any_edge(p, [&](std::uint32_t a, std::uint32_t b) { return is_ill_told(a, b); }))
+        all.push_back({p, 2, edge, {}});
+    }
     return all;
+  }
+
+  template <class Predicate>
+  bool any_edge(std::uint32_t patch, const Predicate& is_true) const {
+    const auto& [a, b, c] = cache_.patches[patch].vertices;
+    return is_true(a, b) || is_true(b, c) || is_true(c, a);
+  }
+
+  bool is_ill_told(std::uint32_t ia, std::uint32_t ib) const {
+    const SurfaceCache::Vertex &a = cache_.vertices[ia], &b = cache_.vertices[ib];
+    const RgbF middle = (whole(a.value) + whole(b.value)) * 0.5f,
+               noise = (vertex_doubts_[ia].noise + vertex_doubts_[ib].noise) * 0.5f;
+    return is_too_much(rise_between(a, b) * kRiseError, middle, noise);
+  }
+
+  // Slopes say nothing of an edge half way: they are the same on both sides.
+  bool may_hide_shadow_edge(std::uint32_t ia, std::uint32_t ib) const {
+    if (vertex_doubts_[ia].beside_edge || vertex_doubts_[ib].beside_edge) return true;
+    if (!input_.add_own_light) return false;
+    const Exitance &a = cache_.vertices[ia].value, &b = cache_.vertices[ib].value;
+    const RgbF own_a = own_part(input_.kernel.own_irradiance, a, a.irradiance),
+               own_b = own_part(input_.kernel.own_irradiance, b, b.irradiance);
+    for (std::size_t c = 0; c < 3; ++c)
+      if (std::abs(own_a[c] - own_b[c]) > kJump * (a.exitance[c] + b.exitance[c])) return true;
+    return false;
   }
 
   void set_nodes(Refined& r) {
@@ -180,6 +220,8 @@ class Builder {
     cache_.nodes.emplace_back();
     if (key.n == 0) {
       cache_.nodes.back() = cache_.vertices[key.where].value;
+      node_noise_.resize(cache_.nodes.size());
+      node_noise_.back() = vertex_doubts_[key.where].noise;
     } else {
       new_nodes_.push_back(known->second);
       queries_.push_back(place_of(r, i, j));
@@ -236,19 +278,23 @@ class Builder {
   }
 
   bool is_ill_predicted(const Refined& r) const {
+    if (r.edge && r.segments == 2) return true;  // its one new node may lie in the middle of the edge
     for (std::uint32_t j = 0; j <= r.segments; ++j)
       for (std::uint32_t i = 0; i + j <= r.segments; ++i) {
         if (i % 2 == 0 && j % 2 == 0) continue;
         const Exitance& known = value(r, i, j);
-        if (is_too_much((predicted(r, i, j) - known.exitance) * kRest, whole(known))) return true;
+        const RgbF& noise = node_noise_[r.nodes[lattice_index(r.segments, i, j)]];
+        if (is_too_much((predicted(r, i, j) - known.exitance) * kRest, whole(known), noise)) return true;
       }
     return false;
   }
 
   const SurfaceCacheInput& input_;
   SurfaceCache cache_;
-  std::vector<Vec3f> normals_;            // of its vertices
-  std::vector<Query> queries_;            // to evaluate: of vertices at first, then of nodes
+  std::vector<Vec3f> normals_;  // of its vertices
+  std::vector<Query> queries_;  // to evaluate: of vertices at first, then of nodes
+  std::vector<PlaceDoubt> vertex_doubts_;
+  std::vector<RgbF> node_noise_;
   std::vector<std::uint32_t> new_nodes_;  // where the latter go
   std::unordered_map<PlaceKey, std::uint32_t, PlaceHash> places_;
   RgbF floor_{};

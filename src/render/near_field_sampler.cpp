@@ -59,8 +59,9 @@ NearFieldSampler::NearFieldSampler(const TranslucentGroup& group)
   }
 }
 
-void NearFieldSampler::refine(const PointIrradianceInput& lighting, std::span<const RgbF> own,
-                              std::span<Exitance> exitance) const {
+std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& lighting,
+                                                    std::span<const RgbF> own,
+                                                    std::span<Exitance> exitance) const {
   Places places;
   std::vector<std::uint32_t> marked;
   for (std::uint32_t i = 0; i < exitance.size(); ++i)
@@ -68,7 +69,7 @@ void NearFieldSampler::refine(const PointIrradianceInput& lighting, std::span<co
       add_places(lighting.points[i], std::uint32_t(marked.size()), lighting.keys[i], places);
       marked.push_back(i);
     }
-  if (marked.empty()) return;
+  if (marked.empty()) return marked;
   find(lighting.rays, places);
   PointIrradianceInput around = lighting;
   around.points = places.points;
@@ -91,6 +92,7 @@ void NearFieldSampler::refine(const PointIrradianceInput& lighting, std::span<co
       e.exitance[c] += e.near[c] * (sums[m][c] / weights[m][c] - mixed);
     }
   }
+  return marked;
 }
 
 bool NearFieldSampler::is_beside_edge(const RgbF& own, const Exitance& e) const {

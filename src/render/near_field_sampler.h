@@ -21,9 +21,9 @@ class NearFieldSampler {
 
   /// Corrects the exitance of the points beside shadow edges.
   /// in    lighting: of the points; own: their irradiance
-  /// out   exitance: as evaluated with it, one a point
-  void refine(const PointIrradianceInput& lighting, std::span<const RgbF> own,
-              std::span<Exitance> exitance) const;
+  /// out   exitance: as evaluated with it, one a point; returns which points these were
+  std::vector<std::uint32_t> refine(const PointIrradianceInput& lighting, std::span<const RgbF> own,
+                                    std::span<Exitance> exitance) const;
 
  private:
   static constexpr std::size_t kPlaces = 16;

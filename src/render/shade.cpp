@@ -42,6 +42,11 @@ float cos_view(const Vec3f& normal, const Vec3f& direction) {
   return std::min(1.0f, std::abs(dot(normal, direction)) / length(direction));
 }
 
+// Whether pictures trace shadow rays for the exitance of a group.
+bool needs_irradiance(const TranslucentGroup& group) {
+  return group.surface_cache ? group.surface_cache->needs_irradiance() : group.kernel.needs_irradiance();
+}
+
 }  // namespace
 
 Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers) : input_(input) {
@@ -54,7 +59,7 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
   }
   for (const TranslucentGroup& group : input.groups) {
     near_fields_.emplace_back();
-    if (group.kernel.needs_irradiance()) near_fields_.back().emplace(group);
+    if (needs_irradiance(group)) near_fields_.back().emplace(group);
   }
   for (std::size_t m = 0; m < input.world.meshes.size(); ++m) {
     Appearance appearance = appearance_of(input, entry_samplers, m);
@@ -137,7 +142,7 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces,
   Lit lit;
   const TranslucentGroup& group = *kind.group;
   const PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
-  if (group.kernel.needs_irradiance()) lit.irradiance = irradiance_at(lighting);
+  if (needs_irradiance(group)) lit.irradiance = irradiance_at(lighting);
   std::vector<Exitance> exitance = group.surface_cache
                                        ? interpolated(*group.surface_cache, surfaces, lit, rays)
                                        : summed(group, surfaces, lit);

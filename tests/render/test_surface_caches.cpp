@@ -40,9 +40,9 @@ TEST(SurfaceCaches, WhereManyPointsAskForThem) {
 }
 
 // Claim: the picture through a surface cache is that of the exact sum within the tolerance, mean over the
-// object's pixels; shadow edges in the near field are as sharp, for the irradiance at the points is traced as
-// ever. Source: the promise of surface_cache.h. Tolerance: the setting's, .5 %. Fails if: the cache's own
-// part is interpolated too.
+// object's pixels. Source: the promise of surface_cache.h. Tolerance: the setting's, .5 %; p99 3 %, for
+// beside shadow edges both pictures trace a few rays a point (measured 2.3 %; against `direct` ShadowEdge
+// holds both). Fails if: the cache's own part is left out, or counted twice.
 TEST(SurfaceCaches, PictureOfTheExactSum) {
   Scene scene = torus_scene(64, 1);
   scene.settings.evaluator = EvaluatorKind::surface_cache;
@@ -53,8 +53,29 @@ TEST(SurfaceCaches, PictureOfTheExactSum) {
                                                 extract_layer(exact, "diffuse"), object_pixels(exact));
   for (const std::vector<double>& channel : errors.channels) {
     EXPECT_LT(error_statistics(channel).mean, .005);
-    EXPECT_LT(error_statistics(channel).p99, .02);
+    EXPECT_LT(error_statistics(channel).p99, .03);
   }
+}
+
+// Claim: where the mean free path is not far below the sample spacing and normals are smooth, a picture
+// through a surface cache traces camera rays alone; on facets and in a denser medium it traces shadow rays as
+// well. Source: can_hold_own_light. Fails if: caches never hold the own light, or always.
+TEST(SurfaceCaches, SpareTheShadowRays) {
+  Scene scene = torus_scene(64, 1);
+  scene.settings.evaluator = EvaluatorKind::surface_cache;
+  const auto rays = [](const Scene& of) {
+    const Prepared prepared(of);
+    const std::uint64_t before = prepared.rays.statistics().rays;
+    prepared.picture();
+    return prepared.rays.statistics().rays - before;
+  };
+  EXPECT_EQ(rays(scene), 64u * 64u);
+  Scene facets = scene;
+  facets.shapes[0].normals = NormalMode::faceted;
+  EXPECT_GT(rays(facets), 64u * 64u);
+  Scene dense = scene;
+  dense.media = {grey_medium(.05, .02, 1.3)};
+  EXPECT_GT(rays(dense), 64u * 64u);
 }
 
 }  // namespace

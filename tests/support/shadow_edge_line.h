@@ -38,15 +38,18 @@ inline Scene shadow_edge_scene(bool wide, ProfileKind profile) {
 }
 
 struct EdgeLine {
-  std::vector<double> x;                     ///< mm from the lid's edge, one a pixel
-  std::vector<double> hierarchical, direct;  ///< exitance, W/mm^2, green
-  std::vector<double> noise;                 ///< estimated standard error of `direct`, W/mm^2
+  std::vector<double> x;                             ///< mm from the lid's edge, one a pixel
+  std::vector<double> hierarchical, cached, direct;  ///< exitance, W/mm^2, green; cached: by a surface cache
+  std::vector<double> noise;                         ///< estimated standard error of `direct`, W/mm^2
 };
 
 /// The line with `entries` random entry points a pixel in the direct picture.
 inline EdgeLine shadow_edge_line(const Scene& scene, std::size_t entries) {
   const Prepared prepared(scene);
   const Image sums = prepared.picture();
+  Scene interpolated = scene;
+  interpolated.settings.evaluator = EvaluatorKind::surface_cache;
+  const Image cached = Prepared(interpolated).picture();
   Scene random = scene;
   random.settings.method = Method::direct;
   random.settings.entry_samples = entries;
@@ -62,6 +65,7 @@ inline EdgeLine shadow_edge_line(const Scene& scene, std::size_t entries) {
                             double(fresnel_transmittance(float(cosine), float(profile.eta)));
     line.x.push_back(x);
     line.hierarchical.push_back(exitance * double(channel(sums, i, 0, "diffuse.G")));
+    line.cached.push_back(exitance * double(channel(cached, i, 0, "diffuse.G")));
     line.direct.push_back(exitance * double(channel(direct, i, 0, "diffuse.G")));
     line.noise.push_back(exitance * std::sqrt(double(channel(direct, i, 0, "variance.G"))));
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -39,9 +40,10 @@ struct SurfaceCache {
     std::uint32_t first = 0, segments = 0;
   };
 
-  /// SplitKernel's. The nodes' exitance is without the light that depends on the irradiance at the place
-  /// itself: that has the shadows' edges in it.
+  /// SplitKernel's if the nodes' exitance is without the light that depends on the irradiance at the place
+  /// itself, which has the shadows' edges in it; 0 if they have it all.
   std::array<float, 3> own_irradiance{};
+  bool needs_irradiance() const { return own_irradiance[0] + own_irradiance[1] + own_irradiance[2] > 0; }
   std::vector<std::vector<Split>>
       splits;  ///< one a mesh of the world (empty if not of the group) and triangle
   std::vector<Patch> patches;
@@ -53,13 +55,25 @@ struct SurfaceCache {
   /// Where the exitance was evaluated.
   std::size_t places() const { return vertices.size() + nodes.size(); }
 
-  /// As `evaluate` at a place of a triangle of the group; irradiance: there, or null to interpolate it.
+  /// As `evaluate` at a place of a triangle of the group; irradiance: there, if the cache needs it, or null
+  /// to interpolate it.
   /// error p99 of the difference from brute force over max(it, 1e-3 of its p99) <= tolerance, per channel,
   /// over the
   ///       surface (test_surface_cache)
   Exitance at(std::uint32_t mesh, std::uint32_t triangle, float u, float v,
               const RgbF* irradiance = nullptr) const;
 };
+
+/// What of the light at a place a cache should not take at its word.
+struct PlaceDoubt {
+  RgbF noise{};              ///< of the exitance, W/mm^2: less is no reason for a finer lattice
+  bool beside_edge = false;  ///< a shadow's edge is near, between this place and the next perhaps
+};
+
+/// Adds to the exitance of places what depends on the irradiance at the place itself, and puts that
+/// irradiance into theirs. doubts: one a place, to be filled.
+using AddOwnLight =
+    std::function<void(std::span<const SurfacePoint>, std::span<Exitance>, std::span<PlaceDoubt> doubts)>;
 
 struct SurfaceCacheInput {
   const World& world;
@@ -70,6 +84,7 @@ struct SurfaceCacheInput {
   InstructionSet instruction_set = InstructionSet::automatic;
   double irradiance_noise = 0;                                        ///< as EvaluateInput's
   std::size_t most_places = std::numeric_limits<std::size_t>::max();  ///< to evaluate at
+  AddOwnLight add_own_light = {};  ///< none: the cache is without that light
   Monitor* monitor = nullptr;
 };
 

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/own_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "evaluate/surface_patch.h"
+#include "opaline/core/parallel.h"
+#include "opaline/core/random.h"
+
+namespace opaline {
+namespace {
+
+// Above this share of the irradiance at the point itself (SplitKernel::own_irradiance) the near field's rms
+// radius is under a fifth of h, less than two segments of the finest lattice.
+constexpr float kSharp = 0.8f;
+// What lattices need not resolve, of the exitance: bumps of the mesh, that its own vertices tell, and what a
+// few shadow rays beside a shadow's edge leave open. Less takes more places and is closer to `direct` by no
+// more than .1 % (LongDirectGate).
+constexpr float kBumps = 0.005f, kEdgeNoise = 0.01f;
+
+std::uint64_t key_of(const Vec3f& p) {
+  std::array<std::uint32_t, 3> bits;
+  std::memcpy(bits.data(), &p, sizeof bits);
+  return hash_bits(hash_bits(bits[0], bits[1]), bits[2]);
+}
+
+}  // namespace
+
+bool can_hold_own_light(const World& world, const TranslucentGroup& group) {
+  const auto& own = group.kernel.own_irradiance;
+  return group.kernel.needs_irradiance() && std::ranges::all_of(own, [](float s) { return s <= kSharp; }) &&
+         std::ranges::none_of(group.plan.meshes,
+                              [&](std::uint32_t m) { return world.meshes[m].normals.empty(); });
+}
+
+OwnLight::OwnLight(const PrecomputeInput& input, const TranslucentGroup& group)
+    : input_(input), group_(group), lights_(recentred_lights(input.scene, input.world)), near_field_(group) {}
+
+void OwnLight::add(std::span<const SurfacePoint> points, std::span<Exitance> exitance,
+                   std::span<PlaceDoubt> doubts) const {
+  parallel_chunks(points.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+    const std::size_t n = end - begin;
+    add_to_chunk(points.subspan(begin, n), exitance.subspan(begin, n), doubts.subspan(begin, n));
+  });
+}
+
+void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exitance> exitance,
+                            std::span<PlaceDoubt> doubts) const {
+  const Settings& settings = input_.scene.settings;
+  std::vector<std::uint64_t> keys;
+  for (const SurfacePoint& point : points) keys.push_back(key_of(point.position));
+  std::vector<RgbF> variance(points.size());
+  PointIrradianceInput lighting{input_.rays,
+                                points,
+                                keys,
+                                lights_,
+                                input_.scene.media[group_.plan.medium].eta,
+                                settings.light_samples,
+                                hash_bits(settings.seed, 2000),
+                                variance};
+  const std::vector<RgbF> own = irradiance_at(lighting);
+  const auto& share = group_.kernel.own_irradiance;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    exitance[i].exitance += own_part(share, exitance[i], own[i]);
+    const RgbF& v = variance[i];
+    const RgbF two_errors =
+        own_part(share, exitance[i], RgbF{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)} * 2);
+    doubts[i] = {two_errors + exitance[i].exitance * kBumps};
+  }
+  lighting.variance = {};
+  for (const std::uint32_t i : near_field_.refine(lighting, own, exitance))
+    doubts[i] = {doubts[i].noise + exitance[i].exitance * kEdgeNoise, true};
+  for (std::size_t i = 0; i < points.size(); ++i) exitance[i].irradiance = own[i];
+}
+
+}  // namespace opaline

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The light of a surface that depends on the irradiance at each place itself, for surface caches.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "opaline/render/precompute.h"
+#include "render/near_field_sampler.h"
+
+namespace opaline {
+
+/// Whether a cache can hold the light that depends on the irradiance at each place, so that pictures trace no
+/// shadow rays: facets without smooth normals are lit each in its own way, and the shadows of a mean free
+/// path far below the sample spacing are too sharp to interpolate.
+bool can_hold_own_light(const World& world, const TranslucentGroup& group);
+
+/// The light that the shader adds at its points.
+class OwnLight {
+ public:
+  /// Both must outlive it.
+  OwnLight(const PrecomputeInput& input, const TranslucentGroup& group);
+
+  /// As AddOwnLight.
+  void add(std::span<const SurfacePoint> points, std::span<Exitance> exitance,
+           std::span<PlaceDoubt> doubts) const;
+
+ private:
+  void add_to_chunk(std::span<const SurfacePoint> points, std::span<Exitance> exitance,
+                    std::span<PlaceDoubt> doubts) const;
+
+  const PrecomputeInput& input_;
+  const TranslucentGroup& group_;
+  std::vector<Light> lights_;
+  NearFieldSampler near_field_;
+};
+
+}  // namespace opaline
