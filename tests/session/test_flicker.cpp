@@ -23,6 +23,7 @@ void expect_no_flicker(const std::vector<Scene>& shot) {
   const std::vector<Image> reference = reference_pictures(shot);
   const double carried = flicker(carried_pictures(shot), reference),
                resampled = flicker(resampled_pictures(shot), reference);
+  EXPECT_LT(carried, .005);
   EXPECT_LT(carried, resampled / 10);
   EXPECT_GT(whole_change(reference), .002);  // something happens
 }
