@@ -193,6 +193,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   if (!options.frames.empty()) render.frames = precompute.frames = *parse_frames(options.frames);
   if (precompute_command.parsed()) return precompute;
   if (info_command.parsed()) return info;
+  if (!options.display_server.empty()) render.display_server = parse_server_address(options.display_server);
   check_outputs(render);
   return render;
 }
