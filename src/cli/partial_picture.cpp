@@ -63,8 +63,9 @@ void PartialPicture::watch(const std::stop_token& stop) {
     send_tiles();
     if (files_.empty() || std::chrono::steady_clock::now() - written_ < kBetweenFiles) continue;
     std::unique_lock reading(mutex_);
-    const Image picture = shown_;
+    Image picture = shown_;
     reading.unlock();
+    picture.metadata = {{"opaline:partial", "tiles"}};
     write_files(picture);
   }
 }

@@ -130,8 +130,9 @@ TEST(CliPartial, Interrupted) {
 TEST(CliPartial, FrameIsNotDone) {
   const PartialScene ball;
   const std::string out = ball.file("out.1.exr");
-  const std::vector<std::string> words{
-      "render", ball.scene, "-o", ball.file("out.##.exr"), "--frames", "1", "--spp", "3000", "--log", "json"};
+  const std::vector<std::string> words{"render",    ball.scene, "-o",    ball.file("out.##.exr"),
+                                       "--frames",  "1",        "--spp", "1500",
+                                       "--threads", "1",        "--log", "json"};
   std::vector<std::string> partial = words;
   partial.push_back("--write-partial");
   {
@@ -145,6 +146,19 @@ TEST(CliPartial, FrameIsNotDone) {
   EXPECT_EQ(again.exit_code, 0);
   event_of(events_of(again.out), "done");
   EXPECT_EQ(partial_stage(ball.file("out.01.exr")), "");
+}
+
+// Claim: while a long picture is under way the file has the tiles that are done. Source: `opaline render
+// --help`. Fails if: only coarse pictures are written.
+TEST(LongCliPartial, TilesAreWritten) {
+  const PartialScene ball;
+  Child child(ball.command({"--spp", "4000", "--threads", "1", "--write-partial", "--log", "json"}));
+  ASSERT_TRUE(child.prints(ended("refinement")));
+  for (int i = 0; i < 600 && partial_stage(ball.exr) != "tiles"; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(partial_stage(ball.exr), "tiles");
+  child.send(SIGINT);
+  EXPECT_EQ(child.wait().exit_code, 130);
 }
 
 // Claim: a viewer that is not there, or goes away, is one warning, and the picture is the same. Source: the
