@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <exception>
 
 #include "cli/render_outputs.h"
-#include "opaline/core/error.h"
 
 namespace opaline {
 namespace {
@@ -84,7 +84,7 @@ void PartialPicture::send_tiles() {
 void PartialPicture::write_files(const Image& picture) {
   try {
     for (const std::string& path : files_) write_picture(path, picture, film_);
-  } catch (const Error& failure) {
+  } catch (const std::exception& failure) {
     print_warning(log_, std::string("no partial pictures are written: ") + failure.what());
     files_.clear();
   }
