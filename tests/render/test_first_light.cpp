@@ -79,9 +79,9 @@ TEST(FirstLight, ShowsThePicture) {
 }
 
 // Claim: things are where they are in the picture, whether or not the stride divides its size: a lit wall
-// that fills the picture, brightest off the middle, differs by what lies between
-// linear and curved, 7e-5 stride^2 on average at most. Source:
-// first_light.h. Measured: . Fails if: coarse pixels are placed from the corner of the picture.
+// that fills the picture, brightest off the middle, differs by what lies between linear and curved, on
+// average 7e-5 stride^2 at most. Source: first_light.h. Measured: 6e-5 stride^2. Fails if: coarse pixels are
+// placed from the corner of the picture.
 TEST(FirstLight, AtItsPlace) {
   Scene scene = single_shape(QuadShape{{-100, -100, 0}, {200, 0, 0}, {0, 200, 0}}, marble(), 1000);
   scene.shapes[0].medium = {};
