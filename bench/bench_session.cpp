@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an edit of a scene costs in a session, and a start from the disk: user CPU of one thread, over the
-// plain lambert frame's in the same round; medians of 5 rounds. usage: bench_session SCENE [CACHE_SAMPLES]
+// What an edit of a scene costs in a session, its first light, and a start from the disk: user CPU of one
+// thread, over the plain lambert frame's in the same round; medians of 5 rounds. usage: bench_session SCENE
+// [CACHE_SAMPLES]
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -93,6 +94,20 @@ void print_edits(const Scene& base) {
     fmt::print("{:<38}{:>8.4f} s {:>7.2f} x lambert\n", edits[e].name, median(seconds[e]), median(ratios[e]));
 }
 
+void print_first_light(const Scene& scene) {
+  std::vector<double> first, whole, shares;
+  for (int round = 0; round < 5; ++round) {
+    Session session;
+    session.edit(scene);
+    session.prepare_rays();
+    first.push_back(user_seconds([&] { session.first_light(); }));
+    whole.push_back(user_seconds([&] { session.render(); }));
+    shares.push_back(first.back() / whole.back());
+  }
+  fmt::print("first light {:.4f} s, {:.1f} % of samples, light, tree and picture, {:.3f} s\n", median(first),
+             100 * median(shares), median(whole));
+}
+
 void print_disk_start(Scene scene, std::size_t samples) {
   scene.settings.samples = samples;
   const std::string folder = (std::filesystem::temp_directory_path() / "opaline-bench-cache").string();
@@ -130,6 +145,7 @@ int main(int argc, char** argv) try {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const Scene scene = load_scene(argv[1]);
   print_edits(scene);
+  print_first_light(scene);
   print_disk_start(scene, argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1000000);
   return 0;
 } catch (const std::exception& error) {

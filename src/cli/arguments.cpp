@@ -187,12 +187,12 @@ Command parse_arguments(int argc, const char* const* argv) {
     return checked(std::move(bench), options);
   }
   const LogFormat format = options.log == "json" ? LogFormat::json : LogFormat::text;
-  info.log.format = render.log.format = format;
-  precompute.log.format = format;
+  info.log.format = render.log.format = precompute.log.format = format;
   info.overrides = render.overrides = precompute.overrides = overrides_of(options);
   if (!options.frames.empty()) render.frames = precompute.frames = *parse_frames(options.frames);
   if (precompute_command.parsed()) return precompute;
   if (info_command.parsed()) return info;
+  render.display_server = parse_server_address(options.display_server);
   check_outputs(render);
   return render;
 }

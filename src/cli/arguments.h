@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "cli/display_server.h"
 #include "cli/log.h"
 #include "opaline/cache/stage_cache.h"
 #include "opaline/report/ladder.h"
@@ -25,6 +26,8 @@ struct RenderArguments {
   std::vector<int> frames;  ///< empty: one picture; else outputs have a place for the frame's number
   int threads = 0;          ///< 0: one for each core
   bool timings_in_metadata = false;
+  bool write_partial = false;
+  std::optional<ServerAddress> display_server;
   Log log;
 };
 

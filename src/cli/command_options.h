@@ -27,6 +27,7 @@ struct Options {
   std::string reference_error;
   std::vector<std::string> rungs;
   std::string frames;
+  std::string display_server;
 };
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options);

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "cli/display_server.h"
+
 namespace opaline {
 namespace {
 
@@ -65,6 +67,11 @@ std::optional<double> share_of(std::string_view text) {
 CLI::Validator resolution_check() {
   return check("WIDTHxHEIGHT, each 1 to 65536, such as 640x480",
                [](const std::string& text) { return !resolution_json(text).empty(); });
+}
+
+CLI::Validator server_address_check() {
+  return check("HOST or HOST:PORT, such as localhost:14158",
+               [](const std::string& text) { return parse_server_address(text).has_value(); });
 }
 
 CLI::Validator crop_check() {

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <tbb/global_control.h>
 
-#include <chrono>
 #include <csignal>
 #include <optional>
 
 #include "cli/commands.h"
 #include "cli/frames.h"
 #include "cli/metadata.h"
+#include "cli/partial_picture.h"
+#include "cli/render_outputs.h"
 #include "cli/report.h"
+#include "cli/resumable_state.h"
 #include "cli/stages.h"
-#include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/render/direct.h"
 #include "opaline/scene/load_scene.h"
@@ -19,13 +20,6 @@
 namespace opaline {
 namespace {
 
-/// What cannot be written at the end is said before the work.
-void check_writable(const RenderArguments& arguments) {
-  for (const std::string& path : arguments.outputs) const AtomicFile probe(path);
-  if (!arguments.samples_ply.empty()) const AtomicFile probe(arguments.samples_ply);
-  if (!arguments.resume.empty()) const AtomicFile probe(arguments.resume);
-}
-
 void check_precompute(const RenderArguments& arguments, const Scene& scene, const Plan& plan) {
   if (arguments.samples_ply.empty()) return;
   if (scene.settings.method != Method::hierarchical || plan.groups.empty())
@@ -33,67 +27,11 @@ void check_precompute(const RenderArguments& arguments, const Scene& scene, cons
                    "settings.method \"hierarchical\" and a translucent shape");
 }
 
-/// Writes everything that was asked for; returns the names.
-std::vector<std::string> write_outputs(const RenderArguments& arguments, const Session& session,
-                                       const Image& image) {
-  std::size_t cut = 0;
-  std::vector<std::string> written;
-  for (const std::string& path : arguments.outputs) {
-    if (output_format(path) == OutputFormat::exr)
-      cut = write_exr(path, image, session.scene().film.half).half_overflow;
-    else
-      write_png(path, image, session.scene().film.exposure);
-    written.push_back(path);
-  }
-  if (!arguments.samples_ply.empty()) {
-    write_samples_ply(arguments.samples_ply, session.groups(), session.world());
-    written.push_back(arguments.samples_ply);
-  }
-  if (cut > 0)
-    print_warning(arguments.log, std::to_string(cut) +
-                                     " values above 65504 do not fit 16 bits and were cut; "
-                                     "--set film.pixel_type=float keeps them");
-  return written;
-}
-
 struct Shading {
   RenderResult picture;
   std::optional<DirectResult> direct;  // without its picture
   std::uint64_t rays = 0;
   double cpu_seconds = 0, embree_seconds = 0;
-};
-
-/// Sums that are kept in the --resume file, if there is one.
-class ResumableState {
- public:
-  ResumableState(const RenderArguments& arguments, const Scene& scene)
-      : path_(arguments.resume), scene_(scene) {
-    if (path_.empty()) return;
-    key_ = direct_scene_key(arguments, scene_);
-    state = read_direct_state(path_, scene_, key_);
-    written_ = state.passes;
-  }
-
-  void keep_each_minute() {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::minutes(1)) return;
-    keep();
-    last_ = now;
-  }
-
-  void keep() {
-    if (path_.empty() || state.passes == written_) return;
-    write_direct_state(path_, state, scene_, key_);
-    written_ = state.passes;
-  }
-
-  DirectState state;
-
- private:
-  std::string path_, key_;
-  const Scene& scene_;
-  std::size_t written_ = 0;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
 DirectResult shade_direct(const RenderArguments& arguments, const Session& session, Monitor& monitor) {
@@ -110,15 +48,21 @@ DirectResult shade_direct(const RenderArguments& arguments, const Session& sessi
   }
 }
 
-Shading shade(StageRunner& stages, const RenderArguments& arguments, Session& session) {
+/// partial: null, or shows what is done.
+Shading shade(StageRunner& stages, const RenderArguments& arguments, Session& session,
+              PartialPicture* partial) {
+  AfterTile show_tile;
+  if (partial != nullptr)
+    show_tile = [partial](const Image& image, const Rectangle& done) { partial->show_tile(image, done); };
   Shading shading;
   const RayScene::Statistics before = session.rays().statistics();
   shading.picture = stages.run("shading", [&] {
     if (session.scene().settings.method == Method::direct) {
       shading.direct = shade_direct(arguments, session, stages.monitor());
+      if (show_tile) show_tile(shading.direct->picture.image, rendered_part(session.scene().film));
       return std::move(shading.direct->picture);
     }
-    return session.render(&stages.monitor());
+    return session.render(&stages.monitor(), show_tile);
   });
   const RayScene::Statistics after = session.rays().statistics();
   shading.rays = after.rays - before.rays;
@@ -149,8 +93,34 @@ Summary summarize(const Session& session, const Shading& shading) {
   return summary;
 }
 
+void show_first_light(StageRunner& stages, Session& session, PartialPicture& partial) {
+  stages.run_unmeasured("rays", [&] { session.prepare_rays(); });
+  for (const StageCost& cost : session.costs()) stages.note(cost);
+  partial.show(stages.run("first light", [&] { return session.first_light(&stages.monitor()); }),
+               "first light");
+}
+
+/// With all samples now, at four times as many pixels.
+void show_refinement(StageRunner& stages, const Session& session, PartialPicture& partial) {
+  if (session.scene().settings.method == Method::direct) return;
+  const int stride = first_light_stride(session.scene().film) / 2;
+  partial.show(stages.run("refinement",
+                          [&] {
+                            return coarse_picture({session.scene(), session.world(), session.rays(),
+                                                   session.groups(), &stages.monitor()},
+                                                  stride);
+                          }),
+               "refinement");
+}
+
+/// What is shared by all pictures of the command; null where there is none.
+struct Shared {
+  const StageCache* cache = nullptr;
+  DisplayServer* viewer = nullptr;
+};
+
 /// One picture; `frame`: of a range, whose session is anchored.
-void render_scene(const RenderArguments& arguments, Session& session, const StageCache* cache,
+void render_scene(const RenderArguments& arguments, Session& session, const Shared& shared,
                   std::optional<int> frame) {
   StageRunner stages(arguments.log);
   bool is_there = false;
@@ -169,11 +139,18 @@ void render_scene(const RenderArguments& arguments, Session& session, const Stag
   check_precompute(arguments, scene, session.plan());
   print_plan(arguments.log, scene, session.plan());
 
+  std::optional<PartialPicture> partial;
+  if (arguments.write_partial || shared.viewer != nullptr)
+    show_first_light(stages, session, partial.emplace(arguments, scene.film, shared.viewer));
+  const std::size_t noted = session.costs().size();
   stages.run_unmeasured("rays", [&] { session.prepare(&stages.monitor()); });
-  for (const StageCost& cost : session.costs()) stages.note(cost);
-  if (cache != nullptr || frame)
-    print_decisions(arguments.log, session.decisions(), cache != nullptr ? cache->warning() : "");
-  Shading shading = shade(stages, arguments, session);
+  for (std::size_t i = noted; i < session.costs().size(); ++i) stages.note(session.costs()[i]);
+  if (shared.cache != nullptr || frame)
+    print_decisions(arguments.log, session.decisions(),
+                    shared.cache != nullptr ? shared.cache->warning() : "");
+  if (partial) show_refinement(stages, session, *partial);
+  Shading shading = shade(stages, arguments, session, partial ? &*partial : nullptr);
+  partial.reset();
   if (shading.picture.non_finite > 0)
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
@@ -198,14 +175,17 @@ void render_command(const RenderArguments& arguments) {
   std::optional<StageCache> cache;
   if (!arguments.cache.empty()) cache.emplace(arguments.cache, arguments.cache_bytes);
   Session session(cache ? &*cache : nullptr);
-  const auto render_one = [&](const RenderArguments& own, std::optional<int> frame) {
-    render_scene(own, session, cache ? &*cache : nullptr, frame);
-  };
-  if (arguments.frames.empty()) {
+  if (arguments.frames.empty())
     check_writable(arguments);
-    return render_one(arguments, {});
-  }
-  for (const int frame : arguments.frames) check_writable(arguments_of_frame(arguments, frame));
+  else
+    for (const int frame : arguments.frames) check_writable(arguments_of_frame(arguments, frame));
+  std::optional<DisplayServer> viewer;
+  if (arguments.display_server) viewer.emplace(*arguments.display_server, arguments.log);
+  const Shared shared{cache ? &*cache : nullptr, viewer ? &*viewer : nullptr};
+  const auto render_one = [&](const RenderArguments& own, std::optional<int> frame) {
+    render_scene(own, session, shared, frame);
+  };
+  if (arguments.frames.empty()) return render_one(arguments, {});
   anchor_session(session, arguments.scene, arguments.overrides);
   for_frames(arguments.log, arguments.frames,
              [&](int frame) { render_one(arguments_of_frame(arguments, frame), frame); });

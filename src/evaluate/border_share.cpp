@@ -57,21 +57,30 @@ std::vector<double> near_shares(const ChannelProfile& profile, double h) {
   return ring_shares(within);
 }
 
-}  // namespace
-
-std::array<std::array<float, 3>, SplitKernel::kBorderRows> border_shares(const DiffuseProfile& profile,
-                                                                         double h) {
+// Over h, for each row the distance at which a border leaves its share of the areas on this side.
+std::array<double, SplitKernel::kBorderRows> border_distances() {
   const std::vector<double> area = area_shares();
-  std::array<std::vector<double>, 3> near;
-  for (std::size_t c = 0; c < 3; ++c) near[c] = near_shares(profile.channels[c], h);
-  std::array<std::array<float, 3>, SplitKernel::kBorderRows> rows{};
+  std::array<double, SplitKernel::kBorderRows> distances{};
   for (std::size_t row = 0; row < SplitKernel::kBorderRows; ++row) {
     const double wanted = 0.5 + 0.5 * double(row) / (SplitKernel::kBorderRows - 1);
     double low = 0, high = 1;  // the area grows with the distance of the border
     for (int i = 0; i < 20; ++i)
       (inside_border(area, 0.5 * (low + high)) < wanted ? low : high) = 0.5 * (low + high);
-    for (std::size_t c = 0; c < 3; ++c) rows[row][c] = float(inside_border(near[c], 0.5 * (low + high)));
+    distances[row] = 0.5 * (low + high);
   }
+  return distances;
+}
+
+}  // namespace
+
+std::array<std::array<float, 3>, SplitKernel::kBorderRows> border_shares(const DiffuseProfile& profile,
+                                                                         double h) {
+  static const std::array<double, SplitKernel::kBorderRows> distances = border_distances();  // takes 5 ms
+  std::array<std::vector<double>, 3> near;
+  for (std::size_t c = 0; c < 3; ++c) near[c] = near_shares(profile.channels[c], h);
+  std::array<std::array<float, 3>, SplitKernel::kBorderRows> rows{};
+  for (std::size_t row = 0; row < SplitKernel::kBorderRows; ++row)
+    for (std::size_t c = 0; c < 3; ++c) rows[row][c] = float(inside_border(near[c], distances[row]));
   return rows;
 }
 

@@ -9,6 +9,10 @@
 namespace opaline {
 namespace {
 
+Rectangle common_part(const Rectangle& a, const Rectangle& b) {
+  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
 // Pixels without anything stay as they are: zero, and their memory untouched.
 std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, const Scene& scene,
                   Image& image) {
@@ -41,6 +45,7 @@ RenderResult render(const RenderInput& input) {
     const TileRenderer::Tile tile = renderer.render(tiles[begin]);
     queries += tile.queries;
     non_finite += store(tiles[begin], tile.sums, input.scene, result.image);
+    if (input.after_tile) input.after_tile(result.image, common_part(tiles[begin], part));
   });
   result.queries = queries;
   result.non_finite = non_finite;

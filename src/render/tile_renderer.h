@@ -12,14 +12,6 @@
 
 namespace opaline {
 
-/// Pixels [x0, x1) x [y0, y1) of the whole picture.
-struct Rectangle {
-  int x0, y0, x1, y1;
-};
-
-/// What the film's crop leaves, or all of it.
-Rectangle rendered_part(const Film& film);
-
 /// Tiles lie on a fixed grid of the whole picture and are whole even where a crop shows part of them: points
 /// that are evaluated together are the same, and so are a crop's pixels.
 std::vector<Rectangle> tiles_of(const Film& film);

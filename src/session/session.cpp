@@ -87,15 +87,26 @@ void Session::keep_spacing() {
   }
 }
 
+void Session::prepare_rays() {
+  if (!costs_.empty()) return;
+  const Stopwatch watch;
+  bring_rays();
+  costs_.push_back(watch.cost("rays"));
+}
+
+Image Session::first_light(Monitor* monitor) {
+  prepare_rays();
+  return opaline::first_light({scene_, *world_, *rays_, plan_, monitor});
+}
+
 void Session::prepare(Monitor* monitor) {
   if (prepared_) return;
-  costs_.clear();
+  prepare_rays();
   const auto timed = [&](const char* stage, const auto& work) {
     const Stopwatch watch;
     work();
     costs_.push_back(watch.cost(stage));
   };
-  timed("rays", [&] { bring_rays(); });
   prepared_ = !is_needed();
   if (prepared_) return;
   parts_ = arranged_parts();
@@ -123,9 +134,9 @@ void Session::prepare(Monitor* monitor) {
   prepared_ = true;
 }
 
-RenderResult Session::render(Monitor* monitor) {
+RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
   prepare(monitor);
-  RenderResult result = opaline::render({scene_, *world_, *rays_, groups_, monitor});
+  RenderResult result = opaline::render({scene_, *world_, *rays_, groups_, monitor, after_tile});
   work_.queries += result.queries;
   return result;
 }

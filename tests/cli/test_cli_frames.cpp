@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "opaline/image/image.h"
 #include "run_program.h"
@@ -173,6 +174,33 @@ TEST(CliFrames, Scripts) {
   EXPECT_TRUE(shot.pictures("slurm") == shot.pictures("one"));
   EXPECT_NE(run_script("", "frames.sbatch", words("slurm")), 0);
   EXPECT_NE(run_script("", "frames-parallel", ""), 0);
+}
+
+std::set<std::string> names_in(const std::string& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+// Claim: the options of frames-parallel that change the scene reach the process that fills the cache, too: it
+// holds what one process keeps with them, and nothing else. Source: the script. Fails if: precompute is
+// started without them.
+TEST(CliFrames, ScriptPassesOptionsOn) {
+  const Shot shot;
+  ASSERT_EQ(shot.render("1-2", "one",
+                        {"--cache", shot.file("one-cache"), "--seed", "3", "--set", "settings.samples=700",
+                         "--set=media.marble.eta=1.4"})
+                .exit_code,
+            0);
+  ASSERT_EQ(run_script("", "frames-parallel",
+                       "1 1-2 " + shot.scene + ' ' + shot.file("parallel.####.exr") + ' ' +
+                           shot.file("parallel-cache") +
+                           " --seed 3 --set settings.samples=700 --set=media.marble.eta=1.4"),
+            0);
+  EXPECT_EQ(names_in(shot.file("parallel-cache")), names_in(shot.file("one-cache")));
+  for (const int frame : {1, 2})
+    EXPECT_TRUE(bytes_of(shot.picture(frame, "parallel")) == bytes_of(shot.picture(frame, "one"))) << frame;
 }
 
 }  // namespace

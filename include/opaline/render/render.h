@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "opaline/core/monitor.h"
@@ -11,29 +12,43 @@
 
 namespace opaline {
 
+/// Pixels [x0, x1) x [y0, y1) of the whole picture.
+struct Rectangle {
+  int x0, y0, x1, y1;
+};
+
+/// What the film's crop leaves, or all of it.
+Rectangle rendered_part(const Film& film);
+
+/// Told of pixels of the picture under way that are as they will be; from several threads, the others' pixels
+/// may be written meanwhile.
+using AfterTile = std::function<void(const Image& image, const Rectangle& done)>;
+
 struct RenderInput {
   const Scene& scene;
   const World& world;
   const RayScene& rays;
   std::span<const TranslucentGroup> groups = {};  ///< of the precompute; not needed by Method::lambert
   Monitor* monitor = nullptr;
+  AfterTile after_tile = {};
 };
 
 struct RenderResult {
-  Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2 sr)
+  Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2
+                ///< sr)
   std::size_t queries = 0;     ///< points at which exitance was evaluated
   std::size_t non_finite = 0;  ///< pixels whose radiance is not finite; 0 unless something is broken
 };
 
 /// Radiance seen by the camera.
 /// `hierarchical`: translucent surfaces send out M_o Ft(omega_o) / (pi (1 - F_bar)) with M_o from the trees;
-/// `lambert`: the same with M_o = total diffuse reflectance x E at the point itself, the limit of a vanishing mean
-/// free path and the floor of all costs. Both add the mirror image of area lights and surroundings, weight F.
-/// Opaque surfaces are Lambertian and lit directly. Light does not bounce between objects.
+/// `lambert`: the same with M_o = total diffuse reflectance x E at the point itself, the limit of a vanishing
+/// mean free path and the floor of all costs. Both add the mirror image of area lights and surroundings,
+/// weight F. Opaque surfaces are Lambertian and lit directly. Light does not bounce between objects.
 RenderResult render(const RenderInput& input);
 
-/// Mean over the lit pixels of what the `error` layer expects of |error| / max(diffuse, 1e-3 of its p99), the worst
-/// channel; 0 without that layer. Within a factor 3 of the measured mean (test_error_estimate).
+/// Mean over the lit pixels of what the `error` layer expects of |error| / max(diffuse, 1e-3 of its p99), the
+/// worst channel; 0 without that layer. Within a factor 3 of the measured mean (test_error_estimate).
 double estimated_relative_error(const Image& image);
 
 }  // namespace opaline

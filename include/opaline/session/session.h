@@ -11,6 +11,7 @@
 
 #include "opaline/cache/stage_cache.h"
 #include "opaline/cache/stage_keys.h"
+#include "opaline/render/first_light.h"
 #include "opaline/render/render.h"
 
 namespace opaline {
@@ -69,12 +70,18 @@ class Session {
   /// `automatic` a surface cache is made if it pays for all of them.
   void expect_pictures(std::size_t pictures) { pictures_ = pictures; }
 
+  /// The ray structure alone, which prepare has made otherwise.
+  void prepare_rays();
+
+  /// A coarse picture (first_light.h) of the scene, which needs nothing of prepare but the rays.
+  Image first_light(Monitor* monitor = nullptr);
+
   /// Computes what the scene needs for its method and is not there; a second call does nothing.
   /// error Error{interrupted}: what was complete stays
   void prepare(Monitor* monitor = nullptr);
 
   /// The picture of the scene; prepares it first.
-  RenderResult render(Monitor* monitor = nullptr);
+  RenderResult render(Monitor* monitor = nullptr, const AfterTile& after_tile = {});
 
   const Scene& scene() const { return scene_; }
   const World& world() const { return *world_; }

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options that several commands have.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/option_values.h"
+
+namespace opaline {
+
+/// CLI11 would take everything after `-o a.exr` for more outputs: one value an option, as often as wanted.
+template <class T>
+CLI::Option* add_repeatable(CLI::App& app, const std::string& names, std::vector<T>& values,
+                            const std::string& help) {
+  return app.add_option(names, values, help)->allow_extra_args(false);
+}
+
+inline CLI::Option* add_size(CLI::App& app, const std::string& name, std::uint64_t& bytes,
+                             const std::string& help) {
+  return app.add_option(name, bytes, help)
+      ->transform(CLI::AsSizeValue(true).description(""))
+      ->type_name("SIZE");
+}
+
+inline void add_threads(CLI::App& app, int& threads, const std::string& help) {
+  app.add_option("--threads", threads, help)->transform(whole_number(kThreads))->type_name("N");
+}
+
+}  // namespace opaline

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The files that a rendering leaves.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "opaline/image/image.h"
+#include "opaline/session/session.h"
+
+namespace opaline {
+
+/// What cannot be written at the end is said before the work.
+/// error Error{run_failed} naming the file
+void check_writable(const RenderArguments& arguments);
+
+/// EXR or PNG, as the name ends.
+/// error as write_exr
+WriteReport write_picture(const std::string& path, const Image& image, const Film& film);
+
+/// Writes everything that was asked for; returns the names.
+/// error as write_exr
+std::vector<std::string> write_outputs(const RenderArguments& arguments, const Session& session,
+                                       const Image& image);
+
+}  // namespace opaline
