@@ -11,10 +11,12 @@
 namespace opaline {
 namespace {
 
-void precompute_frame(const PrecomputeArguments& arguments, Session& session, StageCache& cache, int frame) {
+void precompute_frame(const PrecomputeArguments& arguments, Session& session, StageCache& cache,
+                      std::optional<int> frame) {
   StageRunner stages(arguments.log);
   stages.run("loading", [&] {
-    Scene scene = load_scene(arguments.scene, arguments.overrides, frame);
+    Scene scene = load_scene(arguments.scene, arguments.overrides, frame.value_or(1));
+    if (frame) session.expect_pictures(scene.camera_frames);
     scene.settings.method = Method::hierarchical;  // what else is there to prepare
     session.edit(std::move(scene));
     return 0;
@@ -32,7 +34,7 @@ void precompute_command(const PrecomputeArguments& arguments) {
     threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
   StageCache cache(arguments.cache, arguments.cache_bytes);
   Session session(&cache);
-  if (arguments.frames.empty()) return precompute_frame(arguments, session, cache, 1);
+  if (arguments.frames.empty()) return precompute_frame(arguments, session, cache, {});
   anchor_session(session, arguments.scene, arguments.overrides);
   for_frames(arguments.log, arguments.frames,
              [&](int frame) { precompute_frame(arguments, session, cache, frame); });

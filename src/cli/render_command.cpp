@@ -129,6 +129,7 @@ void render_scene(const RenderArguments& arguments, Session& session, const Shar
     std::string bytes_hash = frame ? frame_hash(arguments.scene, arguments.overrides, scene)
                                    : scene_hash(arguments.scene, arguments.overrides, scene);
     is_there = frame && is_rendered(arguments, bytes_hash, *frame);
+    if (frame) session.expect_pictures(scene.camera_frames);
     if (!is_there) session.edit(std::move(scene));
     return bytes_hash;
   });

@@ -12,7 +12,8 @@
 namespace opaline {
 namespace {
 
-constexpr double kWidth = 880, kHeight = 460, kLeft = 64, kRight = 20, kTop = 18, kBottom = 52;
+constexpr double kWidth = 880, kHeight = 460, kLeft = 64, kRight = 20, kTop = 18, kBottom = 52,
+                 kLegendRow = 22;
 
 /// A logarithmic scale on the page.
 struct Axis {
@@ -161,21 +162,49 @@ std::string legend(const Chart& chart) {
   return html + "<li class=\"front-key\"><span></span>Pareto front</li>\n</ul>\n";
 }
 
+std::string drawing(const Chart& chart) {
+  std::vector<TradePoint> front;
+  for (const std::size_t i : chart.front) front.push_back(chart.points[i]);
+  std::string svg = grid(chart) + polyline("front-line", chart, front);
+  for (std::size_t s = 0; s < chart.scene.series.size(); ++s)
+    svg += polyline(fmt::format("series-line series-{}", s), chart, chart.scene.series[s].points);
+  return svg + marks(chart);
+}
+
+/// Two columns below the drawing.
+std::string drawn_legend(const Chart& chart) {
+  std::string svg;
+  for (std::size_t s = 0; s < chart.scene.series.size(); ++s) {
+    const double x = kLeft + double(s % 2) * (kWidth - kLeft) / 2,
+                 y = kHeight + kLegendRow * (double(s / 2) + .5);
+    svg += fmt::format("<g class=\"series-{}\">{}</g>\n", s, mark(s, x, y - 5)) +
+           text("key", x + 14, y, chart.scene.series[s].name);
+  }
+  return svg;
+}
+
 }  // namespace
+
+std::string chart_svg(const PageScene& scene) {
+  const Chart chart = layout(scene);
+  const double height = kHeight + kLegendRow * double((scene.series.size() + 1) / 2);
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"chart\" width=\"{0}\" height=\"{1}\" "
+      "viewBox=\"0 0 {0} {1}\">\n<title>{2}: error against CPU time, with the Pareto "
+      "front</title>\n<style>{3}\n"
+      "svg {{ background: var(--paper); font-family: system-ui, \"DejaVu Sans\", sans-serif; "
+      "}}</style>\n{4}{5}"
+      "</svg>\n",
+      kWidth, height, escaped(scene.subject->title), kPageStyle, drawing(chart), drawn_legend(chart));
+}
 
 std::string chart_html(const PageScene& scene) {
   if (scene.series.empty()) return "<p>No setting has an error.</p>\n";
   const Chart chart = layout(scene);
-  std::vector<TradePoint> front;
-  for (const std::size_t i : chart.front) front.push_back(chart.points[i]);
-  std::string svg = fmt::format(
+  const std::string svg = fmt::format(
       "<svg class=\"chart\" viewBox=\"0 0 {} {}\" role=\"group\" "
-      "aria-label=\"Error against CPU time\">\n",
-      kWidth, kHeight);
-  svg += grid(chart) + polyline("front-line", chart, front);
-  for (std::size_t s = 0; s < scene.series.size(); ++s)
-    svg += polyline(fmt::format("series-line series-{}", s), chart, scene.series[s].points);
-  svg += marks(chart) + "</svg>\n";
+      "aria-label=\"Error against CPU time\">\n{}</svg>\n",
+      kWidth, kHeight, drawing(chart));
   return "<figure class=\"trade\">\n" + svg +
          "<p class=\"readout\" role=\"status\">Point at a mark, or step through them with Tab; Enter shows "
          "its "

@@ -40,6 +40,8 @@ std::string measured_cell(const CsvTable& table, std::size_t row, const std::str
 /// Class of a rung's colour and mark: "series-2", or "series-none".
 std::string series_class(const PageScene& scene, std::size_t row);
 
+/// A drawing of its own, for a README.
+std::string chart_svg(const PageScene& scene);
 std::string chart_html(const PageScene& scene);
 std::string viewer_html(const PageScene& scene);
 std::string trade_tables_html(const PageScene& scene);

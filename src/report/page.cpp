@@ -138,6 +138,16 @@ std::string viewer_html(const PageScene& scene) {
       error_gradient());
 }
 
+std::vector<std::string> to_charts(const BenchReport& report) {
+  std::vector<std::string> charts;
+  for (const BenchSubject& subject : report.subjects) {
+    const PageScene scene{&report, nullptr, &subject, charts.size(),
+                          trade_series(report.rows, subject.scene)};
+    charts.push_back(scene.series.empty() ? "" : chart_svg(scene));
+  }
+  return charts;
+}
+
 std::string to_page(const BenchReport& report) {
   const CsvTable table = bench_table(report);
   std::string body, titles;

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
+
+#include "opaline/scene/load_scene.h"
 
 namespace opaline {
 namespace {
@@ -120,7 +123,36 @@ void resolve(const Document& document, Node& node) {
   for (Node& child : node.children) resolve(document, child);
 }
 
+bool changes(const Node& node) {
+  const bool is_keyed = node.kind == Node::Kind::object && find_member(node, "keyed") != nullptr;
+  const bool is_file_a_frame =
+      node.kind == Node::Kind::string && with_frame(node.text, 1) != with_frame(node.text, 2);
+  return is_keyed || is_file_a_frame || std::ranges::any_of(node.children, changes);
+}
+
+void collect_keys(const Node& node, std::set<int>& keys) {
+  if (node.kind == Node::Kind::object)
+    if (const Node* keyed = find_member(node, "keyed"))
+      for (const Node& value : keyed->children) {
+        int key = 0;
+        const char* end = value.key.data() + value.key.size();
+        if (std::from_chars(value.key.data(), end, key).ptr == end) keys.insert(key);
+      }
+  for (const Node& child : node.children) collect_keys(child, keys);
+}
+
 }  // namespace
+
+std::size_t count_camera_frames(const Document& document) {
+  std::set<int> keys;
+  for (const Node& part : document.root.children) {
+    if (part.key == "camera" || part.key == "film")
+      collect_keys(part, keys);
+    else if (part.key == "media" ? std::ranges::any_of(part.children, changes) : changes(part))
+      return 1;
+  }
+  return keys.empty() ? 1 : std::size_t(std::int64_t(*keys.rbegin()) - *keys.begin()) + 1;
+}
 
 void resolve_keyed_values(Document& document) {
   for (Node& part : document.root.children)

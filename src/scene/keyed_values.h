@@ -13,4 +13,7 @@ namespace opaline {
 /// error Error{bad_input} at the value: no keys, a key that is no frame, values that cannot be blended
 void resolve_keyed_values(Document& document);
 
+/// Scene::camera_frames of a tree that is not resolved yet.
+std::size_t count_camera_frames(const Document& document);
+
 }  // namespace opaline

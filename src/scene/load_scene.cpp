@@ -102,11 +102,15 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
     throw bad_file(file, "the scene file is empty", "a JSON object {...}");
   Document document{file, text, {overrides.begin(), overrides.end()}, {}, frame};
   document.root = parse_tree(document, text);
+  std::size_t camera_frames = 1;
   if (document.root.kind == Node::Kind::object) {
     apply_overrides(document);
+    camera_frames = count_camera_frames(document);
     resolve_keyed_values(document);
   }
-  return read_scene(document);
+  Scene scene = read_scene(document);
+  scene.camera_frames = camera_frames;
+  return scene;
 }
 
 }  // namespace opaline

@@ -100,6 +100,32 @@ TEST(CliFrames, AnyProcessAnyOrder) {
     EXPECT_TRUE(line.ends_with("from the cache") || line.ends_with("kept")) << line;
 }
 
+// Claim: where only the camera moves the exitance of the surface is evaluated once, in whichever frame comes
+// first, and a frame's bytes do not depend on which others its process renders, nor on a cache that
+// `precompute` filled. Source: Scene::camera_frames. Fails if: the number of frames asked for decides.
+TEST(CliFrames, CameraAlone) {
+  const Shot shot;
+  const std::vector<std::string> still{
+      "--set", "lights.key.position=[20, 30, 40]",
+      "--set", "shapes.blob.file=blob.01.obj",
+      "--set", R"(camera.position={"keyed": {"1": [0, 0, 50], "96": [50, 0, 0]}})"};
+  const Outcome all = shot.render("1-6", "all", still);
+  ASSERT_EQ(all.exit_code, 0) << all.out;
+  const std::vector<std::string> decisions = decisions_of(all);
+  EXPECT_EQ(std::ranges::count_if(decisions, [](auto& d) { return d.ends_with("surface evaluated"); }), 1);
+  EXPECT_EQ(std::ranges::count_if(decisions, [](auto& d) { return d.ends_with("surface kept"); }), 5);
+  std::vector<std::string> fill{"precompute", shot.scene, "--cache", shot.file("cache"),
+                                "--frames",   "2",        "--quiet"};
+  fill.insert(fill.end(), still.begin(), still.end());
+  ASSERT_EQ(run_program(fill).exit_code, 0);
+  std::vector<std::string> cached = still;
+  cached.insert(cached.end(), {"--cache", shot.file("cache")});
+  for (const char* frame : {"4", "1", "6", "2,3", "5"})
+    for (const std::string& line : decisions_of(shot.render(frame, "each", cached)))
+      EXPECT_TRUE(line.ends_with("from the cache") || line.ends_with("kept")) << line;
+  EXPECT_TRUE(shot.pictures("each") == shot.pictures("all"));
+}
+
 // Claim: frames that are there are left alone, those that something else made are not: another scene value,
 // another mesh, another frame's picture, half a file. Source: frames.h. Fails if: existence is enough.
 TEST(CliFrames, Resumes) {

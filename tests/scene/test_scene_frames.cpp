@@ -50,6 +50,30 @@ TEST(SceneFrames, AnyNumbers) {
   EXPECT_EQ(std::get<PointLight>(scene.lights[0].source).intensity, Rgb(2, 2, 2));
 }
 
+// Claim: where only the camera and the film have keys their range is known as that of one light; a key or a
+// file by frame elsewhere ends that, a medium called keyed does not. Source: Scene::camera_frames. Fails if:
+// keys of shapes, media or file names are overlooked.
+TEST(SceneFrames, OfACameraAlone) {
+  const auto frames = [](const std::vector<std::string>& sets) {
+    return parse_scene(R"({
+      "media": {"keyed": {"preset": "marble"}},
+      "shapes": [{"name": "ball", "sphere": {"radius": 1}, "medium": "keyed"}],
+      "lights": [{"type": "point", "name": "p", "position": [0, 0, 5], "intensity": 1}]})",
+                       "test.json", sets, 2)
+        .camera_frames;
+  };
+  const std::string camera = "camera.position={\"keyed\": {\"3\": [0, 0, 9], \"26\": [9, 0, 9]}}",
+                    film = "film.exposure={\"keyed\": {\"1\": 0, \"5\": 2}}",
+                    light = "lights.p.intensity={\"keyed\": {\"1\": 1, \"5\": 5}}",
+                    medium =
+                        "media.keyed={\"sigma_a\": {\"keyed\": {\"1\": 0, \"3\": 2}}, \"sigma_s_prime\": 1}",
+                    mesh = "shapes.ball={\"name\": \"ball\", \"file\": \"ball.##.obj\"}";
+  EXPECT_EQ(frames({}), 1u);
+  EXPECT_EQ(frames({camera}), 24u);
+  EXPECT_EQ(frames({camera, film}), 26u);
+  for (const std::string& other : {light, medium, mesh}) EXPECT_EQ(frames({camera, other}), 1u) << other;
+}
+
 // Claim: what is wrong with keyed values is said at its place. Source: the design of messages. Fails if: a
 // key is taken for 0.
 TEST(SceneFrames, Mistakes) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "opaline/report/bench_row.h"
 
@@ -15,5 +16,9 @@ std::string error_picture_of(const std::string& exr);
 /// HTML for the folder of the report: it needs the pictures there, and no network. Every number of a measured
 /// row carries its place in the CSV: data-row (from 0) and data-column; its title is the CSV's text.
 std::string to_page(const BenchReport& report);
+
+/// The charts of the page as SVG files of their own, one a scene of the report; empty where nothing has an
+/// error.
+std::vector<std::string> to_charts(const BenchReport& report);
 
 }  // namespace opaline

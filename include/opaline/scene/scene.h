@@ -179,8 +179,8 @@ struct Settings {
   EvaluatorKind evaluator = EvaluatorKind::automatic;
   double tolerance = 0.005;  ///< dual_tree, surface_cache: p99 of the relative error against the exact sum
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
-  double max_solid_angle = 0.05;         ///< classic: open a node when area / distance^2 exceeds it, sr
-  bool near_field = true;                ///< split the kernel near the shading point
+  double max_solid_angle = 0.05;  ///< classic: open a node when area / distance^2 exceeds it, sr
+  bool near_field = true;         ///< split the kernel near the shading point
   NearIrradiance near_irradiance = NearIrradiance::mixed;
   std::optional<double> sample_spacing;  ///< sqrt(area / samples), mm; none: from the mean free path
   std::optional<std::size_t> samples;    ///< per group; none: from the spacing
@@ -201,6 +201,9 @@ struct Scene {
   Camera camera;
   Film film;
   Settings settings;
+  /// Frames from the first key of the camera or film to the last where nothing else changes from frame to
+  /// frame: pictures of the same surfaces in the same light; else 1.
+  std::size_t camera_frames = 1;
 };
 
 }  // namespace opaline
