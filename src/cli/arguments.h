@@ -25,6 +25,8 @@ struct RenderArguments {
   std::vector<int> frames;  ///< empty: one picture; else outputs have a place for the frame's number
   int threads = 0;          ///< 0: one for each core
   bool timings_in_metadata = false;
+  std::optional<double> target_error;  ///< settings are chosen for it; relative, > 0
+  bool verify = false;                 ///< measure the error of the picture
   Log log;
 };
 

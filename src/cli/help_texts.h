@@ -25,7 +25,12 @@ inline constexpr const char* kRenderNotes = R"(Every option that changes the pic
   --crop 0,0,16,16   --set film.crop=[0,0,16,16]
   --method, --evaluator, --seed, --entry-samples, --until-error: --set settings.<name>=...
   --exposure: --set film.exposure=...
-They are applied first, then each --set in its order: the last one wins.)";
+They are applied first, then each --set in its order: the last one wins.
+
+--target-error is the mean relative error of the diffuse light over the translucent pixels, of the worst channel,
+against the converged --method direct. What the diffusion model itself is off by is not in it, nor what --spp
+does to edges: that stays yours. Small pictures with more and more samples tell what is needed. --verify
+measures what came of it, at a cost that grows with the square of the accuracy.)";
 
 inline constexpr const char* kCompareNotes =
     R"(Figures are of the relative error (a - b) / max(|b|, floor), floor being 1e-3 of the p99 of |b|, over the

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/frames.h"
 #include "cli/metadata.h"
+#include "cli/quality.h"
 #include "cli/report.h"
 #include "cli/stages.h"
 #include "opaline/core/atomic_file.h"
@@ -167,6 +168,7 @@ void render_scene(const RenderArguments& arguments, Session& session, const Stag
   if (!arguments.resume.empty() && scene.settings.method != Method::direct)
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct");
   check_precompute(arguments, scene, session.plan());
+  KnownErrors errors{arguments.target_error, choose_settings(stages, arguments, session), {}};
   print_plan(arguments.log, scene, session.plan());
 
   stages.run_unmeasured("rays", [&] { session.prepare(&stages.monitor()); });
@@ -178,12 +180,17 @@ void render_scene(const RenderArguments& arguments, Session& session, const Stag
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
+  errors.measured = verify_picture(stages, arguments, session,
+                           errors.chosen ? errors.chosen->predicted : estimated_relative_error(image));
   image.metadata = make_metadata(arguments, hash, scene, session.groups(), frame);
+  if (errors.target || errors.measured)
+    image.metadata.emplace_back("opaline:error", compact(errors_json(errors)));
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
 
   auto outputs = stages.run("writing", [&] { return write_outputs(arguments, session, image); });
   Summary summary = summarize(session, shading);
   summary.costs = stages.costs();
+  summary.errors = errors;
   summary.outputs = std::move(outputs);
   print_summary(arguments.log, summary);
 }
