@@ -16,7 +16,8 @@ struct CalibrationRow {
   ProfileKind profile = ProfileKind::dipole;
   double target = 0, predicted = 0, measured = 0;
   std::size_t samples = 0;
-  bool fewest = false;                        ///< the cheapest rung: there is nothing less to choose
+  bool fewest = false;                  ///< the cheapest rung: there is nothing less to choose
+  double direct = 0, direct_error = 0;  ///< measured against `direct`, and its standard error; 0: not done
   double choosing_seconds = 0, seconds = 0;  ///< CPU of the choice, and with the picture
 
   bool is_kept() const { return measured <= target; }

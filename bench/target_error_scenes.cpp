@@ -66,8 +66,8 @@ Vec3d vase(double u, double v) {
                wall = .07 * std::min(1., 8 * (1 - height));
   const double radius = inside ? std::max(0., outer - wall) : outer;
   const double y = 2 * (inside ? .06 + .94 * height : height);
-  return {u == 0 || u == 1 ? 0 : radius * std::sin(-v * kTurn), y,
-          u == 0 || u == 1 ? 0 : radius * std::cos(-v * kTurn)};
+  return {u == 0 || u == 1 ? 0 : radius * std::sin(v * kTurn), y,
+          u == 0 || u == 1 ? 0 : radius * std::cos(v * kTurn)};
 }
 
 Medium preset(const std::string& name) {
@@ -97,9 +97,15 @@ Scene view(std::vector<Shape> shapes, std::vector<Medium> media, std::vector<Lig
   return scene;
 }
 
-Light point(const Vec3d& position, double intensity) { return {"point", PointLight{position, Rgb(intensity)}}; }
-Light sun(const Vec3d& direction) { return {"sun", DirectionalLight{normalized(direction), Rgb(1)}}; }
-Light sky(double radiance) { return {"sky", Surroundings{Rgb(radiance)}}; }
+Light point(const Vec3d& position, double intensity) {
+  return {"point", PointLight{position, Rgb(intensity)}};
+}
+Light sun(const Vec3d& direction) {
+  return {"sun", DirectionalLight{normalized(direction), Rgb(1)}};
+}
+Light sky(double radiance) {
+  return {"sky", Surroundings{Rgb(radiance)}};
+}
 Light panel(const Vec3d& corner, const Vec3d& u, const Vec3d& v) {
   return {"panel", QuadLight{corner, u, v, Rgb(1)}};
 }
@@ -121,17 +127,15 @@ std::vector<NamedScene> calibration_scenes(const std::string& folder) {
   blocker.reflectance = {};
   const Medium wax{"wax", ArtistMedium{{.85, .6, .3}, {2.4, 1.2, .5}, 0}, 1.4, ProfileKind::dipole};
   return {
-      {"torus, skin2, two points",
-       view({shape("torus", TorusShape{{}, 10, 4})}, {preset("skin2")},
-            {point({40, 30, 20}, 1e3), point({-30, 20, -40}, 2e3)}, 14)},
+      {"torus, skin2, two points", view({shape("torus", TorusShape{{}, 10, 4})}, {preset("skin2")},
+                                        {point({40, 30, 20}, 1e3), point({-30, 20, -40}, 2e3)}, 14)},
       {"box, cream, sun",
        view({shape("box", BoxShape{{-8, -8, -8}, {8, 8, 8}})}, {preset("cream")}, {sun({-1, -2, -1.5})}, 13)},
-      {"vase, wholemilk, panel and sky",
-       view({mesh("vase", 80)}, {preset("wholemilk")}, {panel({-60, 60, 60}, {0, 0, -40}, {40, 0, 0}), sky(.1)},
-            40)},
+      {"vase, wholemilk, panel and sky", view({mesh("vase", 80)}, {preset("wholemilk")},
+                                              {panel({-60, 60, 60}, {0, 0, -40}, {40, 0, 0}), sky(.1)}, 40)},
       {"knot, ketchup, point", view({mesh("knot", 60)}, {preset("ketchup")}, {point({30, 80, 40}, 1e4)}, 30)},
-      {"asteroid, potato, ball lamp",
-       view({mesh("asteroid", 30)}, {preset("potato")}, {{"lamp", SphereLight{{30, 30, 20}, 6, Rgb(1)}}}, 17)},
+      {"asteroid, potato, ball lamp", view({mesh("asteroid", 30)}, {preset("potato")},
+                                           {{"lamp", SphereLight{{30, 30, 20}, 6, Rgb(1)}}}, 17)},
       {"slab, apple, lit from behind",
        view({shape("slab", SlabShape{{}, 30, 30, 4})}, {preset("apple")}, {sun({.3, 1, .2})}, 20)},
       {"asteroid, chicken1, sun and sky",
@@ -142,7 +146,8 @@ std::vector<NamedScene> calibration_scenes(const std::string& folder) {
        view({shape("large", SphereShape{{-8, 0, 0}, 10}, 0), shape("middle", SphereShape{{9, -4, 4}, 6}, 1),
              shape("small", SphereShape{{6, 6, 8}, 2}, 2)},
             {preset("chicken2"), preset("apple"), preset("cream")}, {sun({-1, -1.5, -1})}, 17)},
-      {"vase, spectralon, point", view({mesh("vase", 30)}, {preset("spectralon")}, {point({40, 60, 50}, 1e3)}, 15)},
+      {"vase, spectralon, point",
+       view({mesh("vase", 30)}, {preset("spectralon")}, {point({40, 60, 50}, 1e3)}, 15)},
       {"knot, wax, two points",
        view({mesh("knot", 90)}, {wax}, {point({90, 60, 60}, 1e3), point({-60, 30, -90}, 2e3)}, 45)},
       {"box behind an edge, potato, point",

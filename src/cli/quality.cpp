@@ -23,7 +23,7 @@ void check_quality(const RenderArguments& render) {
         throw bad_usage(fmt::format("--target-error chooses {} itself", key), "one of the two", text);
   if (!render.frames.empty())
     throw bad_usage("--target-error chooses for one picture, and frames would flicker",
-                      "a single picture first, then --frames with its settings.samples and tolerance");
+                    "a single picture first, then --frames with its settings.samples and tolerance");
 }
 
 std::optional<TargetError> choose_settings(StageRunner& stages, const RenderArguments& arguments,
@@ -31,14 +31,14 @@ std::optional<TargetError> choose_settings(StageRunner& stages, const RenderArgu
   const Settings& settings = session.scene().settings;
   const bool hierarchical = settings.method == Method::hierarchical;
   if (!hierarchical && (arguments.target_error || arguments.verify))
-    throw bad_usage(
-                arguments.target_error ? "--target-error chooses how light under the surface is summed"
-                                       : "--verify measures how light under the surface is summed",
-                "--method hierarchical; the noise of direct ends at --until-error", name_of(settings.method));
+    throw bad_usage(arguments.target_error ? "--target-error chooses how light under the surface is summed"
+                                           : "--verify measures how light under the surface is summed",
+                    "--method hierarchical; the noise of direct ends at --until-error",
+                    name_of(settings.method));
   if (!arguments.target_error) return {};
   if (settings.evaluator == EvaluatorKind::classic)
-    throw bad_usage("--target-error cannot tell the error of the classic traversal",
-                "another --evaluator", "classic");
+    throw bad_usage("--target-error cannot tell the error of the classic traversal", "another --evaluator",
+                    "classic");
   const TargetError chosen = stages.run("choosing", [&] {
     return reach_error(session, session.scene(), *arguments.target_error, &stages.monitor());
   });

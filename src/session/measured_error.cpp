@@ -38,7 +38,8 @@ MeasuredError measured(const std::vector<double>& errors, const std::vector<floa
   const ErrorStatistics statistics = error_statistics(errors);
   if (statistics.values < 2 || !(squares > 0)) return result;
   const auto n = double(statistics.values);
-  const double mean = (squares - noise) / n, of_mean = std::sqrt(std::max(0.0, terms / n - mean * mean) / (n - 1));
+  const double mean = (squares - noise) / n,
+               of_mean = std::sqrt(std::max(0.0, terms / n - mean * mean) / (n - 1));
   const double root = std::sqrt(std::max(0.0, mean)),
                of_root = mean > of_mean ? of_mean / (2 * root) : std::sqrt(of_mean);
   const double mean_over_root = statistics.mean / std::sqrt(statistics.mean_square);

@@ -8,6 +8,32 @@
 #include "opaline/image/metrics.h"
 
 namespace opaline {
+namespace {
+
+/// Sums over pixels of what a is off b by, and b off c.
+struct Differences {
+  double first = 0, second = 0, first_square = 0, product = 0, count = 0;
+
+  void add(double ab, double bc) {
+    first += std::abs(ab);
+    second += std::abs(bc);
+    first_square += ab * ab;
+    product += ab * bc;
+    count += 1;
+  }
+};
+
+double error_of(const Differences& d) {
+  const double t = std::exp2(error_slope(d.second, d.first)), step = (t - 1) * (t - 1);
+  // Pattern s and noise n of a, squared: first_square = s (t - 1)^2 + n (1 + t^2), product = s t (t - 1)^2 -
+  // n t^2.
+  const double pattern =
+      std::max(0.0, (t * t * d.first_square + (1 + t * t) * d.product) / (step * t * (1 + t + t * t)));
+  const double noise = std::max(0.0, (d.first_square - pattern * step) / (1 + t * t));
+  return std::sqrt((pattern + noise) / d.first_square) * d.first / d.count;
+}
+
+}  // namespace
 
 Scene probe_scene(const Scene& scene, double most_pixels) {
   Scene probe = scene;
@@ -60,16 +86,20 @@ double probe_error(const Image& a, const Image& b, const Image& c) {
                        from_c = relative_errors(extract_layer(c, "diffuse"), best, lit);
   double worst = 0;
   for (std::size_t k = 0; k < best.channels.size(); ++k) {
-    const ErrorStatistics difference = error_statistics(from_b.channels[k]);
-    if (!(difference.mean_square > 0)) continue;
-    double product = 0;
-    for (std::size_t i = 0; i < lit.size(); ++i)
-      if (lit[i]) product += from_b.channels[k][i] * from_c.channels[k][i];
-    product /= double(difference.values);
-    const double share = std::sqrt(std::max(0.0, product / difference.mean_square));
-    worst = std::max(worst, std::clamp(share, 0.5, 1.4) * difference.mean);
+    Differences sums;
+    for (std::size_t i = 0; i < lit.size(); ++i) {
+      const double ab = from_b.channels[k][i], bc = from_c.channels[k][i] - ab;
+      if (std::isfinite(bc)) sums.add(ab, bc);
+    }
+    if (sums.first_square > 0) worst = std::max(worst, error_of(sums));
   }
   return worst;
+}
+
+double error_slope(double before, double now) {
+  constexpr double kUsual = 0.8, kLeast = 0.5, kMost = 1.2;
+  if (!(before > 0) || !(now > 0)) return kUsual;
+  return std::clamp((kUsual + std::log2(before / now)) / 2, kLeast, kMost);
 }
 
 }  // namespace opaline

@@ -22,10 +22,14 @@ std::vector<std::uint8_t> translucent_pixels(const Image& picture);
 /// Mean relative difference of the diffuse light over b's translucent pixels, worst channel; 0 without such.
 double probe_difference(const Image& a, const Image& b);
 
-/// Mean relative error of a, worst channel, from how it differs from two pictures that are worse: the mean of
-/// (a - b)(a - c) is a's squared error where errors are independent. Where they all fall from one to the next
-/// but keep their pattern it is 1.2 times as much, if fourfold samples make a third of them.
-/// out   between half and 1.4 times the difference of a and b
+/// Mean relative error of a, worst channel, told from pictures with half and a quarter of its samples. A
+/// picture is off by a pattern that all share and that shrinks by 2^p from one to the next, and by noise of
+/// its own that does too: then the means of (a - b)^2 and (a - b)(b - c) tell the two apart, and |b - c| over
+/// |a - b| tells p.
 double probe_error(const Image& a, const Image& b, const Image& c);
+
+/// The power of the number of samples with which an error falls that was `before` at half of them: what two
+/// pictures say of it is half believed.
+double error_slope(double before, double now);
 
 }  // namespace opaline

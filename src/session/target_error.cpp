@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "opaline/irradiance/light_sampling.h"
 #include "session/probe.h"
@@ -10,11 +11,12 @@
 namespace opaline {
 namespace {
 
-constexpr double kProbePixels = 64 * 64, kMostProbePixels = 256 * 256, kEnoughPoints = 1000;
+// Errors may be in a few pixels alone, beside the edge of a shadow.
+constexpr double kProbePixels = 96 * 96, kMostProbePixels = 256 * 256, kEnoughPoints = 3000;
 // Single predictions are off by this factor.
 constexpr double kSafety = 1.25;
-// Error ~ samples^-slope.
-constexpr double kUsualSlope = 0.8, kLeastSlope = 0.4, kMostSlope = 1.2;
+// So far beyond the samples at hand an error is extrapolated.
+constexpr double kFarthest = 1.5;
 // p99 of the evaluator's error is its tolerance, and the mean about a tenth of that.
 constexpr double kTolerancePerTarget = 0.5, kLeastTolerance = 5e-4, kMostTolerance = 0.02;
 // Shadow rays double where their noise alone is more than this share of the target.
@@ -34,9 +36,7 @@ struct Search {
     session.edit(scene);
     session.prepare(monitor);
   }
-  Image picture() {
-    return probe_picture(session, probe_scene(scene, probe_pixels), ++pictures, monitor);
-  }
+  Image picture() { return probe_picture(session, probe_scene(scene, probe_pixels), ++pictures, monitor); }
   Image picture_of(double samples) {
     place(samples);
     return picture();
@@ -44,10 +44,10 @@ struct Search {
 };
 
 struct Step {
-  double samples = 0, error = 0, slope = kUsualSlope;
+  double samples = 0, error = 0, slope = 0;
 
   double error_of(double others) const { return error * std::pow(samples / others, slope); }
-  double samples_for(double wanted) const { return samples * std::pow(error / wanted, 1 / slope); }
+  double samples_of(double wanted) const { return samples * std::pow(error / wanted, 1 / slope); }
 };
 
 std::size_t points_of(const Image& picture) {
@@ -58,9 +58,10 @@ std::size_t points_of(const Image& picture) {
 /// The first picture, of as many pixels as it takes to see enough.
 Image first_picture(Search& search, double samples) {
   search.place(samples);
-  for (;; search.probe_pixels *= 4) {
+  for (;; search.probe_pixels *= 2) {
     Image picture = search.picture();
-    if (double(points_of(picture)) >= kEnoughPoints || search.probe_pixels >= kMostProbePixels) return picture;
+    if (double(points_of(picture)) >= kEnoughPoints || search.probe_pixels >= kMostProbePixels)
+      return picture;
   }
 }
 
@@ -72,24 +73,23 @@ void double_light_samples(Search& search, const Image& picture, double target) {
   if (noise > kMostNoise * target) rays = std::min(2 * rays, kMostLightSamples);
 }
 
-/// Doubles the samples until twice as many are enough or too many.
+/// Doubles the samples until about as many are enough, or more are too many.
 Step approach(Search& search, Image before, double samples, double target) {
-  Step step;
   const auto double_samples = [&] {
     samples = std::min(2 * samples, search.most_samples);
     return search.picture_of(samples);
   };
+  Step step;
   Image now = double_samples();
   for (double last = probe_difference(before, now);;) {
     Image next = double_samples();
-    step.samples = samples;
-    step.error = probe_error(next, now, before);
-    // What one pair of pictures says of the slope is half believed.
-    const double difference = probe_difference(now, next);
-    if (last > 0 && difference > 0)
-      step.slope = std::clamp((kUsualSlope + std::log2(last / difference)) / 2, kLeastSlope, kMostSlope);
+    const double difference = probe_difference(now, next), error = probe_error(next, now, before);
+    const Step previous = std::exchange(step, {samples, error, error_slope(last, difference)});
+    // Two estimates in a row are less by chance than one.
+    if (previous.error > 0) step.error = std::sqrt(error * previous.error_of(samples));
     last = difference;
-    if (step.samples_for(target / kSafety) <= 2 * samples || samples >= search.most_samples) return step;
+    if (step.samples_of(target / kSafety) <= kFarthest * samples || samples >= search.most_samples)
+      return step;
     double_light_samples(search, next, target);
     before = std::move(now);
     now = std::move(next);
@@ -110,43 +110,52 @@ double choose_evaluator(Search& search, double predicted, double target) {
   return predicted;
 }
 
-}  // namespace
+/// As few samples as the step promises the target for.
+double samples_for(const Search& search, const Step& step, double fewest, double target) {
+  const double samples = std::clamp(step.samples_of(target / kSafety), fewest,
+                                    std::min(kFarthest * step.samples, search.most_samples));
+  // Those that are placed already cost less than a few less.
+  return samples > 0.8 * step.samples ? std::max(samples, step.samples) : samples;
+}
 
-TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor) {
-  Search search{session, std::move(scene), monitor};
+/// Settings that the search itself needs; the area and the most samples of all groups.
+void begin(Search& search, double target) {
   Settings& settings = search.scene.settings;
-  const EvaluatorKind evaluator = settings.evaluator;
   settings.samples.reset();
   settings.tolerance = std::clamp(kTolerancePerTarget * target, kLeastTolerance, kMostTolerance);
-  if (evaluator == EvaluatorKind::automatic) settings.evaluator = EvaluatorKind::dual_tree;
-  session.edit(search.scene);
+  if (settings.evaluator == EvaluatorKind::automatic) settings.evaluator = EvaluatorKind::dual_tree;
+  search.session.edit(search.scene);
   double largest = 0;
-  for (const GroupPlan& group : session.plan().groups) {
+  for (const GroupPlan& group : search.session.plan().groups) {
     search.area += group.area;
     largest = std::max(largest, group.area);
   }
-  TargetError result;
-  result.sees_translucent = false;
-  if (!(largest > 0)) return result;
   // Rounded up, the largest group has as many as it may.
-  search.most_samples = (double(settings.max_samples) - 1e-6) * search.area / largest;
+  if (largest > 0) search.most_samples = (double(settings.max_samples) - 1e-6) * search.area / largest;
+}
+
+}  // namespace
+
+TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor) {
+  Search search{session, scene, monitor};
+  begin(search, target);
   const double fewest = std::min(kFewestTargetSamples, search.most_samples), start = fewest / 2;
-  Image first = first_picture(search, start);
-  result.sees_translucent = points_of(first) > 0;
-  if (result.sees_translucent) {
-    const Step step = approach(search, std::move(first), start, target);
-    double samples = std::clamp(step.samples_for(target / kSafety), fewest,
-                         std::min(2 * step.samples, search.most_samples));
-    // Those that are placed already cost less than others.
-    if (samples > 0.8 * step.samples && samples < step.samples) samples = step.samples;
-    result.predicted = step.error_of(samples);
-    result.reached = result.predicted <= target;
-    search.place(samples);
-    if (evaluator == EvaluatorKind::automatic)
-      result.predicted = choose_evaluator(search, result.predicted, target);
+  Image first;
+  if (fewest > 0) first = first_picture(search, start);
+  TargetError result;
+  result.sees_translucent = fewest > 0 && points_of(first) > 0;
+  if (!result.sees_translucent) {
+    session.edit(std::move(scene));
+    return result;
   }
+  const Step step = approach(search, std::move(first), start, target);
+  const double samples = samples_for(search, step, fewest, target);
+  result.predicted = step.error_of(samples);
+  result.reached = result.predicted <= target;
+  search.place(samples);
+  if (scene.settings.evaluator == EvaluatorKind::automatic)
+    result.predicted = choose_evaluator(search, result.predicted, target);
   for (const GroupPlan& group : session.plan().groups) result.samples += group.samples;
-  if (!result.sees_translucent) settings.evaluator = evaluator;
   session.edit(std::move(search.scene));
   return result;
 }

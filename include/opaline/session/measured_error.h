@@ -10,19 +10,18 @@ namespace opaline {
 
 /// Means of |error| / diffuse light over the points, of the worst channel, as TargetError.
 struct MeasuredError {
-  double error = 0;           ///< what the reference's own noise explains is taken out
-  double standard_error = 0;  ///< of it: the points are a few, the reference noisy
-  double noise = 0;           ///< of the reference, rms of its standard error
-  std::size_t points = 0;     ///< 0: nothing translucent is seen
+  double error = 0;               ///< what the reference's own noise explains is taken out
+  double standard_error = 0;      ///< of it: the points are a few, the reference noisy
+  double noise = 0;               ///< of the reference, rms of its standard error
+  std::size_t points = 0;         ///< 0: nothing translucent is seen
   std::size_t entry_samples = 0;  ///< of the reference, a point
 };
 
-/// Measures the samples, trees and surface caches of a prepared session at some 200 points of the picture against
-/// Method::direct there, which shares nothing with them but the mesh and the profile. Its noise becomes as large
-/// as the expected error (for a given time more points with more noise tell less, and so do fewer with less),
-/// unless that takes more than kMostVerifySamples.
-/// in    session: hierarchical, prepared; expected: relative, > 0
-/// error Error{interrupted}
+/// Measures the samples, trees and surface caches of a prepared session at some 200 points of the picture
+/// against Method::direct there, which shares nothing with them but the mesh and the profile. Its noise
+/// becomes as large as the expected error (for a given time more points with more noise tell less, and so do
+/// fewer with less), unless that takes more than kMostVerifySamples. in    session: hierarchical, prepared;
+/// expected: relative, > 0 error Error{interrupted}
 MeasuredError measure_error(const Session& session, double expected, Monitor* monitor = nullptr);
 
 inline constexpr std::size_t kMostVerifySamples = 1 << 17;

@@ -12,19 +12,20 @@ namespace opaline {
 /// relative error of the diffuse light, of the worst channel, against the converged diffusion of the scene:
 /// what Method::direct tends to. Edges of pixels and the diffusion model itself are not in it.
 struct TargetError {
-  double predicted = 0;         ///< error; 0 where nothing translucent is seen
-  std::size_t samples = 0;      ///< asked for, of all groups
-  bool reached = true;          ///< false: settings.max_samples is not enough
-  bool sees_translucent = true; ///< false: there is nothing to promise
+  double predicted = 0;          ///< error; 0 where nothing translucent is seen
+  std::size_t samples = 0;       ///< asked for, of all groups
+  bool reached = true;           ///< false: settings.max_samples is not enough
+  bool sees_translucent = true;  ///< false: there is nothing to promise
 };
 
-/// Edits the session to the scene with the spacing of samples, tolerance, evaluator and, where shadow rays are
-/// too few, light_samples that are expected to cost least for this error. Samples double until a small picture
-/// changes as little as the target allows; how fast it settles tells how many are enough. The evaluator is
-/// chosen only if the scene leaves it open. Bytes do not depend on the number of threads.
-/// in    scene: hierarchical, evaluator not classic (which has no tolerance); target: relative, > 0; samples,
+/// Edits the session to the scene with the spacing of samples, tolerance, evaluator and, where shadow rays
+/// are too few, light_samples that are expected to cost least for this error. Samples double until a small
+/// picture changes as little as the target allows; how fast it settles tells how many are enough. The
+/// evaluator is chosen only if the scene leaves it open. Bytes do not depend on the number of threads. in
+/// scene: hierarchical, evaluator not classic (which has no tolerance); target: relative, > 0; samples,
 ///       sample_spacing and tolerance of the scene are replaced
-/// error as Session::edit and Session::prepare. Measured errors are at most the target, and at least a third of
+/// error as Session::edit and Session::prepare. Measured errors are at most the target, and at least a third
+/// of
 ///       it unless kFewestTargetSamples do better, in 95 % of scenes (bench_target_error)
 TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);
 
