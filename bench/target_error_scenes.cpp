@@ -94,6 +94,7 @@ Scene view(std::vector<Shape> shapes, std::vector<Medium> media, std::vector<Lig
   scene.camera.look_at = {0, 0, 0};
   scene.camera.field_of_view = 28;
   scene.film.resolution = {128, 128};
+  scene.settings.seed = 1;
   return scene;
 }
 

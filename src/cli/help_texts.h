@@ -8,6 +8,7 @@ inline constexpr const char* kExamples = R"(Examples:
   opaline info bunny.json
   opaline render bunny.json -o bunny.exr -o bunny.png
   opaline render bunny.json -o draft.png --method lambert --resolution 256x256
+  opaline render bunny.json -o bunny.exr --target-error 1% --verify
   opaline render bunny.json -o warm.exr --set media.marble.eta=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
   opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
   opaline render bunny.json -o bunny.exr --log json --threads 4

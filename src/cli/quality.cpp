@@ -3,11 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/names.h"
 #include "opaline/core/error.h"
 
 namespace opaline {
 namespace {
+
+constexpr double kKnownShare = 0.4;
 
 Error bad_usage(const std::string& message, const std::string& expected, const std::string& got = {}) {
   return Error(ErrorKind::bad_input, {}, 0, 0, message, expected, got);
@@ -47,8 +51,12 @@ std::optional<TargetError> choose_settings(StageRunner& stages, const RenderArgu
 }
 
 std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArguments& arguments,
-                                            const Session& session, double expected) {
+                                            const Session& session, const std::optional<TargetError>& chosen,
+                                            const Image& picture) {
   if (!arguments.verify || session.groups().empty()) return {};
+  // An error far below the target need not be known to its last digit.
+  const double expected = chosen ? std::max(chosen->predicted, kKnownShare * *arguments.target_error)
+                                 : estimated_relative_error(picture);
   return stages.run("verifying", [&] { return measure_error(session, expected, &stages.monitor()); });
 }
 

@@ -19,8 +19,8 @@ std::optional<TargetError> choose_settings(StageRunner& stages, const RenderArgu
                                            Session& session);
 
 /// With --verify: the error of what the session has rendered.
-/// in    expected: relative error
 std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArguments& arguments,
-                                            const Session& session, double expected);
+                                            const Session& session, const std::optional<TargetError>& chosen,
+                                            const Image& picture);
 
 }  // namespace opaline

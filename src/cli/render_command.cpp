@@ -180,8 +180,7 @@ void render_scene(const RenderArguments& arguments, Session& session, const Stag
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
-  errors.measured = verify_picture(stages, arguments, session,
-                           errors.chosen ? errors.chosen->predicted : estimated_relative_error(image));
+  errors.measured = verify_picture(stages, arguments, session, errors.chosen, image);
   image.metadata = make_metadata(arguments, hash, scene, session.groups(), frame);
   if (errors.target || errors.measured)
     image.metadata.emplace_back("opaline:error", compact(errors_json(errors)));

@@ -24,6 +24,6 @@ struct MeasuredError {
 /// expected: relative, > 0 error Error{interrupted}
 MeasuredError measure_error(const Session& session, double expected, Monitor* monitor = nullptr);
 
-inline constexpr std::size_t kMostVerifySamples = 1 << 17;
+inline constexpr std::size_t kMostVerifySamples = 1 << 15;
 
 }  // namespace opaline
