@@ -13,8 +13,8 @@ namespace opaline {
 /// error Error{bad_input}: --target-error beside settings that it chooses, or beside --frames
 void check_quality(const RenderArguments& arguments);
 
-/// Chooses the settings for --target-error, if that is asked for, and prints them; the session holds the
-/// scene. error Error{bad_input}: another method than hierarchical, also with --verify; a classic evaluator
+/// Chooses the settings for --target-error, if that is asked for, and prints them; the session has the scene.
+/// error Error{bad_input}: another method than hierarchical, also with --verify; a classic evaluator
 std::optional<TargetError> choose_settings(StageRunner& stages, const RenderArguments& arguments,
                                            Session& session);
 

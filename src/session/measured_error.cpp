@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kPoints = 200, kCountingPixels = 48 * 48, kMostPixels = 256 * 256;
 constexpr std::size_t kFirstSamples = 512;
+// Of the reference, over the expected error.
+constexpr double kNoise = 0.7;
 
 /// As many pixels as it takes to see the points wanted.
 Scene sparse_scene(const Session& session, Monitor* monitor) {
@@ -22,43 +24,36 @@ Scene sparse_scene(const Session& session, Monitor* monitor) {
   return probe_scene(session.scene(), share > 0 ? std::min(kMostPixels, kPoints / share) : 1);
 }
 
-/// One channel: with a reference whose noise is independent of the error, squares of both add up.
-MeasuredError measured(const std::vector<double>& errors, const std::vector<float>& reference,
+/// One channel: noise that is independent of the error adds its square at each point. Relative to the
+/// picture, which has no noise to speak of: dividing by the reference would raise what it has too little of.
+MeasuredError measured(const std::vector<double>& errors, const std::vector<float>& picture,
                        const std::vector<float>& variance, double floor) {
-  MeasuredError result;
-  double squares = 0, noise = 0, terms = 0;
+  std::vector<double> without;
+  double noise = 0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (std::isnan(errors[i])) continue;
-    const double scale = std::max(double(reference[i]), floor), square = errors[i] * errors[i],
+    const double scale = std::max(double(picture[i]), floor),
                  own_noise = double(variance[i]) / (scale * scale);
-    squares += square;
+    without.push_back(std::sqrt(std::max(0.0, errors[i] * errors[i] - own_noise)));
     noise += own_noise;
-    terms += (square - own_noise) * (square - own_noise);
   }
-  const ErrorStatistics statistics = error_statistics(errors);
-  if (statistics.values < 2 || !(squares > 0)) return result;
+  const ErrorStatistics statistics = error_statistics(without);
+  if (statistics.values < 2) return {};
   const auto n = double(statistics.values);
-  const double mean = (squares - noise) / n,
-               of_mean = std::sqrt(std::max(0.0, terms / n - mean * mean) / (n - 1));
-  const double root = std::sqrt(std::max(0.0, mean)),
-               of_root = mean > of_mean ? of_mean / (2 * root) : std::sqrt(of_mean);
-  const double mean_over_root = statistics.mean / std::sqrt(statistics.mean_square);
-  result.points = statistics.values;
-  result.error = mean_over_root * root;
-  result.standard_error = mean_over_root * of_root;
-  result.noise = std::sqrt(noise / n);
-  return result;
+  const double spread = std::max(0.0, statistics.mean_square - statistics.mean * statistics.mean);
+  return {statistics.mean, std::sqrt(spread / (n - 1)), std::sqrt(noise / n), statistics.values, 0};
 }
 
+/// The channel that is worst for sure: one with more noise may only look worse.
 MeasuredError worst_channel(const Image& picture, const Image& reference) {
-  const Layer diffuse = extract_layer(reference, "diffuse"), variance = extract_layer(reference, "variance");
+  const Layer diffuse = extract_layer(picture, "diffuse"), variance = extract_layer(reference, "variance");
   const RelativeErrors errors =
-      relative_errors(extract_layer(picture, "diffuse"), diffuse, translucent_pixels(picture));
+      relative_errors(extract_layer(reference, "diffuse"), diffuse, translucent_pixels(picture));
   MeasuredError worst;
   for (std::size_t c = 0; c < errors.channels.size(); ++c) {
     const MeasuredError own =
         measured(errors.channels[c], diffuse.channels[c], variance.channels[c], errors.floors[c]);
-    if (own.error >= worst.error) worst = own;
+    if (worst.points == 0 || own.error - own.standard_error > worst.error - worst.standard_error) worst = own;
   }
   return worst;
 }
@@ -80,7 +75,7 @@ MeasuredError measure_error(const Session& session, double expected, Monitor* mo
     return result;
   };
   const MeasuredError first = measure(kFirstSamples);
-  const double ratio = first.noise / expected, wanted = double(kFirstSamples) * ratio * ratio;
+  const double ratio = first.noise / (kNoise * expected), wanted = double(kFirstSamples) * ratio * ratio;
   if (first.points == 0 || ratio <= 1) return first;
   return measure(std::size_t(std::min(wanted, double(kMostVerifySamples))));
 }

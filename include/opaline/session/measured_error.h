@@ -8,7 +8,8 @@
 
 namespace opaline {
 
-/// Means of |error| / diffuse light over the points, of the worst channel, as TargetError.
+/// Means of |error| over the diffuse light of the picture (TargetError: of the truth), over the points, of
+/// the worst channel.
 struct MeasuredError {
   double error = 0;               ///< what the reference's own noise explains is taken out
   double standard_error = 0;      ///< of it: the points are a few, the reference noisy
@@ -18,10 +19,11 @@ struct MeasuredError {
 };
 
 /// Measures the samples, trees and surface caches of a prepared session at some 200 points of the picture
-/// against Method::direct there, which shares nothing with them but the mesh and the profile. Its noise
-/// becomes as large as the expected error (for a given time more points with more noise tell less, and so do
-/// fewer with less), unless that takes more than kMostVerifySamples. in    session: hierarchical, prepared;
-/// expected: relative, > 0 error Error{interrupted}
+/// against Method::direct there, which shares nothing with them but the mesh and the profile. It goes on
+/// until its noise is .7 times the expected error, or for kMostVerifySamples.
+/// in    session: hierarchical, prepared; expected: relative, > 0
+/// out   where the noise hides an error, a third of the noise stays
+/// error Error{interrupted}
 MeasuredError measure_error(const Session& session, double expected, Monitor* monitor = nullptr);
 
 inline constexpr std::size_t kMostVerifySamples = 1 << 15;
