@@ -22,7 +22,7 @@ struct MeasuredError {
 /// against Method::direct there, which shares nothing with them but the mesh and the profile. It goes on
 /// until its noise is .7 times the expected error, or for kMostVerifySamples.
 /// in    session: hierarchical, prepared; expected: relative, > 0
-/// out   where the noise hides an error, a third of the noise stays
+/// out   where the noise hides an error, a third of the noise stays, and is in standard_error
 /// error Error{interrupted}
 MeasuredError measure_error(const Session& session, double expected, Monitor* monitor = nullptr);
 
