@@ -147,9 +147,9 @@ TEST(TargetError, ThreePicturesTellTheErrorOfTheBest) {
   }
 }
 
-// Claim: the error measured by direct at a few points is the one against the truth, within 3 standard errors
-// and what the reference's noise leaves; these are a third of it at most. Fails if: the reference's noise is
-// not taken out, or another session's samples are measured.
+// Claim: the error measured by direct at a few points is the one against the truth, within 1.5 of its
+// standard errors (the seed is fixed), which are 40 % of it at most. Fails if: the reference's noise is not
+// taken out, or another session's samples are measured.
 TEST(MeasuredError, IsTheErrorAgainstTheTruth) {
   const std::vector<Scene> scenes = small_scenes();
   for (const std::size_t s : {0, 1}) {
@@ -160,9 +160,9 @@ TEST(MeasuredError, IsTheErrorAgainstTheTruth) {
     const double error = probe_difference(picture_of(session, scene), truth);
     const MeasuredError measured = measure_error(session, error);
     SCOPED_TRACE(std::to_string(measured.error) + " against " + std::to_string(error));
-    EXPECT_LT(measured.error, error + 2 * measured.standard_error);
-    EXPECT_GT(measured.error, error - 2 * measured.standard_error);
-    EXPECT_LT(measured.standard_error, error / 3);
+    EXPECT_LT(measured.error, error + 1.5 * measured.standard_error);
+    EXPECT_GT(measured.error, error - 1.5 * measured.standard_error);
+    EXPECT_LT(measured.standard_error, .4 * error);
     EXPECT_GT(measured.points, 100u);
   }
 }
