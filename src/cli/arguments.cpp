@@ -16,6 +16,7 @@
 #include "cli/help_texts.h"
 #include "cli/metadata.h"
 #include "cli/option_values.h"
+#include "cli/quality.h"
 #include "opaline/core/error.h"
 #include "scene/json_tree.h"
 #include "scene/schema.h"
@@ -194,6 +195,8 @@ Command parse_arguments(int argc, const char* const* argv) {
   if (info_command.parsed()) return info;
   render.display_server = parse_server_address(options.display_server);
   check_outputs(render);
+  if (!options.target_error.empty()) render.target_error = share_of(options.target_error);
+  check_quality(render);
   return render;
 }
 

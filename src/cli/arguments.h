@@ -28,6 +28,8 @@ struct RenderArguments {
   bool timings_in_metadata = false;
   bool write_partial = false;
   std::optional<ServerAddress> display_server;
+  std::optional<double> target_error;  ///< settings are chosen for it; relative, > 0
+  bool verify = false;                 ///< measure the error of the picture
   Log log;
 };
 

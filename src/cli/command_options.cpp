@@ -114,6 +114,14 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
   app.add_flag("--timings-in-metadata", render.timings_in_metadata,
                "store the time of each stage in the EXR; its bytes then differ between runs");
   add_picture_options(app, options);
+  const char* quality = "Quality";
+  app.add_option("--target-error", options.target_error,
+                 "choose samples, tolerance and evaluator for this error at the least cost, e.g. 1%")
+      ->check(positive_share_check())
+      ->type_name("PERCENT")
+      ->group(quality);
+  app.add_flag("--verify", render.verify, "measure the error at some 200 points by --method direct")
+      ->group(quality);
   app.footer(kRenderNotes);
 }
 

@@ -15,7 +15,7 @@ namespace opaline {
 /// What options write to whose text means something else, before it does.
 struct Options {
   std::string method, evaluator, resolution, crop;
-  std::string until_error;
+  std::string until_error, target_error;
   std::optional<std::uint64_t> entry_samples;
   std::optional<std::uint64_t> spp;
   std::optional<std::uint64_t> seed;

@@ -8,6 +8,7 @@ inline constexpr const char* kExamples = R"(Examples:
   opaline info bunny.json
   opaline render bunny.json -o bunny.exr -o bunny.png
   opaline render bunny.json -o draft.png --method lambert --resolution 256x256
+  opaline render bunny.json -o bunny.exr --target-error 1% --verify
   opaline render bunny.json -o warm.exr --set media.marble.eta=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
   opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
   opaline render bunny.json -o bunny.exr --write-partial --display-server localhost
@@ -26,7 +27,12 @@ inline constexpr const char* kRenderNotes = R"(Every option that changes the pic
   --crop 0,0,16,16   --set film.crop=[0,0,16,16]
   --method, --evaluator, --seed, --entry-samples, --until-error: --set settings.<name>=...
   --exposure: --set film.exposure=...
-They are applied first, then each --set in its order: the last one wins.)";
+They are applied first, then each --set in its order: the last one wins.
+
+--target-error is the mean relative error of the diffuse light over the translucent pixels, of the worst channel,
+against the converged --method direct. What the diffusion model itself is off by is not in it, nor what --spp
+does to edges: that stays yours. Small pictures with more and more samples tell what is needed. --verify
+measures what came of it, at a cost that grows with the square of the accuracy.)";
 
 inline constexpr const char* kCompareNotes =
     R"(Figures are of the relative error (a - b) / max(|b|, floor), floor being 1e-3 of the p99 of |b|, over the

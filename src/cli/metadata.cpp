@@ -2,6 +2,7 @@
 #include "cli/metadata.h"
 
 #include <OpenImageIO/hash.h>
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <fstream>
@@ -93,7 +94,9 @@ Metadata make_metadata(const RenderArguments& arguments, const std::string& hash
   if (!hash.empty()) metadata.emplace_back("opaline:scene_hash", hash);
   metadata.emplace_back("opaline:seed", std::to_string(scene.settings.seed));
   metadata.emplace_back("opaline:settings", compact(settings_json(scene, translucent)));
-  metadata.emplace_back("opaline:command", command_line(name, arguments.overrides));
+  std::string command = command_line(name, arguments.overrides);
+  if (arguments.target_error) command += fmt::format(" --target-error {}", *arguments.target_error);
+  metadata.emplace_back("opaline:command", command);
   if (frame) metadata.emplace_back("opaline:frame", std::to_string(*frame));
   return metadata;
 }

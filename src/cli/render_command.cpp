@@ -9,6 +9,7 @@
 #include "cli/metadata.h"
 #include "cli/partial_picture.h"
 #include "cli/render_outputs.h"
+#include "cli/quality.h"
 #include "cli/report.h"
 #include "cli/resumable_state.h"
 #include "cli/stages.h"
@@ -138,6 +139,7 @@ void render_scene(const RenderArguments& arguments, Session& session, const Shar
   if (!arguments.resume.empty() && scene.settings.method != Method::direct)
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct");
   check_precompute(arguments, scene, session.plan());
+  KnownErrors errors{arguments.target_error, choose_settings(stages, arguments, session), {}};
   print_plan(arguments.log, scene, session.plan());
 
   std::optional<PartialPicture> partial;
@@ -156,12 +158,16 @@ void render_scene(const RenderArguments& arguments, Session& session, const Shar
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
+  errors.measured = verify_picture(stages, arguments, session, errors.chosen, image);
   image.metadata = make_metadata(arguments, hash, scene, session.groups(), frame);
+  if (errors.target || errors.measured)
+    image.metadata.emplace_back("opaline:error", compact(errors_json(errors)));
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
 
   auto outputs = stages.run("writing", [&] { return write_outputs(arguments, session, image); });
   Summary summary = summarize(session, shading);
   summary.costs = stages.costs();
+  summary.errors = errors;
   summary.outputs = std::move(outputs);
   print_summary(arguments.log, summary);
 }

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/log.h"
 #include "opaline/core/stopwatch.h"
 #include "opaline/render/plan.h"
+#include "opaline/session/measured_error.h"
+#include "opaline/session/target_error.h"
 
 namespace opaline {
 
@@ -19,6 +22,9 @@ void print_plan(const Log& log, const Scene& scene, const Plan& plan);
 /// warning alone.
 void print_decisions(const Log& log, const std::vector<std::string>& decisions, const std::string& warning);
 
+/// What was chosen for --target-error, and a warning where that does not reach it.
+void print_target(const Log& log, double target, const TargetError& chosen, const Settings& settings);
+
 /// A frame's pictures that were there already.
 void print_skipped(const Log& log, const std::vector<std::string>& outputs);
 
@@ -28,12 +34,23 @@ struct LightNoise {
   double relative_error = 0;
 };
 
+/// Errors that are known of a picture; none: not asked for.
+struct KnownErrors {
+  std::optional<double> target;
+  std::optional<TargetError> chosen;
+  std::optional<MeasuredError> measured;
+};
+
+/// target, predicted, measured, standard_error: those that are known.
+Json errors_json(const KnownErrors& errors);
+
 struct Summary {
   std::vector<StageCost> costs;
   std::size_t peak_memory = 0;  ///< bytes
   std::size_t samples = 0, queries = 0;
   std::vector<LightNoise> noise;
   double estimated_error = 0;     ///< of `hierarchical`, see estimated_relative_error; 0: there is none
+  KnownErrors errors;
   std::size_t entry_samples = 0;  ///< of `direct`, a pixel
   double direct_error = 0;        ///< its relative_noise
   /// Of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.

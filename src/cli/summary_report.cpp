@@ -30,6 +30,20 @@ void print_costs(const Summary& summary) {
   row(total_of(summary.costs));
 }
 
+std::string error_text(const Summary& summary) {
+  const KnownErrors& errors = summary.errors;
+  std::string text;
+  if (errors.chosen && errors.chosen->sees_translucent)
+    text = fmt::format("predicted {:.2g} %", 100 * errors.chosen->predicted);
+  else if (summary.estimated_error > 0)
+    text = fmt::format("estimated {:.2g} %", 100 * summary.estimated_error);
+  if (text.empty()) return text;
+  if (const auto& measured = errors.measured; measured && measured->points > 0)
+    text += fmt::format(", measured {:.2g} % +- {:.1g} % at {} points", 100 * measured->error,
+                        100 * measured->standard_error, measured->points);
+  return text + " (mean relative error of the diffuse light, worst channel)";
+}
+
 void print_text(const Summary& summary) {
   write_line(stdout, "");
   print_costs(summary);
@@ -43,9 +57,7 @@ void print_text(const Summary& summary) {
     row("samples",
         fmt::format("{} entry samples a pixel; noise {:.3g} % (standard error, rms over the pixels)",
                     grouped(summary.entry_samples), 100 * summary.direct_error));
-  if (summary.estimated_error > 0)
-    row("error", fmt::format("estimated {:.2g} % (mean relative error of the diffuse light, worst channel)",
-                             100 * summary.estimated_error));
+  if (const std::string error = error_text(summary); !error.empty()) row("error", error);
   for (const LightNoise& noise : summary.noise)
     row("noise", fmt::format("irradiance from {} on {}: {:.2g} % (standard error at a sample)", noise.light,
                              noise.group, 100 * noise.relative_error));
@@ -71,6 +83,7 @@ Json done_json(const Summary& summary) {
           {"queries", summary.queries},
           {"irradiance_noise", noise},
           {"estimated_error", summary.estimated_error},
+          {"errors", errors_json(summary.errors)},
           {"entry_samples", summary.entry_samples},
           {"direct_noise", summary.direct_error},
           {"shading_rays", summary.rays},
@@ -80,6 +93,19 @@ Json done_json(const Summary& summary) {
 }
 
 }  // namespace
+
+Json errors_json(const KnownErrors& errors) {
+  Json json = Json::object();
+  if (errors.target) json["target"] = *errors.target;
+  if (errors.chosen) json["predicted"] = errors.chosen->predicted;
+  if (errors.measured) {
+    json["measured"] = errors.measured->error;
+    json["standard_error"] = errors.measured->standard_error;
+    json["reference_noise"] = errors.measured->noise;
+    json["points"] = errors.measured->points;
+  }
+  return json;
+}
 
 Json stage_json(const StageCost& cost) {
   return {{"stage", cost.stage},

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The calibration of --target-error as text.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "opaline/report/csv.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// Errors are mean relative errors of the worst channel.
+struct CalibrationRow {
+  std::string scene;
+  ProfileKind profile = ProfileKind::dipole;
+  double target = 0, predicted = 0, measured = 0;
+  std::size_t samples = 0;
+  bool fewest = false;                  ///< the cheapest rung: there is nothing less to choose
+  double direct = 0, direct_error = 0;  ///< measured against `direct`, and its standard error; 0: not done
+  double choosing_seconds = 0, seconds = 0;  ///< CPU of the choice, and with the picture
+
+  bool is_kept() const { return measured <= target; }
+  bool is_too_good() const { return measured < target / 3 && !fewest; }
+};
+
+std::string as_line(const CalibrationRow& row);
+
+/// How many pairs keep the promise, in one sentence.
+std::string verdict_of(std::span<const CalibrationRow> rows);
+
+CsvTable calibration_table(std::span<const CalibrationRow> rows);
+
+/// A page that needs nothing else: measured over target for each pair, and the table.
+std::string calibration_page(std::span<const CalibrationRow> rows);
+
+}  // namespace opaline
