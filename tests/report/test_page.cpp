@@ -40,6 +40,21 @@ TEST(Page, NumbersAreTheCsvs) {
   EXPECT_EQ(count_of(page, "data-column="), cells);
 }
 
+// Claim: the chart as a file of its own has the page's marks, its own style and a legend, and is well-formed
+// enough to be counted: as many groups opened as closed. A scene of which nothing is known has none. Source:
+// page.h. Fails if: the style or the series' names are left to the page.
+TEST(Page, ChartAlone) {
+  BenchReport report = small_report();
+  const std::vector<std::string> charts = to_charts(report);
+  ASSERT_EQ(charts.size(), report.subjects.size());
+  for (const char* part : {"xmlns=", "<style>", ".mark {", "class=\"key\"", "Pareto"})
+    EXPECT_NE(charts[0].find(part), std::string::npos) << part;
+  EXPECT_GT(count_of(charts[0], "class=\"mark\""), count_of(charts[0], "<title>") - 1);
+  EXPECT_EQ(count_of(charts[0], "<g "), count_of(charts[0], "</g>"));
+  report.rows.clear();
+  EXPECT_EQ(to_charts(report)[0], "");
+}
+
 // Claim: a mark for each measured setting but lambert, focusable and named; those that nothing beats are on
 // the front; text of the user is escaped; no address leads out of the folder; no figure is NaN. Source: the
 // issue. Fails if: tabindex goes, a note's < ends up in the page, or a font is fetched.
