@@ -2,6 +2,7 @@
 #include "opaline/render/precompute.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "opaline/core/random.h"
 #include "opaline/irradiance/light_sampling.h"
@@ -57,7 +58,7 @@ Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF>
     const SurfaceSample& s = samples[i];
     flux[i] = {s.centroid, s.area, irradiance.empty() ? RgbF{} : irradiance[i], s.normal};
   }
-  return build_octree(flux);
+  return build_octree(std::move(flux));
 }
 
 SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,

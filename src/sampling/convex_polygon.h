@@ -2,49 +2,49 @@
 // A convex polygon in a plane, cut by straight lines.
 #pragma once
 
-#include <algorithm>
+#include <emmintrin.h>
+
 #include <array>
+#include <cstdint>
+#include <utility>
 
 namespace opaline {
 
-struct Point2 {
-  double x, y;
+struct alignas(16) Point2 {
+  double x = 0, y = 0;
 };
 
 /// Starts as a triangle; each clip adds at most one corner.
 class ConvexPolygon {
  public:
-  static constexpr int kMaxCorners = 64;
+  static constexpr std::size_t kMostClips = 60;
 
   void assign(const Point2& a, const Point2& b, const Point2& c) {
-    corner_[0] = a;
-    corner_[1] = b;
-    corner_[2] = c;
+    corners_[now_][0] = a;
+    corners_[now_][1] = b;
+    corners_[now_][2] = c;
     size_ = 3;
   }
 
   /// Keeps the part where nx x + ny y <= limit.
   void clip(double nx, double ny, double limit) {
-    std::array<double, kMaxCorners> side;
-    bool outside = false;
-    for (int i = 0; i < size_; ++i) {
-      side[i] = nx * corner_[i].x + ny * corner_[i].y - limit;
-      outside = outside || side[i] > 0;
+    alignas(16) std::array<double, kRoom> side;
+    const std::uint64_t all = (std::uint64_t(1) << size_) - 1, outside = sides(nx, ny, limit, side) & all;
+    if (outside == 0) return;
+    if (outside == all) return clear();
+    // Bit i: of corner i and the next one, one is outside.
+    const std::uint64_t crossed = outside ^ (outside >> 1 | (outside & 1) << (size_ - 1));
+    const Corners& from = corners_[now_];
+    now_ = 1 - now_;
+    Corners& to = corners_[now_];
+    const std::size_t size = std::exchange(size_, 0);
+    for (std::size_t i = 0; i < size; ++i) {
+      if (!(outside >> i & 1)) to[size_++] = from[i];
+      if (!(crossed >> i & 1)) continue;
+      const std::size_t j = i + 1 == size ? 0 : i + 1;
+      const double t = side[i] / (side[i] - side[j]);
+      to[size_++] = {from[i].x + t * (from[j].x - from[i].x), from[i].y + t * (from[j].y - from[i].y)};
     }
-    if (!outside) return;
-    std::array<Point2, kMaxCorners> kept;
-    int n = 0;
-    for (int i = 0; i < size_; ++i) {
-      const int j = i + 1 == size_ ? 0 : i + 1;
-      if (side[i] <= 0) kept[n++] = corner_[i];
-      if ((side[i] <= 0) != (side[j] <= 0)) {
-        const double t = side[i] / (side[i] - side[j]);
-        kept[n++] = {corner_[i].x + t * (corner_[j].x - corner_[i].x),
-                     corner_[i].y + t * (corner_[j].y - corner_[i].y)};
-      }
-    }
-    std::copy_n(kept.begin(), n, corner_.begin());
-    size_ = n;
   }
 
   void clear() { size_ = 0; }
@@ -55,9 +55,10 @@ class ConvexPolygon {
     double area = 0, x = 0, y = 0;
   };
   Moments moments() const {
+    const Point2& a = corners_[now_][0];
     Moments sum;
-    for (int i = 1; i + 1 < size_; ++i) {
-      const Point2 &a = corner_[0], &b = corner_[i], &c = corner_[i + 1];
+    for (std::size_t i = 1; i + 1 < size_; ++i) {
+      const Point2 &b = corners_[now_][i], &c = corners_[now_][i + 1];
       const double area = 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
       sum.area += area;
       sum.x += area * (a.x + b.x + c.x) / 3;
@@ -67,8 +68,31 @@ class ConvexPolygon {
   }
 
  private:
-  std::array<Point2, kMaxCorners> corner_;
-  int size_ = 0;
+  static constexpr std::size_t kBlock = 4;  // corners looked at together, some of them past the last
+  static constexpr std::size_t kRoom = kMostClips + kBlock;
+  using Corners = std::array<Point2, kRoom>;
+
+  static __m128d load(const Point2& p) { return _mm_load_pd(&p.x); }
+
+  // Each corner's nx x + ny y - limit. Bits of those above zero; those past the last corner are of no use.
+  std::uint64_t sides(double nx, double ny, double limit, std::array<double, kRoom>& side) const {
+    const __m128d normal = _mm_setr_pd(nx, ny);
+    const auto pair = [&](std::size_t i) {
+      const __m128d a = _mm_mul_pd(normal, load(corners_[now_][i])),
+                    b = _mm_mul_pd(normal, load(corners_[now_][i + 1])),
+                    along = _mm_add_pd(_mm_unpacklo_pd(a, b), _mm_unpackhi_pd(a, b)),
+                    s = _mm_sub_pd(along, _mm_set1_pd(limit));
+      _mm_store_pd(&side[i], s);
+      return std::uint64_t(_mm_movemask_pd(_mm_cmpgt_pd(s, _mm_setzero_pd()))) << i;
+    };
+    std::uint64_t outside = 0;
+    for (std::size_t i = 0; i < size_; i += kBlock) outside |= pair(i) | pair(i + 2);
+    return outside;
+  }
+
+  std::array<Corners, 2> corners_;
+  std::size_t now_ = 0;  // which of them; the other takes what a clip leaves
+  std::size_t size_ = 0;
 };
 
 }  // namespace opaline

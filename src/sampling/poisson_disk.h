@@ -4,7 +4,6 @@
 
 #include <tbb/parallel_sort.h>
 
-#include <compare>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -13,17 +12,11 @@
 #include "opaline/core/parallel.h"
 #include "opaline/core/random.h"
 #include "opaline/sampling/sample_surface.h"
+#include "sampling/candidates.h"
 #include "sampling/sample_grid.h"
 #include "sampling/triangle_list.h"
 
 namespace opaline {
-
-/// A place on the surface that has no accepted sample within the radius yet.
-struct Candidate {
-  Vec3f position;
-  SampleGrid::Place place;  // its triangle is an index into the TriangleList
-  std::uint32_t order;      // random: the order in which a cell's candidates are tried
-};
 
 /// Dart throwing in phase groups (Wei 2008) over a hash grid: rounds of candidates, of which those are
 /// accepted that no sample of their sheet is nearer to than the radius, the same ones whatever the threads.
@@ -72,42 +65,6 @@ class PoissonDisk {
     });
   }
 
-  // A candidate in its cell. Sorted by phase (the cell's parities), cell and random order.
-  struct Entry {
-    std::uint64_t cell;  // its key, the phase moved from the lowest bits to the highest
-    std::uint32_t order, candidate;
-    std::uint64_t phase() const { return cell >> 61; }
-    std::uint64_t key() const { return cell << 3 | phase(); }
-    friend auto operator<=>(const Entry&, const Entry&) = default;
-  };
-
-  // The candidates of a round, chunk by chunk as they were generated.
-  class Candidates {
-   public:
-    explicit Candidates(std::size_t tried) : chunks_(chunk_count(tried, kChunk)) {}
-    std::vector<Candidate>& chunk(std::size_t c) { return chunks_[c]; }
-    const Candidate& operator[](std::uint32_t i) const { return chunks_[i / kChunk][i % kChunk]; }
-
-    std::vector<Entry> sorted_entries(const SampleGrid& grid) const {
-      std::vector<std::size_t> firsts(1);
-      for (const auto& chunk : chunks_) firsts.push_back(firsts.back() + chunk.size());
-      std::vector<Entry> entries(firsts.back());
-      parallel_chunks(chunks_.size(), 1, [&](std::size_t c, std::size_t, std::size_t) {
-        for (std::size_t i = 0; i < chunks_[c].size(); ++i) {
-          const std::uint64_t key = grid.key(chunks_[c][i].position);
-          entries[firsts[c] + i] = {key >> 3 | key << 61, chunks_[c][i].order, std::uint32_t(c * kChunk + i)};
-        }
-      });
-      tbb::parallel_sort(entries);
-      return entries;
-    }
-
-    static constexpr std::size_t kChunk = 4096;
-
-   private:
-    std::vector<std::vector<Candidate>> chunks_;
-  };
-
   template <class Generate>
   void run_round(std::size_t count, float clearance, Monitor* monitor, const Generate& generate) {
     Candidates candidates(count);
@@ -144,7 +101,7 @@ class PoissonDisk {
   }
 
   void insert(const Candidates& candidates) {
-    std::vector<Entry> entries = candidates.sorted_entries(grid_);
+    std::vector<CandidateEntry> entries = candidates.sorted_entries(grid_);
     std::vector<std::uint32_t> runs;  // where each cell's entries begin
     for (std::size_t i = 0; i < entries.size(); ++i)
       if (i == 0 || entries[i].cell != entries[i - 1].cell) runs.push_back(std::uint32_t(i));
@@ -165,7 +122,7 @@ class PoissonDisk {
   }
 
   // In Morton order, so that neighbours in space are neighbours in memory.
-  void reserve_cells(const std::vector<Entry>& entries, const std::vector<std::uint32_t>& runs) {
+  void reserve_cells(const std::vector<CandidateEntry>& entries, const std::vector<std::uint32_t>& runs) {
     std::vector<std::uint64_t> keys;
     keys.reserve(runs.size());
     for (const std::uint32_t run : runs) keys.push_back(entries[run].key());
@@ -175,14 +132,14 @@ class PoissonDisk {
 
   // Tries one cell's candidates in order; the accepted ones move to the front of its run. Cells of one phase
   // are two radii apart, so none sees another at work.
-  void try_cell(const Candidates& candidates, std::vector<Entry>& entries, std::size_t begin,
+  void try_cell(const Candidates& candidates, std::vector<CandidateEntry>& entries, std::size_t begin,
                 std::size_t end) {
     SampleGrid::Cell& own = grid_.cell(entries[begin].key());
     own.round_first = std::uint32_t(begin);
     for (std::size_t i = begin; i < end; ++i) {
       const Candidate& mine = candidates[entries[i].candidate];
-      bool free = true;
-      grid_.for_cells_near(mine.position, radius_, [&](const SampleGrid::Cell& cell) {
+      const auto is_blocked_in = [&](const SampleGrid::Cell& cell) {
+        bool free = true;
         for (std::uint32_t k = 0; k < cell.round_count && free; ++k) {
           const Candidate& other = candidates[entries[cell.round_first + k].candidate];
           const Vec3f away = other.position - mine.position;
@@ -190,7 +147,13 @@ class PoissonDisk {
                  !on_one_sheet(mine.place.triangle, other.place.triangle);
         }
         return !free;
-      });
+      };
+      bool free = !is_blocked_in(own);  // saves most of them the look at the cells around
+      if (free)
+        grid_.for_cells_near(mine.position, radius_, [&](const SampleGrid::Cell& cell) {
+          free = &cell == &own || !is_blocked_in(cell);
+          return !free;
+        });
       if (free) std::swap(entries[i], entries[begin + own.round_count++]);
     }
   }

@@ -2,7 +2,6 @@
 #include "sampling/surface_shares.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <span>
 
@@ -10,6 +9,8 @@
 #include "opaline/core/parallel.h"
 #include "opaline/sampling/sample_surface.h"
 #include "sampling/convex_polygon.h"
+#include "sampling/owners.h"
+#include "sampling/share_tasks.h"
 #include "sampling/triangle_piece.h"
 
 namespace opaline {
@@ -29,56 +30,6 @@ struct Site {
   double power;
 };
 
-TrianglePiece whole(const TriangleList& triangles, std::size_t triangle) {
-  const TriangleList::Corners t = triangles.corners(triangles.id(triangle));
-  return {t.a, t.b, t.c};
-}
-
-// Some triangles, or a part of one: about as much work as any other task.
-struct Task {
-  std::size_t first, last;
-  std::optional<TrianglePiece> part;  // of the triangle `first`
-};
-
-// Cuts the surface into tasks, by area in units of a mean share and by triangles.
-class Tasks {
- public:
-  Tasks(const TriangleList& triangles, double mean_share) : mean_share_(mean_share) {
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const double work = work_on(triangles.area(t));
-      if (work > kWork)
-        add_parts(t, whole(triangles, t));
-      else
-        add_triangle(t, work);
-    }
-  }
-  const std::vector<Task>& all() const { return tasks_; }
-
- private:
-  static constexpr double kWork = 512;
-
-  double work_on(double area) const { return 1 + area / mean_share_; }
-
-  void add_triangle(std::size_t triangle, double work) {
-    if (tasks_.empty() || tasks_.back().part || filled_ + work > kWork) {
-      tasks_.push_back({triangle, triangle, {}});
-      filled_ = 0;
-    }
-    tasks_.back().last = triangle + 1;
-    filled_ += work;
-  }
-
-  void add_parts(std::size_t triangle, const TrianglePiece& piece) {
-    if (work_on(piece.area()) <= kWork)
-      tasks_.push_back({triangle, triangle + 1, piece});
-    else
-      for (const TrianglePiece& half : piece.halves()) add_parts(triangle, half);
-  }
-
-  double mean_share_, filled_ = 0;
-  std::vector<Task> tasks_;
-};
-
 class TriangleDivider {
  public:
   TriangleDivider(const TriangleList& triangles, const SampleGrid& grid, float radius, Monitor* monitor,
@@ -88,7 +39,7 @@ class TriangleDivider {
   // Of the whole triangle, or of a part.
   void divide(std::size_t triangle, const std::optional<TrianglePiece>& part) {
     normal_ = triangles_.geometric_normal(triangle);
-    const TrianglePiece piece = whole(triangles_, triangle);
+    const TrianglePiece piece = whole_piece(triangles_, triangle);
     // A needle's samples are few and far apart: it is not cut into millions of pieces for them.
     piece_extent_ = std::max(3 * radius_, piece.extent / 64);
     divide_large(part ? *part : piece);
@@ -118,9 +69,9 @@ class TriangleDivider {
       for (const TrianglePiece& half : piece.halves()) {
         for (std::size_t i = first; i < end; ++i) {
           const std::uint32_t s = owners_[i].sample;
-          owners_.push_back(half.owner(s, grid_.position(s)));
+          owners_.emplace_back(s, half.squared_distances(grid_.position(s)));
         }
-        remove_dominated(end);
+        remove_dominated(owners_, end);
         divide_small(half, end);
         owners_.resize(end);
       }
@@ -131,21 +82,17 @@ class TriangleDivider {
   void find_owners(const TrianglePiece& piece) {
     const Owner near = some_near(piece);
     // Whoever owns a part is nearer than that one to at least one of the corners.
-    Vec3f low = piece.corners[0], high = low;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3f reach(std::sqrt(near.squared[k]) * 1.0001f);
-      low = component_min(low, piece.corners[k] - reach);
-      high = component_max(high, piece.corners[k] + reach);
-    }
+    const auto [low, high] = piece.box_around(near.squared);
     owners_.clear();
     grid_.for_cells_between(low, high, [&](const SampleGrid::Coordinates&, const SampleGrid::Cell& cell) {
       for (std::uint32_t s = cell.first; s < cell.first + cell.count; ++s) {
-        const Owner o = piece.owner(s, grid_.position(s));
-        if (!dominates(near, o) && (any_sheet_ || is_on_sheet(s))) owners_.push_back(o);
+        const __m128 squared_distances = piece.squared_distances(grid_.position(s));
+        if (!dominates(near.squared, squared_distances) && (any_sheet_ || is_on_sheet(s)))
+          owners_.emplace_back(s, squared_distances);
       }
       return false;
     });
-    remove_dominated(0);
+    remove_dominated(owners_, 0);
   }
 
   // A sample of the triangle's sheet: from the cell of the piece's centre, or else the nearest within a reach
@@ -155,8 +102,8 @@ class TriangleDivider {
     Owner near;
     const auto take_nearer = [&](const SampleGrid::Cell& cell) {
       for (std::uint32_t s = cell.first; s < cell.first + cell.count; ++s) {
-        const Owner o = piece.owner(s, grid_.position(s));
-        if (o.sum() < near.sum() && (any_sheet_ || is_on_sheet(s))) near = o;
+        const Owner o(s, piece.squared_distances(grid_.position(s)));
+        if (o.sum < near.sum && (any_sheet_ || is_on_sheet(s))) near = o;
       }
       return false;
     };
@@ -172,45 +119,21 @@ class TriangleDivider {
     return same_sheet(triangles_.geometric_normal(grid_.place(sample).triangle), normal_);
   }
 
-  // Nearer to all corners, and with that to all that lies between them.
-  static bool dominates(const Owner& a, const Owner& b) {
-    return a.squared[0] < b.squared[0] && a.squared[1] < b.squared[1] && a.squared[2] < b.squared[2];
-  }
-
-  // Removes those of owners_, from `first` on, that another one dominates; it is sought among the nearest to
-  // each corner and to the centre.
-  void remove_dominated(std::size_t first) {
-    std::array<Owner, 4> best;
-    best.fill(owners_[first]);
-    for (std::size_t i = first + 1; i < owners_.size(); ++i) {
-      for (std::size_t k = 0; k < 3; ++k)
-        if (owners_[i].squared[k] < best[k].squared[k]) best[k] = owners_[i];
-      if (owners_[i].sum() < best[3].sum()) best[3] = owners_[i];
-    }
-    const auto is_dominated = [&best](const Owner& o) {
-      return std::ranges::any_of(best, [&o](const Owner& b) { return dominates(b, o); });
-    };
-    owners_.erase(std::remove_if(owners_.begin() + std::ptrdiff_t(first), owners_.end(), is_dominated),
-                  owners_.end());
-  }
-
   void add(std::uint32_t sample, double area, const Vec3d& centroid) {
     out_.push_back({sample, area, (centroid - Vec3d(grid_.position(sample))) * area});
   }
 
   void clip_cells(const TrianglePiece& piece, std::size_t first) {
-    // The nearest first: they cut most.
-    std::sort(owners_.begin() + std::ptrdiff_t(first), owners_.end(), [](const Owner& x, const Owner& y) {
-      return x.sum() != y.sum() ? x.sum() < y.sum() : x.sample < y.sample;
-    });
-    const std::size_t last = std::min(owners_.size(), first + ConvexPolygon::kMaxCorners - 4);
+    nearest_first(owners_, first, sorted_);
+    if (sorted_.size() > ConvexPolygon::kMostClips) sorted_.resize(ConvexPolygon::kMostClips);
     const Vec3d &a = piece.a, ab = piece.b - a, ac = piece.c - a;
     const Vec3d x_axis = normalized(ab), n = normalized(cross(ab, ac)), y_axis = cross(n, x_axis);
     const auto flat = [&](const Vec3d& p) { return Point2{dot(p - a, x_axis), dot(p - a, y_axis)}; };
     sites_.clear();
-    for (std::size_t i = first; i < last; ++i) {
-      const Vec3d p(grid_.position(owners_[i].sample));
-      sites_.push_back({owners_[i].sample, flat(p), dot(p - a, p - a)});
+    for (const std::uint64_t owner : sorted_) {
+      const auto sample = std::uint32_t(owner);
+      const Vec3d p(grid_.position(sample));
+      sites_.push_back({sample, flat(p), dot(p - a, p - a)});
     }
     const Point2 fa = flat(a), fb = flat(piece.b), fc = flat(piece.c);
     for (const Site& site : sites_) {
@@ -239,6 +162,7 @@ class TriangleDivider {
   Vec3f normal_;
   bool any_sheet_ = false;
   std::vector<Owner> owners_;
+  std::vector<std::uint64_t> sorted_;  // by nearest_first
   std::vector<Site> sites_;
   ConvexPolygon polygon_;
 };

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surface cut into tasks of about the same work.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "sampling/triangle_list.h"
+#include "sampling/triangle_piece.h"
+
+namespace opaline {
+
+inline TrianglePiece whole_piece(const TriangleList& triangles, std::size_t triangle) {
+  const TriangleList::Corners t = triangles.corners(triangles.id(triangle));
+  return {t.a, t.b, t.c};
+}
+
+/// Some triangles, or a part of one: about as much work as any other task.
+struct Task {
+  std::size_t first, last;
+  std::optional<TrianglePiece> part;  ///< of the triangle `first`
+};
+
+/// Cuts the surface into tasks, by area in units of a mean share and by triangles.
+class Tasks {
+ public:
+  Tasks(const TriangleList& triangles, double mean_share) : mean_share_(mean_share) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      const double work = work_on(triangles.area(t));
+      if (work > kWork)
+        add_parts(t, whole_piece(triangles, t));
+      else
+        add_triangle(t, work);
+    }
+  }
+  const std::vector<Task>& all() const { return tasks_; }
+
+ private:
+  static constexpr double kWork = 512;
+
+  double work_on(double area) const { return 1 + area / mean_share_; }
+
+  void add_triangle(std::size_t triangle, double work) {
+    if (tasks_.empty() || tasks_.back().part || filled_ + work > kWork) {
+      tasks_.push_back({triangle, triangle, {}});
+      filled_ = 0;
+    }
+    tasks_.back().last = triangle + 1;
+    filled_ += work;
+  }
+
+  void add_parts(std::size_t triangle, const TrianglePiece& piece) {
+    if (work_on(piece.area()) <= kWork)
+      tasks_.push_back({triangle, triangle + 1, piece});
+    else
+      for (const TrianglePiece& half : piece.halves()) add_parts(triangle, half);
+  }
+
+  double mean_share_, filled_ = 0;
+  std::vector<Task> tasks_;
+};
+
+}  // namespace opaline
