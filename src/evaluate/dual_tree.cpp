@@ -111,8 +111,9 @@ class Chunk {
 
   // takers: bits of the packets that want the children of a node
   void open(std::uint32_t i, std::uint32_t takers) {
-    const std::uint32_t end = nodes_[i].skip;
-    for (std::uint32_t child = i + 1; child < end; child = nodes_[child].skip) {
+    const std::uint32_t end = input_.octree.first_child[i + 1];
+    for (std::uint32_t k = input_.octree.first_child[i]; k < end; ++k) {
+      const std::uint32_t child = input_.octree.children[k];
       _mm_prefetch(reinterpret_cast<const char*>(&nodes_[child]), _MM_HINT_T0);
       _mm_prefetch(reinterpret_cast<const char*>(&nodes_[child].center), _MM_HINT_T0);
       queue_.push_back(child);
