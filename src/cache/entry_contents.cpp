@@ -177,7 +177,9 @@ std::optional<Octree> get_octree(const Hdf5Reader& file) {
   auto normals = file.get<Vec3f>("normals");
   const std::optional<double> unit = file.number("flux_unit");
   if (!nodes || !samples || !normals || !unit) return {};
-  return Octree{std::move(*nodes), std::move(*samples), std::move(*normals), float(*unit)};
+  Octree octree{std::move(*nodes), std::move(*samples), std::move(*normals), float(*unit)};
+  list_children(octree);
+  return octree;
 }
 
 void put_exitance(Hdf5Writer& file, const SurfaceCache& exitance, std::span<const std::uint32_t> meshes) {

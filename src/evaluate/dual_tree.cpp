@@ -70,6 +70,7 @@ class Chunk {
   void evaluate(std::span<const std::uint32_t> order, const ChunkPlan& plan, const RgbF& dark,
                 std::span<Exitance> result) {
     chunk_.fill(input_.queries, order, plan.cut);
+    for (const std::uint32_t query : order) __builtin_prefetch(&result[query], 1);  // to be written
     for (std::size_t p = 0; p < chunk_.count; ++p) {
       sums_[p] = {};
       guess_[p] = component_max(plan.guesses[p], dark);
@@ -77,10 +78,8 @@ class Chunk {
     gather(nodes_.data(), std::array{std::uint32_t(0)}, block_);
     const SourceBlock root = block_;
     refine(0, 0, chunk_.count, {&root, 1}, 1, {}, {});
-    std::size_t i = 0;
-    for (std::size_t p = 0; p < chunk_.count; ++p)
-      for (std::size_t lane = 0; lane < plan.cut.counts[p]; ++lane, ++i)
-        result[order[i]] = exitance_of(input_, sums_[p], lane, order[i]);
+    for (std::size_t p = 0, first = 0; p < chunk_.count; first += plan.cut.counts[p++])
+      set_exitance(input_, sums_[p], order.subspan(first, plan.cut.counts[p]), result);
   }
 
  private:
@@ -111,8 +110,9 @@ class Chunk {
 
   // takers: bits of the packets that want the children of a node
   void open(std::uint32_t i, std::uint32_t takers) {
-    const std::uint32_t end = nodes_[i].skip;
-    for (std::uint32_t child = i + 1; child < end; child = nodes_[child].skip) {
+    const std::uint32_t end = input_.octree.first_child[i + 1];
+    for (std::uint32_t k = input_.octree.first_child[i]; k < end; ++k) {
+      const std::uint32_t child = input_.octree.children[k];
       _mm_prefetch(reinterpret_cast<const char*>(&nodes_[child]), _MM_HINT_T0);
       _mm_prefetch(reinterpret_cast<const char*>(&nodes_[child].center), _MM_HINT_T0);
       queue_.push_back(child);

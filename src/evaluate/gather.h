@@ -56,7 +56,7 @@ class Gather {
     // A patch of a power law 1/r^3 gives more than its middle by 3/8 of its solid angle; measured on
     // surfaces: a fifth.
     constexpr float kFlattened = 0.2f;
-    PointSums sums;
+    PointSums<float> sums;
     sums.near_area = near_weight_;
     for (std::size_t c = 0; c < 3; ++c) {
       sums.far[c] = float(sum[c]);
@@ -66,7 +66,11 @@ class Gather {
       sums.near_flux[c] = near_flux[c];
       sums.near_squares[c] = near_squares[c];
     }
-    return exitance_from(sums, input_, given);
+    std::array<float, 3> own{};
+    for (std::size_t c = 0; given != nullptr && c < 3; ++c) own[c] = (*given)[c];
+    const PointResult<float> r = result_from(sums, input_, given != nullptr ? &own : nullptr);
+    const auto rgb = [](const std::array<float, 3>& v) { return RgbF{v[0], v[1], v[2]}; };
+    return {rgb(r.exitance), rgb(r.irradiance), rgb(r.near), rgb(r.error)};
   }
 
  private:

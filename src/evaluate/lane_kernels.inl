@@ -126,12 +126,13 @@ struct NearSums {
 };
 
 // Notes a sample within h of some lanes; returns the lanes for which it is on another sheet.
-TARGET static inline std::uint32_t add_near(const LaneInput& input, const TreeSample& s, const Vec3f& normal,
-                                            const Packet& packet, int block, V s2, NearSums& near) {
+TARGET static inline std::uint32_t add_near(float near2, float inverse_near2, const TreeSample& s,
+                                            const Vec3f& normal, const Packet& packet, int block, V s2,
+                                            NearSums& near) {
   const V facing = load(packet.nx + block) * normal.x +
                    (load(packet.ny + block) * normal.y + load(packet.nz + block) * normal.z);
-  const I within = s2<splat(input.near2), same = facing> splat(-0.5f);
-  const V rest = 1 - s2 * (1 / input.near2), zero{};
+  const I within = s2<splat(near2), same = facing> splat(-0.5f);
+  const V rest = 1 - s2 * inverse_near2, zero{};
   const V weight = (within & same) != 0 ? rest * rest : zero;
   near.area += weight * s.area;
   near.flux0 += weight * s.flux[0];
@@ -146,7 +147,7 @@ TARGET static std::size_t add_leaves_block(const LaneInput& input, const std::ui
                                            std::size_t count, const Packet& packet, PacketSums& sums,
                                            int block, std::uint32_t (*whole)[2], std::size_t wholes) {
   const V px = load(packet.x + block), py = load(packet.y + block), pz = load(packet.z + block);
-  const float unit = input.table.inverse_scale2;
+  const float unit = input.table.inverse_scale2, near2 = input.near2, inverse_near2 = 1 / near2;
   V sum0{}, sum1{}, sum2{}, squares0{}, squares1{}, squares2{}, even0{}, even1{}, even2{};
   NearSums near;
   for (std::size_t i = 0; i < count; ++i) {
@@ -156,9 +157,11 @@ TARGET static std::size_t add_leaves_block(const LaneInput& input, const std::ui
       const TreeSample& s = input.samples[k];
       const Offset d{s.x - px, s.y - py, s.z - pz};
       const V s2 = square(d);
-      const Place at = find(1 + s2 * unit);
+      const V q = 1 + s2 * unit;
+      const Place at = find(q);
+      const bool beyond = any_less(splat(256 - 0x1p-16f), q);  // at 256 segment 16 begins
       const Kernels kernel_of =
-          any(at.segment > 15) ? kernels<Reach::all>(input.table, at) : kernels<Reach::near>(input.table, at);
+          beyond ? kernels<Reach::all>(input.table, at) : kernels<Reach::near>(input.table, at);
       const V c0 = s.flux[0] * kernel_of.c0, c1 = s.flux[1] * kernel_of.c1, c2 = s.flux[2] * kernel_of.c2;
       sum0 += c0;
       sum1 += c1;
@@ -166,8 +169,9 @@ TARGET static std::size_t add_leaves_block(const LaneInput& input, const std::ui
       squares0 += c0 * c0;
       squares1 += c1 * c1;
       squares2 += c2 * c2;
-      if (!any(s2 < splat(input.near2))) continue;
-      const std::uint32_t other = add_near(input, s, input.normals[k], packet, block, s2, near);
+      if (!any_less(s2, splat(near2))) continue;
+      const std::uint32_t other =
+          add_near(near2, inverse_near2, s, input.normals[k], packet, block, s2, near);
       if (other != 0) {
         whole[wholes][0] = k;
         whole[wholes++][1] = other << block;

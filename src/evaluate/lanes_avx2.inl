@@ -28,6 +28,9 @@ TARGET inline std::uint32_t bits(I mask) {
 [[maybe_unused]] TARGET inline bool any(I mask) {
   return bits(mask) != 0;
 }
+[[maybe_unused]] TARGET inline bool any_less(V a, V b) {
+  return any(a < b);
+}
 [[maybe_unused]] TARGET inline float total(V v) {
   __m128 half = _mm_add_ps(_mm256_castps256_ps128((__m256)v), _mm256_extractf128_ps((__m256)v, 1));
   half = _mm_add_ps(half, _mm_movehl_ps(half, half));

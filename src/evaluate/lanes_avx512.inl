@@ -30,6 +30,10 @@ TARGET inline std::uint32_t bits(I mask) {
 [[maybe_unused]] TARGET inline bool any(I mask) {
   return bits(mask) != 0;
 }
+// GCC would make a vector of the comparison first.
+[[maybe_unused]] TARGET inline bool any_less(V a, V b) {
+  return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ) != 0;
+}
 [[maybe_unused]] TARGET inline float total(V v) {
   alignas(64) float lanes[16];
   _mm512_store_ps(lanes, (__m512)v);

@@ -25,6 +25,9 @@ inline std::uint32_t bits(I mask) {
 [[maybe_unused]] inline bool any(I mask) {
   return bits(mask) != 0;
 }
+[[maybe_unused]] inline bool any_less(V a, V b) {
+  return any(a < b);
+}
 [[maybe_unused]] inline float total(V v) {
   return (v[0] + v[1]) + (v[2] + v[3]);
 }

@@ -19,6 +19,33 @@ void add_near_part(const EvaluateInput& input, float near2, const TreeSample& s,
   for (std::size_t c = 0; c < 3; ++c) sums.exitance[c][lane] += kernel[c] * missing * s.flux[c];
 }
 
+Points4 load(const float* lanes) {
+  return (Points4)_mm_load_ps(lanes);
+}
+
+// Of the four points from a lane on.
+PointSums<Points4> sums_at(const EvaluateInput& input, const PacketSums& from, std::size_t lane) {
+  PointSums<Points4> sums;
+  sums.near_area = load(from.near_area + lane);
+  Points4 square{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    sums.near_flux[c] = load(from.near_flux[c] + lane);
+    square += sums.near_flux[c] * sums.near_flux[c];
+  }
+  // The irradiance varies around the point by the same share of its mean in each channel.
+  const Points4 spread = square > 0 ? load(from.near_squares + lane) / square : Points4{};
+  // Of the tolerance, what the nodes' errors come to (bench_evaluate).
+  constexpr float kHierarchy = 0.1f;
+  for (std::size_t c = 0; c < 3; ++c) {
+    sums.far[c] = larger(Points4{}, load(from.exitance[c] + lane));
+    sums.spread[c] = load(from.spread[c] + lane);
+    sums.squares[c] = load(from.squares[c] + lane);
+    sums.hierarchy[c] = kHierarchy * float(input.tolerance) * sums.far[c];
+    sums.near_squares[c] = sums.near_flux[c] * sums.near_flux[c] * spread;
+  }
+  return sums;
+}
+
 }  // namespace
 
 void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
@@ -36,25 +63,20 @@ void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneK
                     std::size_t(__builtin_ctz(bits)), sums);
 }
 
-Exitance exitance_of(const EvaluateInput& input, const PacketSums& from, std::size_t lane,
-                     std::uint32_t query) {
-  PointSums sums;
-  sums.near_area = from.near_area[lane];
-  // The irradiance varies around the point by the same share of its mean in each channel.
-  float square = 0;
-  for (std::size_t c = 0; c < 3; ++c) square += from.near_flux[c][lane] * from.near_flux[c][lane];
-  const float spread = square > 0 ? from.near_squares[lane] / square : 0;
-  // Of the tolerance, what the nodes' errors come to (bench_evaluate).
-  constexpr float kHierarchy = 0.1f;
-  for (std::size_t c = 0; c < 3; ++c) {
-    sums.far[c] = std::max(0.0f, from.exitance[c][lane]);
-    sums.spread[c] = from.spread[c][lane];
-    sums.squares[c] = from.squares[c][lane];
-    sums.hierarchy[c] = kHierarchy * float(input.tolerance) * sums.far[c];
-    sums.near_flux[c] = from.near_flux[c][lane];
-    sums.near_squares[c] = sums.near_flux[c] * sums.near_flux[c] * spread;
+void set_exitance(const EvaluateInput& input, const PacketSums& from, std::span<const std::uint32_t> queries,
+                  std::span<Exitance> result) {
+  for (std::size_t lane = 0; lane < queries.size(); lane += 4) {
+    const auto own = queries.subspan(lane, std::min<std::size_t>(4, queries.size() - lane));
+    std::array<Points4, 3> given{};
+    for (std::size_t i = 0; !input.irradiance.empty() && i < own.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c) given[c][i] = input.irradiance[own[i]][c];
+    const PointResult<Points4> r =
+        result_from(sums_at(input, from, lane), input, input.irradiance.empty() ? nullptr : &given);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const auto rgb = [i](const std::array<Points4, 3>& v) { return RgbF{v[0][i], v[1][i], v[2][i]}; };
+      result[own[i]] = {rgb(r.exitance), rgb(r.irradiance), rgb(r.near), rgb(r.error)};
+    }
   }
-  return exitance_from(sums, input, input.irradiance.empty() ? nullptr : &input.irradiance[query]);
 }
 
 }  // namespace opaline

@@ -2,6 +2,7 @@
 // What is summed sample by sample at a packet, and what its sums come to.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "evaluate/lane_kernels.h"
@@ -14,8 +15,8 @@ void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneK
                  const std::vector<std::uint32_t>& leaves, const Packet& packet, PacketSums& sums,
                  std::vector<std::uint32_t>& room);
 
-/// Of the query that stands in one lane.
-Exitance exitance_of(const EvaluateInput& input, const PacketSums& sums, std::size_t lane,
-                     std::uint32_t query);
+/// Of the queries that stand in a packet's lanes.
+void set_exitance(const EvaluateInput& input, const PacketSums& sums, std::span<const std::uint32_t> queries,
+                  std::span<Exitance> result);
 
 }  // namespace opaline

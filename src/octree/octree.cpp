@@ -255,7 +255,19 @@ float unit_of_flux(std::span<const FluxSample> samples) {
 }  // namespace
 
 std::size_t Octree::bytes() const {
-  return nodes.size() * sizeof(OctreeNode) + samples.size() * (sizeof(TreeSample) + sizeof(Vec3f));
+  return nodes.size() * sizeof(OctreeNode) + (first_child.size() + children.size()) * sizeof(std::uint32_t) +
+         samples.size() * (sizeof(TreeSample) + sizeof(Vec3f));
+}
+
+void list_children(Octree& tree) {
+  tree.first_child.reserve(tree.nodes.size() + 1);
+  tree.children.reserve(tree.nodes.size());
+  for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
+    tree.first_child.push_back(std::uint32_t(tree.children.size()));
+    for (std::uint32_t child = i + 1; child < tree.nodes[i].skip; child = tree.nodes[child].skip)
+      tree.children.push_back(child);
+  }
+  tree.first_child.push_back(std::uint32_t(tree.children.size()));
 }
 
 Octree build_octree(std::vector<FluxSample> samples) {
@@ -278,6 +290,7 @@ Octree build_octree(std::vector<FluxSample> samples) {
   std::ranges::transform(order, keys.begin(), &Keyed::key);
   std::vector<Keyed>().swap(order);
   Builder(tree, std::move(keys)).build();
+  list_children(tree);
   return tree;
 }
 

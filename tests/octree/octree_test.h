@@ -76,6 +76,9 @@ inline void expect_sound(const Octree& octree, std::size_t samples) {
     const OctreeNode& node = octree.nodes[i];
     ASSERT_TRUE(node.skip > i && node.skip <= octree.nodes.size()) << i;
     ASSERT_GT(node.count, 0u) << i;
+    const std::uint32_t begin = octree.first_child.at(i), end = octree.first_child.at(i + 1);
+    ASSERT_EQ(std::vector(octree.children.begin() + begin, octree.children.begin() + end),
+              children(octree, i));
     const Sums sums = sums_of(octree, node);
     const double size = std::max(1e-30, max_component(sums.high - sums.low));
     const double far = std::max(length(sums.low), length(sums.high));

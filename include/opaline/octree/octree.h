@@ -45,6 +45,8 @@ struct Octree {
   /// Power of two that brings the largest irradiance to [1/2, 1): neither 1e-30 nor 1e30 W leave float's
   /// range.
   float flux_unit = 1;
+  /// By list_children: of node i, children[first_child[i]] to below first_child[i + 1].
+  std::vector<std::uint32_t> first_child{}, children{};
   std::size_t bytes() const;
 };
 
@@ -54,5 +56,8 @@ inline constexpr std::uint32_t kLeafSamples = 8;
 /// Builds the tree and lets go of the samples. The result depends on them, not on their order or the threads;
 /// equal points end in one leaf.
 Octree build_octree(std::vector<FluxSample> samples);
+
+/// Lists each node's children, so that to find one need not wait for its sibling's `skip` from memory.
+void list_children(Octree& tree);
 
 }  // namespace opaline
