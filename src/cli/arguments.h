@@ -63,9 +63,9 @@ struct CompareArguments {
 struct BenchArguments {
   std::vector<std::string> scenes;     ///< at least one
   std::vector<std::string> overrides;  ///< as RenderArguments
-  std::string csv, report;          ///< file, folder; empty: none
-  std::string against;              ///< results.json of an earlier benchmark; empty: none
-  std::vector<std::string> halves;  ///< none, or two with a single scene
+  std::string csv, report;             ///< file, folder; empty: none
+  std::string against;                 ///< results.json of an earlier benchmark; empty: none
+  std::vector<std::string> halves;     ///< none, or two with a single scene
   double reference_error = 0;
   std::string reference_dir;  ///< empty: in the report, or beside the CSV
   std::vector<Rung> rungs;    ///< more than the ladder has

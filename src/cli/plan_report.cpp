@@ -117,17 +117,20 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
                  {"light_samples", settings.light_samples},
                  {"evaluator", name_of(settings.evaluator)}});
   if (!chosen.sees_translucent)
-    return print_warning(log,
-                         "nothing translucent is seen: --target-error promises nothing here; noise of opaque surfaces "
-                         "is settings.light_samples, of edges --spp");
+    return print_warning(
+        log,
+        "nothing translucent is seen: --target-error promises nothing here; noise of opaque surfaces "
+        "is settings.light_samples, of edges --spp");
   if (!log.quiet && log.format == LogFormat::text)
-    print_row("target", fmt::format("{:.3g} %: {} predicted to be {:.2g} % off, tolerance {:.2g} %", 100 * target,
-                                    counted(chosen.samples, "sample"), 100 * chosen.predicted,
+    print_row("target", fmt::format("{:.3g} %: {} predicted to be {:.2g} % off, tolerance {:.2g} %",
+                                    100 * target, counted(chosen.samples, "sample"), 100 * chosen.predicted,
                                     100 * settings.tolerance));
   if (!chosen.reached)
-    print_warning(log, fmt::format("an error of {:.3g} % cannot be reached with settings.max_samples of {}: {:.2g} % is "
-                                   "predicted",
-                                   100 * target, settings.max_samples, 100 * chosen.predicted));
+    print_warning(
+        log,
+        fmt::format("an error of {:.3g} % cannot be reached with settings.max_samples of {}: {:.2g} % is "
+                    "predicted",
+                    100 * target, settings.max_samples, 100 * chosen.predicted));
 }
 
 void print_skipped(const Log& log, const std::vector<std::string>& outputs) {

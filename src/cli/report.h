@@ -18,8 +18,8 @@ namespace opaline {
 /// What the scene requires and why, then the plan's warnings; nothing but the warnings with --quiet.
 void print_plan(const Log& log, const Scene& scene, const Plan& plan);
 
-/// What was kept from before and what was not, a line each, and a warning unless it is empty; with --quiet the
-/// warning alone.
+/// What was kept from before and what was not, a line each, and a warning unless it is empty; with --quiet
+/// the warning alone.
 void print_decisions(const Log& log, const std::vector<std::string>& decisions, const std::string& warning);
 
 /// What was chosen for --target-error, and a warning where that does not reach it.
@@ -49,7 +49,7 @@ struct Summary {
   std::size_t peak_memory = 0;  ///< bytes
   std::size_t samples = 0, queries = 0;
   std::vector<LightNoise> noise;
-  double estimated_error = 0;     ///< of `hierarchical`, see estimated_relative_error; 0: there is none
+  double estimated_error = 0;  ///< of `hierarchical`, see estimated_relative_error; 0: there is none
   KnownErrors errors;
   std::size_t entry_samples = 0;  ///< of `direct`, a pixel
   double direct_error = 0;        ///< its relative_noise

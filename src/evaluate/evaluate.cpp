@@ -67,8 +67,8 @@ double own_share(const ChannelProfile& profile, double h) {
 // SplitKernel::own_irradiance; near: the near field's share of the total.
 float own_irradiance(const ChannelProfile& profile, double h, double near, NearIrradiance wanted) {
   if (wanted != NearIrradiance::mixed) return wanted == NearIrradiance::point ? 1.0f : 0.0f;
-  // Where little of the light depends on it the irradiance at the point is not worth its shadow rays; faded, for
-  // spacings differ a little with the seed.
+  // Where little of the light depends on it the irradiance at the point is not worth its shadow rays; faded,
+  // for spacings differ a little with the seed.
   const double own = own_share(profile, h), t = std::clamp((own * near - 0.02) / 0.02, 0.0, 1.0);
   return float(own * t * t * (3 - 2 * t));
 }

@@ -21,17 +21,19 @@ double total_diffuse_reflectance(const ChannelProfile& profile);
 /// Everything about a medium that rendering needs, computed once.
 struct DiffuseProfile {
   std::array<ChannelProfile, 3> channels;
-  Rgb mean_free_path{};              ///< 1/sigma_t', mm; 0 where the medium neither scatters nor absorbs
-  Rgb diffuse_mean_free_path{};      ///< 1/sigma_tr, mm: over which light decays far inside; infinite without absorption
-  Rgb total{};                       ///< total diffuse reflectance per entered flux
+  Rgb mean_free_path{};          ///< 1/sigma_t', mm; 0 where the medium neither scatters nor absorbs
+  Rgb diffuse_mean_free_path{};  ///< 1/sigma_tr, mm: over which light decays far inside; infinite without
+                                 ///< absorption
+  Rgb total{};                   ///< total diffuse reflectance per entered flux
   double eta = 1;
-  double average_reflectance = 0;    ///< F_bar, from outside
-  bool translucent = false;          ///< some channel scatters
+  double average_reflectance = 0;  ///< F_bar, from outside
+  bool translucent = false;        ///< some channel scatters
 };
 
 DiffuseProfile make_diffuse_profile(const Medium& medium);
 
-/// Integral over r < h of 2 pi r R_d(r) (1 - w(r/h)), w the near-field weight below: the near part of the total.
+/// Integral over r < h of 2 pi r R_d(r) (1 - w(r/h)), w the near-field weight below: the near part of the
+/// total.
 double near_field_reflectance(const ChannelProfile& profile, double h);
 
 /// w(t) = t^3 (10 - 15 t + 6 t^2) below 1, else 1: the far kernel is R_d(r) w(r/h).
