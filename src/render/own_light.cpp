@@ -16,10 +16,9 @@ namespace {
 // Above this share of the irradiance at the point itself (SplitKernel::own_irradiance) the near field's rms
 // radius is under a fifth of h, less than two segments of the finest lattice.
 constexpr float kSharp = 0.8f;
-// What lattices need not resolve, of the exitance: bumps of the mesh, that its own vertices tell, and what a
-// few shadow rays beside a shadow's edge leave open. Less takes more places and is closer to `direct` by no
-// more than .1 % (LongDirectGate).
-constexpr float kBumps = 0.005f, kEdgeNoise = 0.01f;
+// What lattices need not resolve, over the tolerance, of the exitance: bumps of the mesh, that its own
+// vertices tell, and what a few shadow rays beside a shadow's edge leave open.
+constexpr float kBumps = 1, kEdgeNoise = 2;
 
 std::uint64_t key_of(const Vec3f& p) {
   std::array<std::uint32_t, 3> bits;
@@ -50,6 +49,7 @@ void OwnLight::add(std::span<const SurfacePoint> points, std::span<Exitance> exi
 void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exitance> exitance,
                             std::span<PlaceDoubt> doubts) const {
   const Settings& settings = input_.scene.settings;
+  const float tolerance = float(settings.tolerance);
   std::vector<std::uint64_t> keys;
   for (const SurfacePoint& point : points) keys.push_back(key_of(point.position));
   std::vector<RgbF> variance(points.size());
@@ -59,7 +59,7 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
                                 lights_,
                                 input_.scene.media[group_.plan.medium].eta,
                                 settings.light_samples,
-                                hash_bits(settings.seed, 2000),
+                                point_irradiance_seed(settings),
                                 variance};
   const std::vector<RgbF> own = irradiance_at(lighting);
   const auto& share = group_.kernel.own_irradiance;
@@ -68,11 +68,11 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
     const RgbF& v = variance[i];
     const RgbF two_errors =
         own_part(share, exitance[i], RgbF{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)} * 2);
-    doubts[i] = {two_errors + exitance[i].exitance * kBumps};
+    doubts[i] = {two_errors + exitance[i].exitance * (kBumps * tolerance)};
   }
   lighting.variance = {};
   for (const std::uint32_t i : near_field_.refine(lighting, own, exitance))
-    doubts[i] = {doubts[i].noise + exitance[i].exitance * kEdgeNoise, true};
+    doubts[i] = {doubts[i].noise + exitance[i].exitance * (kEdgeNoise * tolerance), true};
   for (std::size_t i = 0; i < points.size(); ++i) exitance[i].irradiance = own[i];
 }
 

@@ -37,6 +37,10 @@ std::uint64_t irradiance_seed(const Settings& settings, std::size_t group) {
   return hash_bits(settings.seed, group + 1000);
 }
 
+std::uint64_t point_irradiance_seed(const Settings& settings) {
+  return hash_bits(settings.seed, 2000);
+}
+
 std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
                                          std::span<const SurfaceSample> samples,
                                          std::span<const Light> lights) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "opaline/core/random.h"
 #include "opaline/diffusion/fresnel.h"
 #include "render/direct_exitance.h"
 
@@ -241,7 +240,7 @@ PointIrradianceInput Shader::lighting_of(const Surfaces& surfaces, float eta) co
           lights_,
           double(eta),
           light_samples,
-          hash_bits(settings.seed, 2000)};
+          point_irradiance_seed(settings)};
 }
 
 }  // namespace opaline
