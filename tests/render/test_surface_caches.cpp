@@ -57,6 +57,22 @@ TEST(SurfaceCaches, PictureOfTheExactSum) {
   }
 }
 
+// Claim: a tighter tolerance gives a finer cache where it holds the shadows' edges, too: a fifth of it at
+// least twice the places. Source: kBumps and kEdgeNoise are shares of it. Fails if: they are fixed shares of
+// the exitance.
+TEST(SurfaceCaches, FollowTheTolerance) {
+  Scene scene = torus_scene(64, 1);
+  scene.settings.evaluator = EvaluatorKind::surface_cache;
+  const auto places = [&](double tolerance) {
+    scene.settings.tolerance = tolerance;
+    return Prepared(scene).pre.groups.at(0).surface_cache->places();
+  };
+  const double coarse = double(places(.005)), fine = double(places(.001));
+  RecordProperty("coarse", std::to_string(coarse));
+  RecordProperty("fine", std::to_string(fine));
+  EXPECT_GT(fine, 2 * coarse);
+}
+
 // Claim: where the mean free path is not far below the sample spacing and normals are smooth, a picture
 // through a surface cache traces camera rays alone; on facets and in a denser medium it traces shadow rays as
 // well. Source: can_hold_own_light. Fails if: caches never hold the own light, or always.
