@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "opaline/core/random.h"
 
@@ -13,83 +14,92 @@ namespace {
 // The exitance that hangs on which of the two irradiances is right, above which shadow rays are worth their
 // time.
 constexpr float kWorth = 0.02f;
-
-constexpr std::size_t kRings = 1024;
-
-// Parts of the near kernel of a channel that fall on rings of equal width out to h; sum 1, or all 0.
-std::array<double, kRings> near_rings(const ChannelProfile& profile, double h) {
-  std::array<double, kRings> rings;
-  double sum = 0;
-  for (std::size_t i = 0; i < kRings; ++i) {
-    rings[i] = near_ring(profile, h, (double(i) + 0.5) / kRings);
-    sum += rings[i];
-  }
-  for (double& ring : rings) ring = sum > 0 ? ring / sum : 0;
-  return rings;
-}
+// Places of a point alone, and how many each of many neighbours brings at least.
+constexpr int kAlone = 16, kEach = 3;
+constexpr std::size_t kMostTogether = 48;  // points that share their places
 
 }  // namespace
 
-// Places of the marked points, on the surface once found.
+struct NearFieldSampler::Means {
+  Densities sums{}, weights{};
+};
+
+// Places of all marked points together, on the surface once found.
 struct NearFieldSampler::Places {
   std::vector<TracedRay> rays;
   std::vector<SurfacePoint> points;
   std::vector<std::uint64_t> keys;
-  std::vector<std::uint32_t> owners, places;  // of the points; of the pattern
+  std::vector<std::uint32_t> sets;  // of the points that brought them
 };
 
-// Each place stands for an equal part of the channels' mean near kernel.
 NearFieldSampler::NearFieldSampler(const TranslucentGroup& group)
     : kernel_(group.kernel), is_own_mesh_(*std::ranges::max_element(group.plan.meshes) + 1) {
   for (const std::uint32_t mesh : group.plan.meshes) is_own_mesh_[mesh] = true;
-  std::array<std::array<double, kRings>, 3> rings{};
-  double channels = 0;
-  for (std::size_t c = 0; c < 3; ++c)
-    if (kernel_.own_irradiance[c] > 0) {
-      rings[c] = near_rings(group.profile.channels[c], double(kernel_.radius));
-      channels += 1;
+  const double h = double(kernel_.radius);
+  std::array<double, kRings> mean_rings{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (!(kernel_.own_irradiance[c] > 0)) continue;
+    std::array<double, kRings> rings;
+    for (std::size_t i = 0; i < kRings; ++i)
+      rings[i] = near_ring(group.profile.channels[c], h, (double(i) + 0.5) / kRings);
+    const double sum = std::accumulate(rings.begin(), rings.end(), 0.0);
+    for (std::size_t i = 0; i < kRings && sum > 0; ++i) {
+      const double area = std::numbers::pi * h * h * double(2 * i + 1) / (kRings * kRings);
+      densities_[i][c] = float(rings[i] / (sum * area));
+      mean_rings[i] += rings[i] / sum;
     }
-  double before = 0;
-  for (std::size_t i = 0; i < kRings; ++i) {
-    const double part = (rings[0][i] + rings[1][i] + rings[2][i]) / channels, middle = before + part / 2;
-    Place& place = pattern_[std::min(std::size_t(middle * kPlaces), kPlaces - 1)];
-    place.weight += RgbF{float(rings[0][i]), float(rings[1][i]), float(rings[2][i])};
-    place.distance += float(part * kPlaces * (double(i) + 0.5) / kRings) * kernel_.radius;
-    before += part;
   }
+  const double all = std::accumulate(mean_rings.begin(), mean_rings.end(), 0.0);
+  const float channels = float(std::round(all));
+  double square = 0;
+  for (std::size_t i = 0; i < kRings && all > 0; ++i) {
+    densities_[i][3] = (densities_[i][0] + densities_[i][1] + densities_[i][2]) / channels;
+    const double part = mean_rings[i] / all, r = h * (double(i) + 0.5) / kRings;
+    within_[i + 1] = within_[i] + part;
+    square += part * r * r;
+  }
+  root_mean_square_ = std::sqrt(square);
 }
 
 std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& lighting,
                                                     std::span<const RgbF> own,
                                                     std::span<Exitance> exitance) const {
-  Places places;
   std::vector<std::uint32_t> marked;
   for (std::uint32_t i = 0; i < exitance.size(); ++i)
-    if (is_beside_edge(own[i], exitance[i])) {
-      add_places(lighting.points[i], std::uint32_t(marked.size()), lighting.keys[i], places);
-      marked.push_back(i);
-    }
+    if (is_beside_edge(own[i], exitance[i])) marked.push_back(i);
   if (marked.empty()) return marked;
+  const std::vector<std::size_t> ends = split(lighting.points, marked);
+  Places places;
+  std::vector<int> drawn;
+  for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++])
+    for (std::size_t m = first; m < ends[set]; ++m) {
+      drawn.push_back(
+          places_of(marked[m], std::span(marked).subspan(first, ends[set] - first), lighting.points));
+      draw(lighting.points[marked[m]], lighting.keys[marked[m]], drawn[m], places);
+      places.sets.resize(places.rays.size(), std::uint32_t(set));
+    }
   find(lighting.rays, places);
   PointIrradianceInput around = lighting;
   around.points = places.points;
   around.keys = places.keys;
-  around.light_samples = std::max(1, lighting.light_samples / int(kPlaces));
+  around.light_samples = std::max(1, lighting.light_samples / kAlone);
   around.variance = {};
   const std::vector<RgbF> entered = irradiance_at(around);
-  std::vector<RgbF> sums(marked.size()), weights(marked.size());
-  for (std::size_t i = 0; i < entered.size(); ++i) {
-    const RgbF& weight = pattern_[places.places[i]].weight;
-    sums[places.owners[i]] += weight * entered[i];
-    weights[places.owners[i]] += weight;
-  }
-  for (std::size_t m = 0; m < marked.size(); ++m) {
-    Exitance& e = exitance[marked[m]];
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (!(weights[m][c] > 0)) continue;
-      const float share = kernel_.own_irradiance[c],
-                  mixed = share * own[marked[m]][c] + (1 - share) * e.irradiance[c];
-      e.exitance[c] += e.near[c] * (sums[m][c] / weights[m][c] - mixed);
+  for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
+    const auto [begin, end] = std::ranges::equal_range(places.sets, std::uint32_t(set));
+    const std::size_t skip = std::size_t(begin - places.sets.begin()), count = std::size_t(end - begin);
+    const std::span<const std::uint32_t> own_set = std::span(marked).subspan(first, ends[set] - first);
+    const std::vector<Means> means =
+        means_of(lighting.points, own_set, std::span(drawn).subspan(first),
+                 std::span(places.points).subspan(skip, count), std::span(entered).subspan(skip, count));
+    for (std::size_t m = 0; m < own_set.size(); ++m) {
+      Exitance& e = exitance[own_set[m]];
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (!(means[m].weights[c] > 0)) continue;
+        const float share = kernel_.own_irradiance[c],
+                    mixed = share * own[own_set[m]][c] + (1 - share) * e.irradiance[c];
+        e.exitance[c] += e.near[c] * (means[m].sums[c] / means[m].weights[c] - mixed);
+      }
     }
   }
   return marked;
@@ -104,22 +114,60 @@ bool NearFieldSampler::is_beside_edge(const RgbF& own, const Exitance& e) const 
   return false;
 }
 
+// Sorts the points into sets of neighbours; returns where each set ends.
+std::vector<std::size_t> NearFieldSampler::split(std::span<const SurfacePoint> points,
+                                                 std::span<std::uint32_t> marked) {
+  std::vector<std::size_t> ends, open{marked.size()};
+  for (std::size_t first = 0; !open.empty();) {
+    const std::size_t last = open.back();
+    if (last - first <= kMostTogether) {
+      ends.push_back(last);
+      open.pop_back();
+      first = last;
+      continue;
+    }
+    Vec3f low = points[marked[first]].position, high = low;
+    for (std::size_t i = first; i < last; ++i) {
+      low = component_min(low, points[marked[i]].position);
+      high = component_max(high, points[marked[i]].position);
+    }
+    const Vec3f side = high - low;
+    const std::size_t axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+    const std::size_t middle = (first + last) / 2;
+    const auto along = [&](std::uint32_t m) { return std::pair(points[m].position[axis], m); };
+    std::ranges::nth_element(marked.subspan(first, last - first), marked.begin() + std::ptrdiff_t(middle), {},
+                             along);
+    open.push_back(middle);
+  }
+  return ends;
+}
+
+// So many that with those of its neighbours the point has kAlone or more.
+int NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint32_t> set,
+                                std::span<const SurfacePoint> points) const {
+  const float square = float(root_mean_square_ * root_mean_square_);
+  int neighbours = 0;
+  for (std::size_t i = 0; i < set.size() && neighbours * kEach < kAlone; ++i) {
+    const Vec3f apart = points[set[i]].position - points[point].position;
+    neighbours += dot(apart, apart) < square && dot(points[point].normal, points[set[i]].normal) > 0;
+  }
+  return std::max(kEach, (kAlone + neighbours - 1) / std::max(1, neighbours));
+}
+
 // On a golden spiral, turned at random from point to point: what the few places miss becomes noise without a
 // pattern.
-void NearFieldSampler::add_places(const SurfacePoint& point, std::uint32_t index, std::uint64_t key,
-                                  Places& places) const {
+void NearFieldSampler::draw(const SurfacePoint& point, std::uint64_t key, int count, Places& places) const {
   constexpr double kGoldenAngle = 2 * std::numbers::pi * (2 - std::numbers::phi);
   Vec3f x, y;
   tangent_frame(point.normal, x, y);
   const double turn = 2 * std::numbers::pi * unit_double(hash_bits(3000, key));
-  for (std::uint32_t k = 0; k < kPlaces; ++k) {
-    const float r = pattern_[k].distance;
+  const double within = unit_double(hash_bits(3001, key));
+  for (int k = 0; k < count; ++k) {
+    const float r = float(drawn_distance((k + within) / count));
     const double angle = turn + kGoldenAngle * k;
     const Vec3f place = point.position + x * (r * float(std::cos(angle))) + y * (r * float(std::sin(angle)));
     places.rays.push_back({Ray(place + point.normal * r, -point.normal, 2 * r), {}});
-    places.owners.push_back(index);
-    places.places.push_back(k);
-    places.keys.push_back(hash_bits(key, k));
+    places.keys.push_back(hash_bits(key, std::uint64_t(k)));
   }
 }
 
@@ -133,13 +181,66 @@ void NearFieldSampler::find(const RayScene& rays, Places& places) const {
     const SurfacePoint point = rays.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
     if (dot(point.geometric, ray.direction) >= 0) continue;
     places.points.push_back(point);
-    places.owners[kept] = places.owners[i];
-    places.places[kept] = places.places[i];
+    places.sets[kept] = places.sets[i];
     places.keys[kept++] = places.keys[i];
   }
-  places.owners.resize(kept);
-  places.places.resize(kept);
+  places.sets.resize(kept);
   places.keys.resize(kept);
+}
+
+// The inverse of the mean kernel's distribution.
+double NearFieldSampler::drawn_distance(double u) const {
+  const auto above = std::ranges::upper_bound(within_, u * within_.back());
+  const std::size_t ring = std::min(std::size_t(above - within_.begin()), kRings) - 1;
+  const double inside = within_[ring], part = within_[ring + 1] - inside;
+  const double t = part > 0 ? std::min(1.0, (u * within_.back() - inside) / part) : 0.5;
+  return double(kernel_.radius) * (double(ring) + t) / kRings;
+}
+
+// The mean irradiance of each marked point's near field, whose own irradiances the places have.
+std::vector<NearFieldSampler::Means> NearFieldSampler::means_of(std::span<const SurfacePoint> points,
+                                                                std::span<const std::uint32_t> marked,
+                                                                std::span<const int> drawn,
+                                                                std::span<const SurfacePoint> places,
+                                                                std::span<const RgbF> entered) const {
+  const std::size_t n = marked.size();
+  std::array<std::vector<float>, 6> of;  // position and normal
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const std::uint32_t m : marked) {
+      of[axis].push_back(points[m].position[axis]);
+      of[axis + 3].push_back(points[m].normal[axis]);
+    }
+  const float *x = of[0].data(), *y = of[1].data(), *z = of[2].data();
+  const float *nx = of[3].data(), *ny = of[4].data(), *nz = of[5].data();
+  const float rings = float(kRings) / kernel_.radius;
+  std::vector<int> ring(n);
+  std::vector<Densities> here(n);
+  std::vector<Means> means(n);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto [position, normal, geometric, offset] = places[i];
+    const float px = position.x, py = position.y, pz = position.z;
+    const float gx = geometric.x, gy = geometric.y, gz = geometric.z;
+    for (std::size_t m = 0; m < n; ++m) {
+      const float dx = x[m] - px, dy = y[m] - py, dz = z[m] - pz;
+      const float r = std::sqrt(dx * dx + dy * dy + dz * dz) * rings;
+      const bool is_seen = nx[m] * gx + ny[m] * gy + nz[m] * gz > 0;
+      ring[m] = int(is_seen && r < kRings ? r : float(kRings));
+    }
+    float expected = 0;  // places per mm^2 here
+    for (std::size_t m = 0; m < n; ++m) {
+      here[m] = densities_[std::size_t(ring[m])];
+      expected += float(drawn[m]) * here[m][3];
+    }
+    if (!(expected > 0)) continue;
+    const Densities inverse = Densities{} + 1 / expected,
+                    irradiance{entered[i].x, entered[i].y, entered[i].z, 0};
+    for (std::size_t m = 0; m < n; ++m) {
+      const Densities weight = here[m] * inverse;
+      means[m].sums += weight * irradiance;
+      means[m].weights += weight;
+    }
+  }
+  return means;
 }
 
 }  // namespace opaline

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,10 +11,12 @@
 
 namespace opaline {
 
-/// Places around a point, drawn from the near kernel R_d (1 - w). evaluate gives the near field one
+/// Places around points, drawn from the near kernel R_d (1 - w). evaluate gives the near field one
 /// irradiance, that of the point mixed with the samples' mean (SplitKernel::own_irradiance); where the two
 /// differ, a shadow edge runs through the near field and neither is what enters it. Shadow rays from these
-/// places tell.
+/// places tell. Neighbouring points share their places: each counts as drawn from the mean of the points' own
+/// kernels.
+/// from  balance heuristic: Veach & Guibas 1995, sec. 3
 class NearFieldSampler {
  public:
   /// group: not without meshes; it must outlive the sampler.
@@ -26,19 +29,28 @@ class NearFieldSampler {
                                     std::span<Exitance> exitance) const;
 
  private:
-  static constexpr std::size_t kPlaces = 16;
-  struct Place {
-    float distance = 0;  // from the point, mm, in its tangent plane
-    RgbF weight{};       // the part of the near kernel that it stands for; the sum over the places is 1
-  };
+  static constexpr std::size_t kRings = 1024;  // of equal width, out to h
   struct Places;
+  struct Means;
+  /// Of the near kernel, whose integral is 1, per channel, and their mean, 1/mm^2.
+  typedef float Densities __attribute__((vector_size(16)));
   bool is_beside_edge(const RgbF& own, const Exitance& exitance) const;
-  void add_places(const SurfacePoint& point, std::uint32_t index, std::uint64_t key, Places& places) const;
+  static std::vector<std::size_t> split(std::span<const SurfacePoint> points,
+                                        std::span<std::uint32_t> marked);
+  int places_of(std::uint32_t point, std::span<const std::uint32_t> set,
+                std::span<const SurfacePoint> points) const;
+  void draw(const SurfacePoint& point, std::uint64_t key, int count, Places& places) const;
   void find(const RayScene& rays, Places& places) const;
+  double drawn_distance(double u) const;
+  std::vector<Means> means_of(std::span<const SurfacePoint> points, std::span<const std::uint32_t> marked,
+                              std::span<const int> drawn, std::span<const SurfacePoint> places,
+                              std::span<const RgbF> entered) const;
 
   const SplitKernel& kernel_;
   std::vector<bool> is_own_mesh_;
-  std::array<Place, kPlaces> pattern_;
+  std::array<Densities, kRings + 1> densities_{};  // ring by ring; 0 beyond h
+  std::array<double, kRings + 1> within_{};  // the part of the channels' mean within a ring's inner edge
+  double root_mean_square_ = 0;              // distance, mm
 };
 
 }  // namespace opaline
