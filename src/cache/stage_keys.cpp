@@ -10,7 +10,7 @@ namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
 constexpr std::uint64_t kSamplesVersion = 1, kCarriedVersion = 1, kTransferVersion = 1, kOctreeVersion = 1,
-                        kExitanceVersion = 2;
+                        kExitanceVersion = 3;
 
 const char* widest_instructions() {
   if (__builtin_cpu_supports("avx512f")) return "avx512";
@@ -75,6 +75,33 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
     key.add(settings.light_samples).add(light_seed(irradiance_seed(settings, group), light));
   for (std::uint32_t m = 0; m < meshes.size(); ++m)
     if (may_shadow(meshes, m, plan, light)) key.add(meshes[m].shape);
+  return key.key();
+}
+
+StageKey view_key(const Scene& scene, std::span<const MeshKeys> meshes) {
+  const Camera& camera = scene.camera;
+  const Film& film = scene.film;
+  KeyBuilder key("view", 1);
+  key.add(camera.position).add(camera.look_at).add(camera.up).add(camera.field_of_view);
+  key.add(film.resolution).add(film.samples_per_pixel).add(film.filter);
+  if (film.crop) key.add(*film.crop);
+  for (const MeshKeys& mesh : meshes) key.add(mesh.all);
+  return key.key();
+}
+
+StageKey view_lights_key(const PrecomputeInput& input, std::span<const Light> lights) {
+  const Settings& settings = input.scene.settings;
+  KeyBuilder key("lights of the view", 1);
+  key.add(settings.method).add(settings.light_samples).add(point_irradiance_seed(settings));
+  for (const Light& light : lights) {
+    key.add(std::uint64_t(light.source.index())).add(light_seed(0, light));
+    std::visit(AddPlace{key}, light.source);
+  }
+  for (const Shape& shape : input.scene.shapes) {
+    key.add(shape.medium.has_value());
+    if (shape.medium) key.add(input.scene.media[*shape.medium].eta);
+  }
+  for (const GroupPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));
   return key.key();
 }
 

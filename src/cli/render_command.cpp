@@ -131,6 +131,7 @@ void render_scene(const RenderArguments& arguments, Session& session, const Shar
                                    : scene_hash(arguments.scene, arguments.overrides, scene);
     is_there = frame && is_rendered(arguments, bytes_hash, *frame);
     if (frame) session.expect_pictures(scene.camera_frames);
+    session.hold_view(frame.has_value());
     if (!is_there) session.edit(std::move(scene));
     return bytes_hash;
   });

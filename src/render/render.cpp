@@ -28,6 +28,15 @@ std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, c
   return non_finite;
 }
 
+// Whether what the camera sees may be held.
+bool fits(const RenderInput& input) {
+  const Film& film = input.scene.film;
+  const std::size_t rays =
+      std::size_t(film.resolution[0]) * std::size_t(film.resolution[1]) * std::size_t(film.samples_per_pixel);
+  return rays * (sizeof(HeldView::CameraHit) + 2 * sizeof(float) * input.scene.lights.size()) <=
+         kMostHeldBytes;
+}
+
 }  // namespace
 
 RenderResult render(const RenderInput& input) {
@@ -38,11 +47,14 @@ RenderResult render(const RenderInput& input) {
   const Shader shader(input);
   const TileRenderer renderer(input, shader);
   const std::vector<Rectangle> tiles = tiles_of(film);
+  HeldView* const view = fits(input) ? input.view : nullptr;
+  if (view != nullptr) view->tiles.resize(tiles.size());
   if (input.monitor != nullptr)
     input.monitor->begin("shading", tiles.size() * std::size_t(film.samples_per_pixel));
   std::atomic<std::size_t> queries{0}, non_finite{0};
   parallel_chunks(tiles.size(), 1, [&](std::size_t begin, std::size_t, std::size_t) {
-    const TileRenderer::Tile tile = renderer.render(tiles[begin]);
+    const TileRenderer::Tile tile =
+        renderer.render(tiles[begin], {}, view != nullptr ? &view->tiles[begin] : nullptr);
     queries += tile.queries;
     non_finite += store(tiles[begin], tile.sums, input.scene, result.image);
     if (input.after_tile) input.after_tile(result.image, common_part(tiles[begin], part));

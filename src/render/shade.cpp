@@ -41,6 +41,13 @@ float cos_view(const Vec3f& normal, const Vec3f& direction) {
   return std::min(1.0f, std::abs(dot(normal, direction)) / length(direction));
 }
 
+// Irradiance at the points, by shadow rays unless they are held.
+std::vector<RgbF> irradiance(const PointIrradianceInput& lighting, PointTransfers* held) {
+  if (held == nullptr) return irradiance_at(lighting);
+  if (held->weights.empty()) *held = transfers_at(lighting);
+  return combine_lights(*held, lighting);
+}
+
 // Whether pictures trace shadow rays for the exitance of a group.
 bool needs_irradiance(const TranslucentGroup& group) {
   return group.surface_cache ? group.surface_cache->needs_irradiance() : group.kernel.needs_irradiance();
@@ -71,12 +78,14 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
 }
 
 std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                          std::span<PixelSample> out, const Pass& pass) const {
+                          std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held) const {
   std::size_t queries = 0;
+  if (held != nullptr) held->lights.resize(kinds_.size());
   const std::vector<Surfaces> surfaces = collect(rays, keys, out);
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
     if (surfaces[k].points.empty()) continue;
-    write(surfaces[k], light(kinds_[k], surfaces[k], rays, pass), rays, out);
+    write(surfaces[k],
+          light(kinds_[k], surfaces[k], rays, pass, held != nullptr ? &held->lights[k] : nullptr), rays, out);
     if (kinds_[k].eta > 0 && has_visible_lights()) add_mirrored_lights(surfaces[k], rays, out);
     if (kinds_[k].group != nullptr) queries += surfaces[k].points.size();
   }
@@ -118,16 +127,16 @@ std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
 }
 
 Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
-                          const Pass& pass) const {
-  if (kind.group != nullptr) return evaluated(kind, surfaces, rays);
+                          const Pass& pass, PointTransfers* held) const {
+  if (kind.group != nullptr) return evaluated(kind, surfaces, rays, held);
   if (kind.entries != nullptr)
     return {direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}), {}, {}};
   PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
-  if (input_.scene.settings.method != Method::hierarchical) return {{}, irradiance_at(lighting), {}};
+  if (input_.scene.settings.method != Method::hierarchical) return {{}, irradiance(lighting, held), {}};
   Lit lit;
   lit.error.resize(surfaces.points.size());  // as variance at first
   lighting.variance = lit.error;
-  lit.irradiance = irradiance_at(lighting);
+  lit.irradiance = irradiance(lighting, held);
   for (std::size_t i = 0; i < lit.error.size(); ++i) {
     const RgbF v = lit.error[i];
     const std::uint32_t mesh = rays[surfaces.rays[i]].hit.mesh;
@@ -136,12 +145,12 @@ Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<
   return lit;
 }
 
-Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces,
-                              std::span<const TracedRay> rays) const {
+Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
+                              PointTransfers* held) const {
   Lit lit;
   const TranslucentGroup& group = *kind.group;
   const PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
-  if (needs_irradiance(group)) lit.irradiance = irradiance_at(lighting);
+  if (needs_irradiance(group)) lit.irradiance = irradiance(lighting, held);
   std::vector<Exitance> exitance = group.surface_cache
                                        ? interpolated(*group.surface_cache, surfaces, lit, rays)
                                        : summed(group, surfaces, lit);

@@ -38,9 +38,9 @@ class Shader {
   explicit Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers = {});
 
   /// Shades a batch of traced camera rays, one PixelSample a ray. keys: one a ray, for its light samples.
-  /// Returns the number of exitance queries.
+  /// held: how lights reach what the rays met, added to, or null. Returns the number of exitance queries.
   std::size_t shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                    std::span<PixelSample> out, const Pass& pass) const;
+                    std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
   /// False where rays that hit nothing see nothing either.
   bool has_visible_lights() const { return !emitters_.empty() || surroundings_ != RgbF{}; }
@@ -66,9 +66,10 @@ class Shader {
 
   std::vector<Surfaces> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                 std::span<PixelSample> out) const;
-  Lit light(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
-            const Pass& pass) const;
-  Lit evaluated(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays) const;
+  Lit light(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays, const Pass& pass,
+            PointTransfers* held) const;
+  Lit evaluated(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
+                PointTransfers* held) const;
   std::vector<Exitance> summed(const TranslucentGroup& group, const Surfaces& surfaces, const Lit& lit) const;
   static std::vector<Exitance> interpolated(const SurfaceCache& cache, const Surfaces& surfaces,
                                             const Lit& lit, std::span<const TracedRay> rays);

@@ -8,6 +8,10 @@ namespace {
 
 constexpr int kTile = 16;
 
+bool is_hit(const TracedRay& traced) {
+  return traced.hit.mesh != Hit::kMiss;
+}
+
 }  // namespace
 
 Rectangle rendered_part(const Film& film) {
@@ -41,7 +45,29 @@ Image empty_image(const Rectangle& part, const Film& film, std::vector<std::stri
 TileRenderer::TileRenderer(const RenderInput& input, const Shader& shader)
     : input_(input), camera_(input.scene.camera, input.scene.film, input.world.origin), shader_(shader) {}
 
-TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass) const {
+// Finds what the rays hit, or takes it from what is held.
+void TileRenderer::trace(std::span<TracedRay> rays, HeldView::Batch* held) const {
+  if (held != nullptr && held->is_traced) {
+    for (std::size_t i = 0; i < held->hits.size(); ++i) {
+      const HeldView::CameraHit& hit = held->hits[i];
+      rays[i].ray.far = hit.far;
+      rays[i].hit.mesh = hit.mesh;
+      rays[i].hit.triangle = hit.triangle;
+      rays[i].hit.u = hit.u;
+      rays[i].hit.v = hit.v;
+    }
+    return;
+  }
+  input_.rays.intersect(rays);
+  if (held == nullptr) return;
+  held->is_traced = true;
+  if (std::ranges::none_of(rays, is_hit)) return;
+  held->hits.reserve(rays.size());
+  for (const auto& [ray, hit] : rays) held->hits.push_back({hit.mesh, hit.triangle, hit.u, hit.v, ray.far});
+}
+
+TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass,
+                                        std::vector<HeldView::Batch>* held) const {
   const Film& film = input_.scene.film;
   const std::size_t pixels = std::size_t(tile.x1 - tile.x0) * std::size_t(tile.y1 - tile.y0);
   const auto samples = std::uint64_t(film.samples_per_pixel), width = std::uint64_t(film.resolution[0]);
@@ -49,6 +75,7 @@ TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass)
   std::vector<PixelSample> seen;
   std::vector<TracedRay> rays(pixels);
   std::vector<std::uint64_t> keys(pixels);
+  if (held != nullptr) held->resize(samples);
   Tile result;
   for (std::uint64_t s = 0; s < samples; ++s) {
     std::size_t i = 0;
@@ -58,15 +85,15 @@ TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass)
         keys[i] = first_key + (std::uint64_t(y) * width + std::uint64_t(x)) * samples + s;
       }
     advance(input_.monitor, 1);
-    input_.rays.intersect(rays);
-    const auto is_hit = [](const TracedRay& traced) { return traced.hit.mesh != Hit::kMiss; };
+    HeldView::Batch* const batch = held != nullptr ? &(*held)[s] : nullptr;
+    trace(rays, batch);
     if (!shader_.has_visible_lights() && std::ranges::none_of(rays, is_hit)) continue;
     if (result.sums.empty()) {
       result.sums.resize(pixels);
-      result.queries += shader_.shade(rays, keys, result.sums, pass);
+      result.queries += shader_.shade(rays, keys, result.sums, pass, batch);
     } else {
       seen.assign(pixels, PixelSample{});
-      result.queries += shader_.shade(rays, keys, seen, pass);
+      result.queries += shader_.shade(rays, keys, seen, pass, batch);
       for (i = 0; i < pixels; ++i) add_sample(result.sums[i], seen[i]);
     }
   }

@@ -36,10 +36,14 @@ class TileRenderer {
     std::size_t queries = 0;
   };
 
-  /// All samples of the tile's pixels. Another pass: other random numbers, the same camera rays.
-  Tile render(const Rectangle& tile, const Pass& pass = {}) const;
+  /// All samples of the tile's pixels. Another pass: other random numbers, the same camera rays. held: what
+  /// was found out of this tile, added to, or null.
+  Tile render(const Rectangle& tile, const Pass& pass = {},
+              std::vector<HeldView::Batch>* held = nullptr) const;
 
  private:
+  void trace(std::span<TracedRay> rays, HeldView::Batch* held) const;
+
   const RenderInput& input_;
   CameraRays camera_;
   const Shader& shader_;

@@ -136,9 +136,25 @@ void Session::prepare(Monitor* monitor) {
 
 RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
   prepare(monitor);
-  RenderResult result = opaline::render({scene_, *world_, *rays_, groups_, monitor, after_tile});
+  RenderResult result = opaline::render({scene_, *world_, *rays_, groups_, monitor, after_tile, held_view()});
   work_.queries += result.queries;
   return result;
+}
+
+/// What is held of earlier pictures and still holds; null: nothing is to be held.
+HeldView* Session::held_view() {
+  if (!holds_view_) {
+    view_ = {};
+    return nullptr;
+  }
+  const StageKey key = view_key(scene_, mesh_keys_);
+  const StageKey lights_key =
+      view_lights_key({scene_, *world_, *rays_, plan_}, recentred_lights(scene_, *world_));
+  if (key != view_key_) view_ = {};
+  if (lights_key != view_lights_key_) view_.forget_lights();
+  view_key_ = key;
+  view_lights_key_ = lights_key;
+  return &view_;
 }
 
 void Session::bring_rays() {

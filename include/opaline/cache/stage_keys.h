@@ -37,6 +37,13 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
                     std::span<const Light> lights);
 
+/// Of what camera rays meet: the camera, the film, all meshes.
+StageKey view_key(const Scene& scene, std::span<const MeshKeys> meshes);
+
+/// Of how the lights reach what camera rays meet: where the lights are and how large, but not their colours;
+/// random numbers; which surfaces are of which kind. in    lights: recentred
+StageKey view_lights_key(const PrecomputeInput& input, std::span<const Light> lights);
+
 /// Whether a mesh could be in the way between a light and a group's meshes, to judge by the balls around them
 /// all; at most too cautious.
 bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,

@@ -8,6 +8,7 @@
 
 #include "opaline/core/monitor.h"
 #include "opaline/image/image.h"
+#include "opaline/render/held_view.h"
 #include "opaline/render/precompute.h"
 
 namespace opaline {
@@ -31,7 +32,11 @@ struct RenderInput {
   std::span<const TranslucentGroup> groups = {};  ///< of the precompute; not needed by Method::lambert
   Monitor* monitor = nullptr;
   AfterTile after_tile = {};
+  HeldView* view = nullptr;  ///< of an earlier picture that saw the same, or new; kept up to kMostHeldBytes
 };
+
+/// A larger view is not held, bytes.
+inline constexpr std::size_t kMostHeldBytes = std::size_t(256) << 20;
 
 struct RenderResult {
   Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2

@@ -34,7 +34,8 @@ struct SessionWork {
 /// over those with equal keys, looks for the others in the cache, and computes what is left:
 ///
 ///   edit                                what is computed
-///   camera, film                        camera rays and what they see; a surface cache is looked up again
+///   camera, film                        camera rays and what they see; a surface cache is looked up again.
+///                                       Other edits trace these rays again, too, unless the view is held
 ///   a light's colour or power           sums over lights, trees; no ray from a sample
 ///   a medium                            evaluation; its samples stay while they are dense enough and at most
 ///                                       twice as dense (in spacing) as it asks for
@@ -69,6 +70,10 @@ class Session {
   /// How many pictures are to be made of the same surfaces in the same light, 1 at first: with the evaluator
   /// `automatic` a surface cache is made if it pays for all of them.
   void expect_pictures(std::size_t pictures) { pictures_ = pictures; }
+
+  /// Whether what the camera sees, and how the lights reach it, is kept for the pictures to come: those of
+  /// other colours and media then trace neither again. Costs memory (HeldView); not at first.
+  void hold_view(bool hold) { holds_view_ = hold; }
 
   /// The ray structure alone, which prepare has made otherwise.
   void prepare_rays();
@@ -113,6 +118,7 @@ class Session {
   void bring_exitance(Part& part, TranslucentGroup& group, const PrecomputeInput& input,
                       std::size_t most_places);
   void assemble();
+  HeldView* held_view();
   void decide(const Part& part, const std::string& text);
 
   StageCache* cache_;
@@ -126,6 +132,9 @@ class Session {
   std::vector<Part> parts_;  // a group's, without what groups_ holds
   std::vector<TranslucentGroup> groups_;
   std::size_t pictures_ = 1;
+  bool holds_view_ = false;
+  HeldView view_;
+  StageKey view_key_, view_lights_key_;
   bool prepared_ = false, anchored_ = false;
   SessionWork work_;
   std::vector<std::string> decisions_;
