@@ -5,32 +5,18 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <functional>
 
-#include "opaline/core/stopwatch.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
+#include "user_seconds.h"
 
 namespace {
 
 using namespace opaline;
-
-template <class Work>
-double user_seconds(const Work& work) {
-  const Stopwatch watch;
-  work();
-  const StageCost cost = watch.cost({});
-  return cost.cpu_seconds - cost.system_seconds;
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 struct Edit {
   const char* name;
