@@ -22,6 +22,7 @@ struct Edit {
   const char* name;
   std::function<void(Scene&)> apply;
   std::size_t pictures = 1;  // expected of the same surfaces in the same light
+  int times = 1;             // in a row, of which the last is timed
 };
 
 void tint(Light& light) {
@@ -40,6 +41,7 @@ void print_edits(const Scene& base) {
       {"camera", [](Scene& s) { s.camera.position.x += 3; }},
       {"camera, of 24 pictures", [](Scene& s) { s.camera.position.x += 3; }, 24},
       {"light colour", [](Scene& s) { tint(s.lights.at(0)); }},
+      {"light colour, third in a row", [](Scene& s) { tint(s.lights.at(0)); }, 1, 3},
       {"medium", [](Scene& s) { s.media.at(0).profile = ProfileKind::normalized_diffusion; }},
       {"eta", [](Scene& s) { s.media.at(0).eta += .1; }},
       {"light moved",
@@ -68,11 +70,15 @@ void print_edits(const Scene& base) {
       });
       if (e == 0) cold.push_back(first);
       Scene scene = base;
-      edits[e].apply(scene);
-      seconds[e].push_back(user_seconds([&] {
-        session.edit(scene);
-        session.render();
-      }));
+      double last = 0;
+      for (int i = 0; i < edits[e].times; ++i) {
+        edits[e].apply(scene);
+        last = user_seconds([&] {
+          session.edit(scene);
+          session.render();
+        });
+      }
+      seconds[e].push_back(last);
       ratios[e].push_back(seconds[e].back() / floor.back());
     }
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "opaline/render/surface_caches.h"
+#include "session/light_mix.h"
 #include "session/session_part.h"
 #include "session/shape_key.h"
 
@@ -29,7 +30,7 @@ std::vector<std::optional<std::size_t>> kept_shapes(const std::vector<StageKey>&
 
 }  // namespace
 
-Session::Session(StageCache* cache) : cache_(cache) {}
+Session::Session(StageCache* cache) : cache_(cache), mix_(std::make_unique<LightMix>()) {}
 Session::~Session() = default;
 
 void Session::edit(Scene scene) {
@@ -136,15 +137,50 @@ void Session::prepare(Monitor* monitor) {
 
 RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
   prepare(monitor);
-  RenderResult result = opaline::render({scene_, *world_, *rays_, groups_, monitor, after_tile, held_view()});
+  HeldView* const view = held_view();
+  if (view != nullptr)
+    if (std::optional<Image> mixed = mixed_picture(*view, monitor)) {
+      if (after_tile) after_tile(*mixed, rendered_part(scene_.film));
+      return {std::move(*mixed)};
+    }
+  RenderResult result = opaline::render({scene_, *world_, *rays_, groups_, monitor, after_tile, view});
   work_.queries += result.queries;
   return result;
+}
+
+/// The picture as a sum of those by single lights, where nothing but colours changes again and again.
+std::optional<Image> Session::mixed_picture(HeldView& view, Monitor* monitor) {
+  const auto has_cache = [](const TranslucentGroup& group) { return group.surface_cache.has_value(); };
+  if (std::ranges::any_of(groups_, has_cache)) {
+    mix_->clear();
+    return {};
+  }
+  return mix_->mixed(scene_, [&](const Scene& scene) {
+    const std::vector<Light> lights = recentred_lights(scene, *world_);
+    std::vector<TranslucentGroup> groups;
+    for (const TranslucentGroup& group : groups_) {
+      const std::vector<RgbF> irradiance = combine_lights(group.transfers, lights);
+      groups.push_back({group.plan,
+                        group.profile,
+                        {},
+                        {},
+                        {},
+                        combined_noise(group.transfers, lights),
+                        gather_flux(group.surface.samples, irradiance),
+                        group.kernel});
+      work_.nodes_built += groups.back().octree.nodes.size();
+    }
+    RenderResult part = opaline::render({scene, *world_, *rays_, groups, monitor, {}, &view});
+    work_.queries += part.queries;
+    return std::move(part.image);
+  });
 }
 
 /// What is held of earlier pictures and still holds; null: nothing is to be held.
 HeldView* Session::held_view() {
   if (!holds_view_) {
     view_ = {};
+    mix_->clear();
     return nullptr;
   }
   const StageKey key = view_key(scene_, mesh_keys_);
@@ -152,6 +188,7 @@ HeldView* Session::held_view() {
       view_lights_key({scene_, *world_, *rays_, plan_}, recentred_lights(scene_, *world_));
   if (key != view_key_) view_ = {};
   if (lights_key != view_lights_key_) view_.forget_lights();
+  if (key != view_key_ || lights_key != view_lights_key_) mix_->clear();
   view_key_ = key;
   view_lights_key_ = lights_key;
   return &view_;

@@ -21,6 +21,7 @@ namespace opaline {
 /// Affine map p -> x p.x + y p.y + z p.z + translation.
 struct Transform {
   Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, translation{};
+  friend bool operator==(const Transform&, const Transform&) = default;
 };
 
 inline Vec3d transform_point(const Transform& t, const Vec3d& p) {
@@ -38,6 +39,7 @@ enum class ProfileKind {
 /// Reduced coefficients per channel, 1/mm, finite and >= 0.
 struct PhysicalMedium {
   Rgb sigma_a, sigma_s_prime;
+  friend bool operator==(const PhysicalMedium&, const PhysicalMedium&) = default;
 };
 
 /// Artist's parameters after OpenPBR.
@@ -45,6 +47,7 @@ struct ArtistMedium {
   Rgb subsurface_color;   ///< total diffuse reflectance per entered flux, [0, 1]
   Rgb subsurface_radius;  ///< 1/sigma_t per channel, mm, >= 0 (radius times subsurface_radius_scale)
   double anisotropy = 0;  ///< mean cosine g, (-1, 1)
+  friend bool operator==(const ArtistMedium&, const ArtistMedium&) = default;
 };
 
 struct Medium {
@@ -52,6 +55,7 @@ struct Medium {
   std::variant<PhysicalMedium, ArtistMedium> coefficients;
   double eta = 1.3;
   ProfileKind profile = ProfileKind::dipole;
+  friend bool operator==(const Medium&, const Medium&) = default;
 };
 
 // ---- shapes ---------------------------------------------------------------------------------------------
@@ -62,26 +66,32 @@ struct MeshFile {
   /// If set: scale so that the largest side of the bounding box is this long (mm), centre x and z on the
   /// origin, and stand the mesh on y = 0; applied before the shape's transform.
   std::optional<double> fit_size;
+  friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
 // Built-in shapes; lengths in mm. `Slab` is a box named for its use: x and z extent, thickness along y.
 struct SphereShape {
   Vec3d center{};
   double radius = 1;
+  friend bool operator==(const SphereShape&, const SphereShape&) = default;
 };
 struct BoxShape {
   Vec3d low{-1, -1, -1}, high{1, 1, 1};
+  friend bool operator==(const BoxShape&, const BoxShape&) = default;
 };
 struct QuadShape {  ///< the parallelogram corner, corner + u, corner + u + v, corner + v; normal along u x v
   Vec3d corner{}, u{1, 0, 0}, v{0, 1, 0};
+  friend bool operator==(const QuadShape&, const QuadShape&) = default;
 };
 struct SlabShape {
   Vec3d center{};
   double width = 1, depth = 1, thickness = 1;  ///< along x, z, y
+  friend bool operator==(const SlabShape&, const SlabShape&) = default;
 };
 struct TorusShape {  ///< axis along y
   Vec3d center{};
   double major_radius = 1, minor_radius = 0.25;
+  friend bool operator==(const TorusShape&, const TorusShape&) = default;
 };
 
 using ShapeSource = std::variant<MeshFile, SphereShape, BoxShape, QuadShape, SlabShape, TorusShape>;
@@ -102,6 +112,7 @@ struct Shape {
   /// Translucent shapes with the same non-empty group blend as one object; others never bleed into each
   /// other.
   std::string group;
+  friend bool operator==(const Shape&, const Shape&) = default;
 };
 
 // ---- lights ---------------------------------------------------------------------------------------------
@@ -109,22 +120,27 @@ struct Shape {
 struct PointLight {
   Vec3d position;
   Rgb intensity;  ///< W/sr; irradiance at distance d mm is intensity / d^2 in W/mm^2
+  friend bool operator==(const PointLight&, const PointLight&) = default;
 };
 struct DirectionalLight {
   Vec3d direction;  ///< unit, the way the light travels
   Rgb irradiance;   ///< on a surface that faces it, W/mm^2
+  friend bool operator==(const DirectionalLight&, const DirectionalLight&) = default;
 };
 struct SphereLight {
   Vec3d center;
   double radius;
   Rgb radiance;
+  friend bool operator==(const SphereLight&, const SphereLight&) = default;
 };
 struct QuadLight {  ///< emits on the side of u x v only
   Vec3d corner, u, v;
   Rgb radiance;
+  friend bool operator==(const QuadLight&, const QuadLight&) = default;
 };
 struct Surroundings {  ///< the same radiance from everywhere
   Rgb radiance;
+  friend bool operator==(const Surroundings&, const Surroundings&) = default;
 };
 
 using LightSource = std::variant<PointLight, DirectionalLight, SphereLight, QuadLight, Surroundings>;
@@ -132,6 +148,7 @@ using LightSource = std::variant<PointLight, DirectionalLight, SphereLight, Quad
 struct Light {
   std::string name;
   LightSource source;
+  friend bool operator==(const Light&, const Light&) = default;
 };
 
 // ---- picture --------------------------------------------------------------------------------------------
@@ -139,6 +156,7 @@ struct Light {
 struct Camera {
   Vec3d position{0, 0, 5}, look_at{0, 0, 0}, up{0, 1, 0};
   double field_of_view = 40;  ///< full vertical angle, degrees, (0, 180)
+  friend bool operator==(const Camera&, const Camera&) = default;
 };
 
 enum class PixelFilter { box, gaussian };
@@ -151,6 +169,7 @@ struct Film {
       PixelFilter::box;  ///< box of one pixel; gaussian of standard deviation 0.5, radius 1.5
   bool half = true;      ///< 16-bit EXR; false: 32-bit
   double exposure = 0;   ///< stops, for PNG only
+  friend bool operator==(const Film&, const Film&) = default;
 };
 
 enum class Method {
@@ -191,6 +210,7 @@ struct Settings {
   std::optional<double> until_error;         ///< direct: stop at this estimated relative error of the pixels
   std::uint64_t seed = 0;
   int reference_frame = 1;  ///< of frame ranges: samples are placed there and go along to all others
+  friend bool operator==(const Settings&, const Settings&) = default;
 };
 
 struct Scene {
@@ -204,6 +224,7 @@ struct Scene {
   /// Frames from the first key of the camera or film to the last where nothing else changes from frame to
   /// frame: pictures of the same surfaces in the same light; else 1.
   std::size_t camera_frames = 1;
+  friend bool operator==(const Scene&, const Scene&) = default;
 };
 
 }  // namespace opaline

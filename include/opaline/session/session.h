@@ -16,6 +16,8 @@
 
 namespace opaline {
 
+class LightMix;
+
 /// Work of one edit, counted where it is done.
 struct SessionWork {
   std::size_t meshes_loaded = 0;     ///< read and mended, or built
@@ -37,6 +39,8 @@ struct SessionWork {
 ///   camera, film                        camera rays and what they see; a surface cache is looked up again.
 ///                                       Other edits trace these rays again, too, unless the view is held
 ///   a light's colour or power           sums over lights, trees; no ray from a sample
+///                                       With the view held, from the second such edit in a row on, a picture
+///                                       by the lights that change and one by the others; then their sum
 ///   a medium                            evaluation; its samples stay while they are dense enough and at most
 ///                                       twice as dense (in spacing) as it asks for
 ///   eta                                 the light that enters, trees, evaluation
@@ -46,7 +50,8 @@ struct SessionWork {
 ///   a mesh bent, the same triangles     samples go along with their triangles (carry_samples); all else of
 ///   it anything else                       what depends on it
 ///
-/// Pictures are those of a new session, bit for bit, but for samples that went along or stayed denser. Those
+/// Pictures are those of a new session, bit for bit, but for such sums (within the tolerance) and for samples
+/// that went along or stayed denser. Those
 /// are the samples of the last surface that was sampled anew, wherever it has been since: a picture depends
 /// on that surface and the scene, not on the edits in between.
 class Session {
@@ -119,6 +124,7 @@ class Session {
                       std::size_t most_places);
   void assemble();
   HeldView* held_view();
+  std::optional<Image> mixed_picture(HeldView& view, Monitor* monitor);
   void decide(const Part& part, const std::string& text);
 
   StageCache* cache_;
@@ -134,6 +140,7 @@ class Session {
   std::size_t pictures_ = 1;
   bool holds_view_ = false;
   HeldView view_;
+  std::unique_ptr<LightMix> mix_;
   StageKey view_key_, view_lights_key_;
   bool prepared_ = false, anchored_ = false;
   SessionWork work_;
