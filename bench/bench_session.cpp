@@ -63,7 +63,7 @@ void print_edits(const Scene& base) {
     for (std::size_t e = 0; e < edits.size(); ++e) {
       Session session;
       session.expect_pictures(edits[e].pictures);
-      session.hold_view(true);
+      session.hold_view(true, true);
       const double first = user_seconds([&] {
         session.edit(base);
         session.render();

@@ -138,7 +138,7 @@ void Session::prepare(Monitor* monitor) {
 RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
   prepare(monitor);
   HeldView* const view = held_view();
-  if (view != nullptr)
+  if (view != nullptr && mixes_lights_)
     if (std::optional<Image> mixed = mixed_picture(*view, monitor)) {
       if (after_tile) after_tile(*mixed, rendered_part(scene_.film));
       return {std::move(*mixed)};

@@ -119,7 +119,7 @@ TEST(Reuse, LightColour) {
 TEST(Reuse, LightColoursAgainAndAgain) {
   Scene scene = two_balls();
   Session session;
-  session.hold_view(true);
+  session.hold_view(true, true);
   picture_of(session, scene);
   const auto recolour = [&](const Rgb& point, const Rgb& quad) {
     std::get<PointLight>(scene.lights[0].source).intensity = point;

@@ -39,8 +39,8 @@ struct SessionWork {
 ///   camera, film                        camera rays and what they see; a surface cache is looked up again.
 ///                                       Other edits trace these rays again, too, unless the view is held
 ///   a light's colour or power           sums over lights, trees; no ray from a sample
-///                                       With the view held, from the second such edit in a row on, a picture
-///                                       by the lights that change and one by the others; then their sum
+///                                       Where lights may be mixed, from the second such edit in a row on, a
+///                                       picture by each that changes and one by the others; then their sum
 ///   a medium                            evaluation; its samples stay while they are dense enough and at most
 ///                                       twice as dense (in spacing) as it asks for
 ///   eta                                 the light that enters, trees, evaluation
@@ -51,9 +51,8 @@ struct SessionWork {
 ///   it anything else                       what depends on it
 ///
 /// Pictures are those of a new session, bit for bit, but for such sums (within the tolerance) and for samples
-/// that went along or stayed denser. Those
-/// are the samples of the last surface that was sampled anew, wherever it has been since: a picture depends
-/// on that surface and the scene, not on the edits in between.
+/// that went along or stayed denser. Those are the samples of the last surface that was sampled anew,
+/// wherever it has been since: a picture depends on that surface and the scene, not on the edits in between.
 class Session {
  public:
   /// cache: where to look for what is not at hand, and to keep it; null: nowhere. Outlives the session.
@@ -78,7 +77,12 @@ class Session {
 
   /// Whether what the camera sees, and how the lights reach it, is kept for the pictures to come: those of
   /// other colours and media then trace neither again. Costs memory (HeldView); not at first.
-  void hold_view(bool hold) { holds_view_ = hold; }
+  /// mix_lights: pictures that differ by their lights' colours alone may then be sums of others (LightMix):
+  /// their last bits depend on the pictures before.
+  void hold_view(bool hold, bool mix_lights = false) {
+    holds_view_ = hold;
+    mixes_lights_ = hold && mix_lights;
+  }
 
   /// The ray structure alone, which prepare has made otherwise.
   void prepare_rays();
@@ -138,7 +142,7 @@ class Session {
   std::vector<Part> parts_;  // a group's, without what groups_ holds
   std::vector<TranslucentGroup> groups_;
   std::size_t pictures_ = 1;
-  bool holds_view_ = false;
+  bool holds_view_ = false, mixes_lights_ = false;
   HeldView view_;
   std::unique_ptr<LightMix> mix_;
   StageKey view_key_, view_lights_key_;
