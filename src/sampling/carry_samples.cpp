@@ -8,9 +8,8 @@
 
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
+#include "sampling/cell_parts.h"
 #include "sampling/stretched_cloud.h"
-#include "sampling/surface_shares.h"
-#include "sampling/triangle_list.h"
 
 namespace opaline {
 namespace {
@@ -99,9 +98,8 @@ std::vector<SampleGrid::Place> carried_places(const CarryInput& input, const Tri
   return places;
 }
 
-SurfaceSamples divided_anew(const TriangleList& triangles, const SampleGrid& grid, double radius,
-                            Monitor* monitor) {
-  const std::vector<SurfaceShare> shares = surface_shares(triangles, grid, float(radius), monitor);
+/// Numbers of the grid's samples in the order of finished ones.
+std::vector<std::uint32_t> finished_order(const TriangleList& triangles, const SampleGrid& grid) {
   std::vector<std::uint32_t> order(grid.size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
@@ -109,19 +107,84 @@ SurfaceSamples divided_anew(const TriangleList& triangles, const SampleGrid& gri
     const TriangleId of_p = triangles.id(p.triangle), of_q = triangles.id(q.triangle);
     return std::tie(of_p.mesh, of_p.triangle, p.u, p.v) < std::tie(of_q.mesh, of_q.triangle, q.u, q.v);
   });
+  return order;
+}
+
+SurfaceSample finished_sample(const World& world, TriangleId id, float u, float v,
+                              const SurfaceShare& share) {
+  const SurfacePoint point = surface_point(world.meshes[id.mesh], id.triangle, u, v);
+  const Vec3f offset = share.area > 0 ? Vec3f(share.moment / share.area) : Vec3f{};
+  return {
+      id.mesh, id.triangle, u, v, point.position, point.normal, float(share.area), point.position + offset};
+}
+
+SurfaceSamples divided_anew(const CarryInput& input, const TriangleList& triangles, const SampleGrid& grid) {
+  const double radius = input.samples.radius;
+  const std::vector<SurfaceShare> shares = surface_shares(triangles, grid, float(radius), input.monitor);
+  const std::vector<std::uint32_t> order = finished_order(triangles, grid);
   SurfaceSamples result{std::vector<SurfaceSample>(order.size()), triangles.area(), radius};
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const SampleGrid::Place& place = grid.place(order[i]);
-      const SurfaceShare& share = shares[order[i]];
-      const TriangleId id = triangles.id(place.triangle);
-      const SurfacePoint point = surface_point(triangles.mesh(id), id.triangle, place.u, place.v);
-      const Vec3f offset = share.area > 0 ? Vec3f(share.moment / share.area) : Vec3f{};
-      result.samples[i] = {id.mesh,        id.triangle,  place.u,           place.v,
-                           point.position, point.normal, float(share.area), point.position + offset};
+      result.samples[i] =
+          finished_sample(input.to, triangles.id(place.triangle), place.u, place.v, shares[order[i]]);
     }
   });
   return result;
+}
+
+/// Whatever cells the surface was sampled with, for samples that came without.
+SurfaceCells divided_before(const CarryInput& input) {
+  const TriangleList triangles(input.from, input.from_meshes);
+  const float radius = float(input.samples.radius);
+  const SampleGrid grid =
+      StretchedCloud(triangles, triangles, radius, carried_places(input, triangles)).grid();
+  std::vector<SurfacePiece> pieces;
+  surface_shares(triangles, grid, radius, input.monitor, &pieces);
+  return collect_cells(triangles, pieces, finished_order(triangles, grid), input.from_meshes);
+}
+
+/// Where the samples have come to, with the geometric normals there.
+std::vector<Standing> standing_after(const CarryInput& input) {
+  const std::vector<SurfaceSample>& samples = input.samples.samples;
+  const std::vector<std::size_t> place = places_of(input.from_meshes);
+  std::vector<Standing> standing(samples.size());
+  parallel_chunks(samples.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceSample& s = samples[i];
+      const SurfacePoint point =
+          surface_point(input.to.meshes[input.to_meshes[place[s.mesh]]], s.triangle, s.u, s.v);
+      standing[i] = {point.position, point.geometric};
+    }
+  });
+  return standing;
+}
+
+/// Whether samples may have to go or come.
+bool may_need_mending(const CarryInput& input, const CountedTriangles& before,
+                      const CountedTriangles& after) {
+  for (std::size_t t = 0; t < after.size(); ++t)
+    if (after.area(t) > kGrown * before.area(t)) return true;
+  return any_closer(standing_after(input), kClosest * float(input.samples.radius));
+}
+
+CarriedSamples bent_along(const CarryInput& input, const CountedTriangles& triangles) {
+  const bool divide = input.cells.empty();
+  if (divide) input.cells = divided_before(input);
+  const std::vector<SurfaceSample>& samples = input.samples.samples;
+  const std::vector<std::size_t> place = places_of(input.from_meshes);
+  SurfaceSamples result{std::vector<SurfaceSample>(samples.size()), 0, input.samples.radius};
+  for (std::size_t t = 0; t < triangles.size(); ++t) result.area += triangles.area(t);
+  parallel_chunks(samples.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceSample& s = samples[i];
+      const TriangleId id{input.to_meshes[place[s.mesh]], s.triangle};
+      const Vec3f position = surface_point(input.to.meshes[id.mesh], id.triangle, s.u, s.v).position;
+      result.samples[i] =
+          finished_sample(input.to, id, s.u, s.v, carried_share(input.cells, i, triangles, position));
+    }
+  });
+  return {.surface = std::move(result), .divided = divide};
 }
 
 }  // namespace
@@ -136,7 +199,10 @@ bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, co
 }
 
 CarriedSamples carry_samples(const CarryInput& input) {
-  if (const std::optional<Motion> motion = common_motion(input)) return {moved(input, *motion), true, 0, 0};
+  if (const std::optional<Motion> motion = common_motion(input)) return {moved(input, *motion), true};
+  const CountedTriangles counted(input.to, input.to_meshes);
+  if (!may_need_mending(input, CountedTriangles(input.from, input.from_meshes), counted))
+    return bent_along(input, counted);
   const TriangleList before(input.from, input.from_meshes),
       after(input.to, input.to_meshes, before, input.from_meshes);
   if (input.monitor != nullptr) input.monitor->begin("sampling", after.size());
@@ -144,7 +210,9 @@ CarriedSamples carry_samples(const CarryInput& input) {
   CarriedSamples result;
   result.removed = cloud.remove_crowded(kClosest);
   result.added = cloud.fill_gaps(kWidest);
-  result.surface = divided_anew(after, cloud.grid(), input.samples.radius, input.monitor);
+  if (result.removed + result.added == 0) return bent_along(input, counted);
+  result.surface = divided_anew(input, after, cloud.grid());
+  result.divided = true;
   return result;
 }
 

@@ -2,7 +2,7 @@
 #include "sampling/stretched_cloud.h"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <bit>
 #include <numeric>
 #include <unordered_map>
@@ -13,10 +13,6 @@
 
 namespace opaline {
 namespace {
-
-struct Standing {
-  Vec3f position, normal;
-};
 
 std::vector<Standing> standing_on(const TriangleList& triangles,
                                   const std::vector<SampleGrid::Place>& places) {
@@ -82,28 +78,57 @@ StretchedCloud::StretchedCloud(const TriangleList& before, const TriangleList& a
                                std::vector<SampleGrid::Place> places)
     : before_(before), after_(after), radius_(radius), places_(std::move(places)) {}
 
-bool StretchedCloud::is_crowded(float distance) const {
-  const SampleGrid all = grid();
-  std::atomic<bool> crowded{false};
-  parallel_chunks(all.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end && !crowded; ++i)
-      all.for_cells_near(all.position(i), distance, [&](const SampleGrid::Cell& cell) {
-        for (std::size_t j = cell.first; j < cell.first + cell.count; ++j) {
-          const Vec3f d = all.position(j) - all.position(i);
-          if (j != i && dot(d, d) < distance * distance &&
-              same_sheet(after_.geometric_normal(all.place(i).triangle),
-                         after_.geometric_normal(all.place(j).triangle)))
-            crowded = true;
-        }
-        return crowded.load();
-      });
-  });
-  return crowded;
+bool any_closer(std::span<const Standing> standing, float distance) {
+  // Cells twice as wide as the distance: whoever is closer to a place is in one of the eight around the
+  // cells' corner that is nearest to it.
+  Vec3f low(INFINITY);
+  for (const Standing& s : standing) low = component_min(low, s.position);
+  const float scale = 1 / (2.01f * distance);
+  constexpr float kLast = 0x1p20f;  // cells beyond are one: only slower
+  const auto cell_of = [&](const Vec3f& p) {
+    const Vec3f c = component_min((p - low) * scale, Vec3f(kLast)) + Vec3f(1);
+    return std::array{c.x, c.y, c.z};
+  };
+  const auto key_of = [](const std::array<std::uint64_t, 3>& c) { return c[0] | c[1] << 21 | c[2] << 42; };
+  const std::size_t slots = std::bit_ceil(2 * standing.size() + 1);
+  const auto slot_of = [&](std::uint64_t key) {
+    return std::size_t((key * 0x9E3779B97F4A7C15ull) >> 20) & (slots - 1);
+  };
+  constexpr std::uint32_t kNone = ~0u;
+  struct Entry {
+    std::uint64_t key;
+    std::uint32_t newest;  // of the cell's members
+  };
+  std::vector<Entry> table(slots, {0, kNone});
+  std::vector<std::uint32_t> older(standing.size());
+  for (std::uint32_t i = 0; i < standing.size(); ++i) {
+    const Standing& s = standing[i];
+    const std::array<float, 3> at = cell_of(s.position);
+    std::array<std::array<std::uint64_t, 2>, 3> near;  // its cell and the nearest neighbour, along each axis
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto own = std::uint64_t(at[k]);
+      near[k] = {own, at[k] - float(own) < 0.5f ? own - 1 : own + 1};
+    }
+    for (unsigned corner = 8; corner-- > 0;) {
+      const std::uint64_t key =
+          key_of({near[0][corner & 1], near[1][corner >> 1 & 1], near[2][corner >> 2 & 1]});
+      std::size_t slot = slot_of(key);
+      while (table[slot].newest != kNone && table[slot].key != key) slot = (slot + 1) & (slots - 1);
+      for (std::uint32_t j = table[slot].newest; j != kNone; j = older[j]) {
+        const Vec3f d = standing[j].position - s.position;
+        if (dot(d, d) < distance * distance && same_sheet(standing[j].normal, s.normal)) return true;
+      }
+      if (corner > 0) continue;
+      older[i] = table[slot].newest;  // its own cell is the last one
+      table[slot] = {key, i};
+    }
+  }
+  return false;
 }
 
 std::size_t StretchedCloud::remove_crowded(float radii) {
-  if (!is_crowded(radii * radius_)) return 0;
   const std::vector<Standing> standing = standing_on(after_, places_);
+  if (!any_closer(standing, radii * radius_)) return 0;
   // Who stays is drawn by lot, the same one in every frame.
   std::vector<std::pair<std::uint64_t, std::uint32_t>> lots(places_.size());
   for (std::uint32_t i = 0; i < lots.size(); ++i) {
@@ -130,8 +155,6 @@ std::size_t StretchedCloud::remove_crowded(float radii) {
 }
 
 std::size_t StretchedCloud::fill_gaps(float radii) {
-  // A gap between samples that was as wide before is no matter of stretch.
-  constexpr double kGrown = 1.2 * 1.2;
   constexpr double kTriesPerArea = 4;  // in squared clearances
   const float clearance = radii * radius_;
   std::vector<std::size_t> grown;

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/geometry/mesh.h"
+#include "opaline/geometry/make_mesh.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {
@@ -32,9 +32,10 @@ World make_world(const Scene& scene);
 
 /// The same world as make_world's, bit for bit, after an edit that left some shapes as they were.
 /// in    kept: one a shape of the scene, the index of its mesh in `old`; none: load it
+///       memories: empty, or one a shape of the scene, for loading it
 /// out   loaded: how many meshes were loaded, those too that had to move with the origin
 World update_world(const Scene& scene, const World& old, std::span<const std::optional<std::size_t>> kept,
-                   std::size_t& loaded);
+                   std::size_t& loaded, std::span<MeshMemory* const> memories = {});
 
 /// A ray in the layout Embree traces, so that batches need no copy (checked in ray_scene.cpp).
 struct alignas(16) Ray {
