@@ -39,8 +39,35 @@ double double_area(const Mesh& mesh, std::size_t triangle) {
   return length(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]));
 }
 
+/// Vertices may be this far from where a motion of the whole takes them, mm.
+double most_apart(const Mesh& mesh) {
+  const Bounds box = bounds(mesh);
+  return 1e-6 * length(box.high - box.low);
+}
+
+/// Whether some edges, of all there are, have lengths that no motion leaves them.
+bool has_other_edges(const CarryInput& input) {
+  constexpr std::size_t kLooks = 64;
+  for (std::size_t m = 0; m < input.from_meshes.size(); ++m) {
+    const Mesh &before = input.from.meshes[input.from_meshes[m]],
+               &after = input.to.meshes[input.to_meshes[m]];
+    const double most = 3 * most_apart(before);
+    const std::size_t step = before.triangles.size() / kLooks + 1;
+    for (std::size_t t = 0; t < before.triangles.size(); t += step) {
+      const auto& [a, b, c] = before.triangles[t];
+      const auto differs = [&](std::uint32_t i, std::uint32_t j) {
+        return std::abs(length(before.positions[i] - before.positions[j]) -
+                        length(after.positions[i] - after.positions[j])) > most;
+      };
+      if (differs(a, b) || differs(b, c) || differs(c, a)) return true;
+    }
+  }
+  return false;
+}
+
 /// The motion that takes the first mesh's largest triangle along, if it does so with every vertex of all.
 std::optional<Motion> common_motion(const CarryInput& input) {
+  if (has_other_edges(input)) return {};
   const Mesh &before = input.from.meshes[input.from_meshes[0]], &after = input.to.meshes[input.to_meshes[0]];
   std::uint32_t largest = 0;
   for (std::uint32_t t = 0; t < before.triangles.size(); ++t)
@@ -49,8 +76,7 @@ std::optional<Motion> common_motion(const CarryInput& input) {
   for (std::size_t m = 0; m < input.from_meshes.size(); ++m) {
     const std::vector<Vec3d>& p = input.from.meshes[input.from_meshes[m]].positions;
     const std::vector<Vec3d>& q = input.to.meshes[input.to_meshes[m]].positions;
-    const Bounds box = bounds(input.from.meshes[input.from_meshes[m]]);
-    const double most = 1e-6 * length(box.high - box.low);
+    const double most = most_apart(input.from.meshes[input.from_meshes[m]]);
     for (std::size_t i = 0; i < p.size(); ++i)
       if (!(length(motion(p[i]) - q[i]) <= most)) return {};
   }
@@ -110,9 +136,8 @@ std::vector<std::uint32_t> finished_order(const TriangleList& triangles, const S
   return order;
 }
 
-SurfaceSample finished_sample(const World& world, TriangleId id, float u, float v,
+SurfaceSample finished_sample(TriangleId id, float u, float v, const SurfacePoint& point,
                               const SurfaceShare& share) {
-  const SurfacePoint point = surface_point(world.meshes[id.mesh], id.triangle, u, v);
   const Vec3f offset = share.area > 0 ? Vec3f(share.moment / share.area) : Vec3f{};
   return {
       id.mesh, id.triangle, u, v, point.position, point.normal, float(share.area), point.position + offset};
@@ -126,8 +151,9 @@ SurfaceSamples divided_anew(const CarryInput& input, const TriangleList& triangl
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const SampleGrid::Place& place = grid.place(order[i]);
-      result.samples[i] =
-          finished_sample(input.to, triangles.id(place.triangle), place.u, place.v, shares[order[i]]);
+      const TriangleId id = triangles.id(place.triangle);
+      const SurfacePoint point = surface_point(triangles.mesh(id), id.triangle, place.u, place.v);
+      result.samples[i] = finished_sample(id, place.u, place.v, point, shares[order[i]]);
     }
   });
   return result;
@@ -144,44 +170,43 @@ SurfaceCells divided_before(const CarryInput& input) {
   return collect_cells(triangles, pieces, finished_order(triangles, grid), input.from_meshes);
 }
 
-/// Where the samples have come to, with the geometric normals there.
-std::vector<Standing> standing_after(const CarryInput& input) {
+/// Where the samples have come to.
+std::vector<SurfacePoint> points_after(const CarryInput& input) {
   const std::vector<SurfaceSample>& samples = input.samples.samples;
   const std::vector<std::size_t> place = places_of(input.from_meshes);
-  std::vector<Standing> standing(samples.size());
+  std::vector<SurfacePoint> points(samples.size());
   parallel_chunks(samples.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceSample& s = samples[i];
-      const SurfacePoint point =
-          surface_point(input.to.meshes[input.to_meshes[place[s.mesh]]], s.triangle, s.u, s.v);
-      standing[i] = {point.position, point.geometric};
+      points[i] = surface_point(input.to.meshes[input.to_meshes[place[s.mesh]]], s.triangle, s.u, s.v);
     }
   });
-  return standing;
+  return points;
 }
 
 /// Whether samples may have to go or come.
-bool may_need_mending(const CarryInput& input, const CountedTriangles& before,
-                      const CountedTriangles& after) {
+bool may_need_mending(const CarryInput& input, std::span<const PlainTriangle> before,
+                      std::span<const PlainTriangle> after, std::span<const SurfacePoint> points) {
   for (std::size_t t = 0; t < after.size(); ++t)
-    if (after.area(t) > kGrown * before.area(t)) return true;
-  return any_closer(standing_after(input), kClosest * float(input.samples.radius));
+    if (double(after[t].area) > kGrown * double(before[t].area)) return true;
+  std::vector<Standing> standing(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) standing[i] = {points[i].position, points[i].geometric};
+  return any_closer(standing, kClosest * float(input.samples.radius));
 }
 
-CarriedSamples bent_along(const CarryInput& input, const CountedTriangles& triangles) {
+CarriedSamples bent_along(const CarryInput& input, std::span<const PlainTriangle> triangles,
+                          std::span<const SurfacePoint> points) {
   const bool divide = input.cells.empty();
   if (divide) input.cells = divided_before(input);
   const std::vector<SurfaceSample>& samples = input.samples.samples;
   const std::vector<std::size_t> place = places_of(input.from_meshes);
   SurfaceSamples result{std::vector<SurfaceSample>(samples.size()), 0, input.samples.radius};
-  for (std::size_t t = 0; t < triangles.size(); ++t) result.area += triangles.area(t);
+  for (const PlainTriangle& triangle : triangles) result.area += double(triangle.area);
   parallel_chunks(samples.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceSample& s = samples[i];
-      const TriangleId id{input.to_meshes[place[s.mesh]], s.triangle};
-      const Vec3f position = surface_point(input.to.meshes[id.mesh], id.triangle, s.u, s.v).position;
-      result.samples[i] =
-          finished_sample(input.to, id, s.u, s.v, carried_share(input.cells, i, triangles, position));
+      result.samples[i] = finished_sample({input.to_meshes[place[s.mesh]], s.triangle}, s.u, s.v, points[i],
+                                          carried_share(input.cells, i, triangles, points[i].position));
     }
   });
   return {.surface = std::move(result), .divided = divide};
@@ -200,9 +225,10 @@ bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, co
 
 CarriedSamples carry_samples(const CarryInput& input) {
   if (const std::optional<Motion> motion = common_motion(input)) return {moved(input, *motion), true};
-  const CountedTriangles counted(input.to, input.to_meshes);
-  if (!may_need_mending(input, CountedTriangles(input.from, input.from_meshes), counted))
-    return bent_along(input, counted);
+  const std::vector<PlainTriangle> plain = plain_triangles(input.to, input.to_meshes);
+  const std::vector<SurfacePoint> points = points_after(input);
+  if (!may_need_mending(input, plain_triangles(input.from, input.from_meshes), plain, points))
+    return bent_along(input, plain, points);
   const TriangleList before(input.from, input.from_meshes),
       after(input.to, input.to_meshes, before, input.from_meshes);
   if (input.monitor != nullptr) input.monitor->begin("sampling", after.size());
@@ -210,7 +236,7 @@ CarriedSamples carry_samples(const CarryInput& input) {
   CarriedSamples result;
   result.removed = cloud.remove_crowded(kClosest);
   result.added = cloud.fill_gaps(kWidest);
-  if (result.removed + result.added == 0) return bent_along(input, counted);
+  if (result.removed + result.added == 0) return bent_along(input, plain, points);
   result.surface = divided_anew(input, after, cloud.grid());
   result.divided = true;
   return result;

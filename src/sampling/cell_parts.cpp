@@ -27,44 +27,35 @@ SurfaceCells collect_cells(const TriangleList& triangles, std::span<const Surfac
   return cells;
 }
 
-CountedTriangles::CountedTriangles(const World& world, std::span<const std::uint32_t> meshes)
-    : world_(world), meshes_(meshes) {
+std::vector<PlainTriangle> plain_triangles(const World& world, std::span<const std::uint32_t> meshes) {
   std::size_t count = 0;
+  for (const std::uint32_t m : meshes) count += world.meshes[m].triangles.size();
+  std::vector<PlainTriangle> triangles(count);
+  PlainTriangle* to = triangles.data();
   for (const std::uint32_t m : meshes) {
-    firsts_.push_back(count);
-    count += world.meshes[m].triangles.size();
-  }
-  areas_.resize(count);
-  for (std::size_t place = 0; place < meshes.size(); ++place) {
-    const Mesh& mesh = world.meshes[meshes[place]];
+    const Mesh& mesh = world.meshes[m];
     parallel_chunks(mesh.triangles.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t t = begin; t < end; ++t) {
         const auto& [a, b, c] = mesh.triangles[t];
-        const Vec3d normal =
-            cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
-        areas_[firsts_[place] + t] = 0.5 * length(normal);
+        const Vec3d &corner = mesh.positions[a], ab = mesh.positions[b] - corner,
+                    ac = mesh.positions[c] - corner;
+        to[t] = {Vec3f(corner), Vec3f(ab), Vec3f(ac), float(0.5 * length(cross(ab, ac)))};
       }
     });
+    to += mesh.triangles.size();
   }
+  return triangles;
 }
 
-TriangleList::Corners CountedTriangles::corners(std::size_t triangle) const {
-  const auto place = std::size_t(std::ranges::upper_bound(firsts_, triangle) - firsts_.begin()) - 1;
-  const Mesh& mesh = world_.meshes[meshes_[place]];
-  const auto& [a, b, c] = mesh.triangles[triangle - firsts_[place]];
-  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
-}
-
-SurfaceShare carried_share(const SurfaceCells& cells, std::size_t sample, const CountedTriangles& triangles,
-                           const Vec3f& position) {
-  const Vec3d origin(position);
+SurfaceShare carried_share(const SurfaceCells& cells, std::size_t sample,
+                           std::span<const PlainTriangle> triangles, const Vec3f& position) {
   SurfaceShare share;
   for (std::uint32_t i = cells.first[sample]; i < cells.first[sample + 1]; ++i) {
     const CellPart& part = cells.parts[i];
-    const double area = double(part.share) * triangles.area(part.triangle);
-    const auto [a, b, c] = triangles.corners(part.triangle);
+    const PlainTriangle& t = triangles[part.triangle];
+    const double area = double(part.share) * double(t.area);
     share.area += area;
-    share.moment += (a + (b - a) * double(part.u) + (c - a) * double(part.v) - origin) * area;
+    share.moment += Vec3d(t.corner - position + t.u_edge * part.u + t.v_edge * part.v) * area;
   }
   return share;
 }

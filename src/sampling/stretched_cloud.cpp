@@ -72,6 +72,77 @@ class GrowingCloud {
   std::unordered_map<std::uint64_t, std::vector<Standing>> cells_;
 };
 
+/// Places in cells a little over twice as wide as a distance: whoever is closer than it to a place is in one
+/// of the eight cells around the corner that is nearest to the place.
+class CloseCells {
+ public:
+  CloseCells(std::span<const Standing> standing, float distance)
+      : standing_(standing),
+        distance2_(distance * distance),
+        scale_(1 / (2.01f * distance)),
+        entries_(std::bit_ceil(2 * standing.size() + 16)),
+        seen_(entries_.size() / 8),
+        older_(standing.size()) {
+    for (const Standing& s : standing) low_ = component_min(low_, s.position);
+  }
+
+  /// Whether any place before the i-th is close to it and of its sheet; to be asked of each in turn.
+  bool is_close(std::uint32_t i) {
+    constexpr float kLast = 0x1p20f;  // cells beyond are one, which is only slower
+    const Vec3f c = component_min((standing_[i].position - low_) * scale_, Vec3f(kLast)) + Vec3f(1);
+    std::array<std::array<std::uint64_t, 2>, 3> near;  // its cell's coordinate and the other one, shifted
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto own = std::uint64_t(c[k]);
+      near[k] = {own << 21 * k, (c[k] - float(own) < 0.5f ? own - 1 : own + 1) << 21 * k};
+    }
+    for (unsigned corner = 1; corner < 8; ++corner) {
+      const std::uint64_t key = near[0][corner & 1] | near[1][corner >> 1 & 1] | near[2][corner >> 2];
+      if (is_seen(key) && any_in(entries_[slot_of(key)].newest, i)) return true;
+    }
+    const std::uint64_t key = near[0][0] | near[1][0] | near[2][0];
+    Entry& entry = entries_[slot_of(key)];
+    if (any_in(entry.newest, i)) return true;
+    seen_[bit_of(key) >> 6] |= std::uint64_t(1) << (bit_of(key) & 63);
+    older_[i] = entry.newest;
+    entry = {key, i};
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0u;
+  struct Entry {
+    std::uint64_t key = 0;
+    std::uint32_t newest = kNone;  // of the cell's places
+  };
+
+  std::size_t slot_of(std::uint64_t key) const {
+    std::size_t slot = std::size_t((key * 0x9E3779B97F4A7C15ull) >> 20) & (entries_.size() - 1);
+    while (entries_[slot].newest != kNone && entries_[slot].key != key)
+      slot = (slot + 1) & (entries_.size() - 1);
+    return slot;
+  }
+  // Most cells that are asked for are empty, and a bit for each that is not stays in the nearest memory.
+  std::size_t bit_of(std::uint64_t key) const {
+    return std::size_t((key * 0xD6E8FEB86659FD93ull) >> 30) & (64 * seen_.size() - 1);
+  }
+  bool is_seen(std::uint64_t key) const { return seen_[bit_of(key) >> 6] >> (bit_of(key) & 63) & 1; }
+
+  bool any_in(std::uint32_t newest, std::uint32_t i) const {
+    for (std::uint32_t j = newest; j != kNone; j = older_[j]) {
+      const Vec3f d = standing_[j].position - standing_[i].position;
+      if (dot(d, d) < distance2_ && same_sheet(standing_[j].normal, standing_[i].normal)) return true;
+    }
+    return false;
+  }
+
+  std::span<const Standing> standing_;
+  float distance2_, scale_;
+  Vec3f low_{INFINITY};
+  std::vector<Entry> entries_;       // a power of two of them
+  std::vector<std::uint64_t> seen_;  // eight bits an entry
+  std::vector<std::uint32_t> older_;
+};
+
 }  // namespace
 
 StretchedCloud::StretchedCloud(const TriangleList& before, const TriangleList& after, float radius,
@@ -79,50 +150,9 @@ StretchedCloud::StretchedCloud(const TriangleList& before, const TriangleList& a
     : before_(before), after_(after), radius_(radius), places_(std::move(places)) {}
 
 bool any_closer(std::span<const Standing> standing, float distance) {
-  // Cells twice as wide as the distance: whoever is closer to a place is in one of the eight around the
-  // cells' corner that is nearest to it.
-  Vec3f low(INFINITY);
-  for (const Standing& s : standing) low = component_min(low, s.position);
-  const float scale = 1 / (2.01f * distance);
-  constexpr float kLast = 0x1p20f;  // cells beyond are one: only slower
-  const auto cell_of = [&](const Vec3f& p) {
-    const Vec3f c = component_min((p - low) * scale, Vec3f(kLast)) + Vec3f(1);
-    return std::array{c.x, c.y, c.z};
-  };
-  const auto key_of = [](const std::array<std::uint64_t, 3>& c) { return c[0] | c[1] << 21 | c[2] << 42; };
-  const std::size_t slots = std::bit_ceil(2 * standing.size() + 1);
-  const auto slot_of = [&](std::uint64_t key) {
-    return std::size_t((key * 0x9E3779B97F4A7C15ull) >> 20) & (slots - 1);
-  };
-  constexpr std::uint32_t kNone = ~0u;
-  struct Entry {
-    std::uint64_t key;
-    std::uint32_t newest;  // of the cell's members
-  };
-  std::vector<Entry> table(slots, {0, kNone});
-  std::vector<std::uint32_t> older(standing.size());
-  for (std::uint32_t i = 0; i < standing.size(); ++i) {
-    const Standing& s = standing[i];
-    const std::array<float, 3> at = cell_of(s.position);
-    std::array<std::array<std::uint64_t, 2>, 3> near;  // its cell and the nearest neighbour, along each axis
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto own = std::uint64_t(at[k]);
-      near[k] = {own, at[k] - float(own) < 0.5f ? own - 1 : own + 1};
-    }
-    for (unsigned corner = 8; corner-- > 0;) {
-      const std::uint64_t key =
-          key_of({near[0][corner & 1], near[1][corner >> 1 & 1], near[2][corner >> 2 & 1]});
-      std::size_t slot = slot_of(key);
-      while (table[slot].newest != kNone && table[slot].key != key) slot = (slot + 1) & (slots - 1);
-      for (std::uint32_t j = table[slot].newest; j != kNone; j = older[j]) {
-        const Vec3f d = standing[j].position - s.position;
-        if (dot(d, d) < distance * distance && same_sheet(standing[j].normal, s.normal)) return true;
-      }
-      if (corner > 0) continue;
-      older[i] = table[slot].newest;  // its own cell is the last one
-      table[slot] = {key, i};
-    }
-  }
+  CloseCells cells(standing, distance);
+  for (std::uint32_t i = 0; i < standing.size(); ++i)
+    if (cells.is_close(i)) return true;
   return false;
 }
 

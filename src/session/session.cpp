@@ -202,9 +202,12 @@ RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
 
 void Session::bring_rays() {
   const auto same = [](const MeshKeys& a, const MeshKeys& b) { return a.all == b.all; };
-  if (rays_ != nullptr && std::ranges::equal(rays_keys_, mesh_keys_, same)) return;
+  if (rays_ != nullptr && rays_build_ == plan_.rays && std::ranges::equal(rays_keys_, mesh_keys_, same))
+    return;
   rays_ = nullptr;  // not both at once
-  rays_ = std::make_unique<RayScene>(*world_);
+  rays_build_ = plan_.rays;
+  rays_ = std::make_unique<RayScene>(*world_, rays_build_);
+  ++work_.ray_builds;
   rays_keys_ = mesh_keys_;
 }
 

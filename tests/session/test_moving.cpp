@@ -43,6 +43,7 @@ TEST(Moving, RigidObject) {
   const SessionWork work = session.work();
   EXPECT_EQ(work.meshes_loaded, 1u);
   EXPECT_EQ(work.meshes_read + work.meshes_checked, 0u);
+  EXPECT_EQ(work.ray_builds, 1u);
   EXPECT_EQ(work.samples_placed + work.samples_removed + work.samples_divided, 0u);
   EXPECT_NEAR(double(work.samples_carried), 2500, 100);
   EXPECT_EQ(work.lights_traced, 3u);  // of the left one alone

@@ -72,10 +72,15 @@ struct SurfacePoint {
   float offset = 0;  ///< RayScene::offset here, mm, for rays from the point; 0: the largest mesh's
 };
 
+/// How a ray structure is built. Rays meet the same triangles either way, at the same places; one that meets
+/// two at the same distance may be given the other one. On the bunny (69k triangles) `quick` takes .004 s in
+/// place of .025 s, and then camera rays take 0 to 5 % longer and shadow rays from all over the surface 15 %.
+enum class RayBuild { careful, quick };
+
 /// Ray queries against the meshes of a world. Batches of coherent rays are fastest (256 at once).
 class RayScene {
  public:
-  explicit RayScene(const World& world);
+  explicit RayScene(const World& world, RayBuild build = RayBuild::careful);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) = delete;
@@ -106,7 +111,7 @@ class RayScene {
   struct Handles;
   struct Vertex;
   struct MeshView;
-  void attach(const Mesh& mesh);
+  void attach(const Mesh& mesh, RayBuild build);
 
   std::unique_ptr<Handles> handles_;
   std::vector<MeshView> meshes_;

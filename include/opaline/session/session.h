@@ -21,6 +21,7 @@ struct SessionWork {
   std::size_t meshes_loaded = 0;     ///< put where the scene has them
   std::size_t meshes_read = 0;       ///< of these, from their files, or built
   std::size_t meshes_checked = 0;    ///< of these, for how their triangles meet
+  std::size_t ray_builds = 0;        ///< of the structure that rays walk
   std::size_t samples_placed = 0;    ///< by throwing darts, or where a carried surface was stretched
   std::size_t samples_carried = 0;   ///< along with their triangles
   std::size_t samples_removed = 0;   ///< of these, where the surface was squeezed
@@ -139,6 +140,7 @@ class Session {
   std::vector<MeshKeys> mesh_keys_;
   Plan plan_;
   std::unique_ptr<RayScene> rays_;
+  RayBuild rays_build_ = RayBuild::careful;
   std::vector<MeshKeys> rays_keys_;
   std::vector<Part> parts_;  // a group's, without what groups_ holds
   std::vector<TranslucentGroup> groups_;
