@@ -185,22 +185,35 @@ class Barycentrics {
   Vec3d origin_, along_u_, along_v_;
 };
 
-/// Sums a triangle's shares by their samples; their order is changed.
+/// Sums the shares of each sample, in place; how many samples there are.
+std::size_t merge_by_sample(std::span<Share> shares) {
+  constexpr std::size_t kFew = 64;
+  const bool sorted = shares.size() > kFew;  // then a sample's are neighbours
+  if (sorted) std::ranges::stable_sort(shares, {}, &Share::sample);
+  std::size_t count = 0;
+  for (const Share& share : shares) {
+    std::size_t i = sorted && count > 0 ? count - 1 : 0;
+    while (i < count && shares[i].sample != share.sample) ++i;
+    if (i == count) {
+      shares[count++] = share;
+    } else {
+      shares[i].area += share.area;
+      shares[i].moment += share.moment;
+    }
+  }
+  return count;
+}
+
+/// The pieces of one triangle, whose shares are used up.
 void add_pieces(const TriangleList& triangles, const SampleGrid& grid, std::span<Share> shares,
                 std::vector<SurfacePiece>& pieces) {
   const std::uint32_t triangle = shares[0].triangle;
   const Barycentrics at(triangles.corners(triangles.id(triangle)));
   const double whole = triangles.area(triangle);
-  std::ranges::stable_sort(shares, {}, &Share::sample);
-  for (std::size_t i = 0; i < shares.size();) {
-    Share sum = shares[i++];
-    for (; i < shares.size() && shares[i].sample == sum.sample; ++i) {
-      sum.area += shares[i].area;
-      sum.moment += shares[i].moment;
-    }
+  for (const Share& sum : shares.first(merge_by_sample(shares))) {
+    if (!(sum.area > 0)) continue;
     const Vec3d middle = Vec3d(grid.position(sum.sample)) + sum.moment / sum.area;
-    if (sum.area > 0)
-      pieces.push_back({triangle, sum.sample, float(sum.area / whole), at.u(middle), at.v(middle)});
+    pieces.push_back({triangle, sum.sample, float(sum.area / whole), at.u(middle), at.v(middle)});
   }
 }
 

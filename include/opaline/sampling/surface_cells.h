@@ -14,7 +14,7 @@ struct CellPart {
   float u, v;              ///< barycentrics of the part's middle, of the second and third corner
 };
 
-/// 16 bytes a part; a sample has some 4 parts more than its share of the triangles.
+/// 16 bytes a part. Bunny of 70k triangles: 217k parts for 24k samples, 1.9M for 1M.
 struct SurfaceCells {
   std::vector<std::uint32_t> first;  ///< into parts, of each sample and behind the last one
   std::vector<CellPart> parts;       ///< sample by sample

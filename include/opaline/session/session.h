@@ -44,10 +44,11 @@ struct SessionWork {
 ///                                       twice as dense (in spacing) as it asks for
 ///   eta                                 the light that enters, trees, evaluation
 ///   a light moved, added or removed     that light's share, trees, evaluation
-///   an object moved as a whole          its samples go along; light that enters it, and others where the
-///                                       shadow of a ball around it fell or falls
-///   a mesh bent, the same triangles     samples go along with their triangles (carry_samples); all else of
-///   it anything else                       what depends on it
+///   an object moved as a whole          no file is read; its samples go along; light that enters it, and
+///                                       others where the shadow of a ball around it fell or falls
+///   a mesh bent, the same triangles     it is read, not checked; samples and their cells go along with their
+///                                       triangles (carry_samples); all else of it
+///   anything else                       what depends on it
 ///
 /// Pictures are those of a new session, bit for bit, but for samples that went along or stayed denser. Those
 /// are the samples of the last surface that was sampled anew, wherever it has been since: a picture depends
