@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an edit of a scene costs in a session, its first light, and a start from the disk: user CPU of one
-// thread, over the plain lambert frame's in the same round; medians of 5 rounds. usage: bench_session SCENE
-// [CACHE_SAMPLES]
+// What an edit of a scene costs in a session and by which stages, a film of a mesh that bends, its first
+// light, and a start from the disk: user CPU of one thread, over the plain lambert frame's in the same round;
+// medians of 5 rounds, of the film one. usage: bench_session SCENE [CACHE_SAMPLES]
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <numbers>
+#include <numeric>
 
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
@@ -24,6 +29,25 @@ struct Edit {
   std::size_t pictures = 1;  // expected of the same surfaces in the same light
   int times = 1;             // in a row, of which the last is timed
 };
+
+// Where the time of an edit goes: loading and planning, the stages of Session::costs, the picture.
+constexpr std::array kParts = {"load", "rays", "sampling", "irradiance", "octree", "exitance", "picture"};
+using PartSeconds = std::array<double, kParts.size()>;
+
+PartSeconds edit_and_render(Session& session, const Scene& scene) {
+  PartSeconds seconds{};
+  seconds[0] = user_seconds([&] { session.edit(scene); });
+  session.prepare();
+  for (std::size_t i = 1; i < seconds.size(); ++i)
+    for (const StageCost& cost : session.costs())
+      if (cost.stage == kParts[i]) seconds[i] += cost.cpu_seconds - cost.system_seconds;
+  seconds.back() = user_seconds([&] { session.render(); });
+  return seconds;
+}
+
+double sum(const PartSeconds& seconds) {
+  return std::accumulate(seconds.begin(), seconds.end(), 0.0);
+}
 
 void tint(Light& light) {
   std::visit(
@@ -54,6 +78,7 @@ void print_edits(const Scene& base) {
   Scene lambert = base;
   lambert.settings.method = Method::lambert;
   std::vector<std::vector<double>> seconds(edits.size()), ratios(edits.size());
+  std::vector<std::array<std::vector<double>, kParts.size()>> parts(edits.size());
   std::vector<double> floor, cold;
   for (int round = 0; round < 5; ++round) {
     Session plain;
@@ -64,27 +89,77 @@ void print_edits(const Scene& base) {
       Session session;
       session.expect_pictures(edits[e].pictures);
       session.hold_view(true, true);
-      const double first = user_seconds([&] {
-        session.edit(base);
-        session.render();
-      });
+      const double first = sum(edit_and_render(session, base));
       if (e == 0) cold.push_back(first);
       Scene scene = base;
-      double last = 0;
+      PartSeconds now{};
       for (int i = 0; i < edits[e].times; ++i) {
         edits[e].apply(scene);
-        last = user_seconds([&] {
-          session.edit(scene);
-          session.render();
-        });
+        now = edit_and_render(session, scene);
       }
-      seconds[e].push_back(last);
+      seconds[e].push_back(sum(now));
       ratios[e].push_back(seconds[e].back() / floor.back());
+      for (std::size_t i = 0; i < kParts.size(); ++i) parts[e][i].push_back(now[i] / floor.back());
     }
   }
-  fmt::print("lambert frame {:.4f} s, cold hierarchical {:.3f} s\n", median(floor), median(cold));
-  for (std::size_t e = 0; e < edits.size(); ++e)
-    fmt::print("{:<38}{:>8.4f} s {:>7.2f} x lambert\n", edits[e].name, median(seconds[e]), median(ratios[e]));
+  fmt::print("lambert frame {:.4f} s, cold hierarchical {:.3f} s\n{:<36}{:>8}{:>10}", median(floor),
+             median(cold), "", "", "x lambert");
+  for (const char* part : kParts) fmt::print("{:>11}", part);
+  for (std::size_t e = 0; e < edits.size(); ++e) {
+    fmt::print("\n{:<36}{:>6.4f} s{:>10.2f}", edits[e].name, median(seconds[e]), median(ratios[e]));
+    for (const std::vector<double>& part : parts[e]) fmt::print("{:>11.2f}", median(part));
+  }
+  fmt::print("\n");
+}
+
+/// The scene's first shape as files, one a frame, in which it sways: bent sideways by up to 5 % of its
+/// height.
+std::vector<Scene> swaying(const Scene& base, const std::filesystem::path& folder, std::size_t frames) {
+  Session session;
+  session.edit(base);
+  const World& world = session.world();
+  const Mesh& mesh = world.meshes.at(0);
+  const Bounds& box = world.boxes.at(0);
+  const double height = box.high.y - box.low.y;
+  std::vector<Scene> scenes(frames, base);
+  for (std::size_t f = 0; f < frames; ++f) {
+    const std::string path = (folder / fmt::format("sway.{}.obj", f)).string();
+    std::ofstream file(path);
+    const double sway = 0.05 * std::sin(2 * std::numbers::pi * double(f) / double(frames)) / height;
+    for (Vec3d p : mesh.positions) {
+      p += world.origin;
+      const double up = p.y - box.low.y;
+      file << fmt::format("v {:.9g} {:.9g} {:.9g}\n", p.x + sway * up * up, p.y, p.z);
+    }
+    for (const auto& [a, b, c] : mesh.triangles) file << fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
+    scenes[f].shapes[0].source = MeshFile{path, false, {}};
+    scenes[f].shapes[0].to_world = {};
+  }
+  return scenes;
+}
+
+void print_film(const Scene& base) {
+  constexpr std::size_t kFrames = 24;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "opaline-bench-film";
+  std::filesystem::create_directories(folder);
+  const std::vector<Scene> scenes = swaying(base, folder, kFrames);
+  Session session;
+  double film = 0, cold = 0;
+  PartSeconds parts{};
+  for (const Scene& scene : scenes) {
+    const PartSeconds seconds = edit_and_render(session, scene);
+    film += sum(seconds);
+    for (std::size_t i = 0; i < parts.size(); ++i) parts[i] += seconds[i] / double(kFrames);
+  }
+  for (const Scene& scene : scenes) {
+    Session alone;
+    cold += sum(edit_and_render(alone, scene));
+  }
+  std::filesystem::remove_all(folder);
+  fmt::print("{} frames of a mesh that bends: {:.3f} s, cold {:.3f} s, {:.2f} x; s a frame:", kFrames, film,
+             cold, cold / film);
+  for (std::size_t i = 0; i < parts.size(); ++i) fmt::print(" {} {:.4f}", kParts[i], parts[i]);
+  fmt::print("\n");
 }
 
 void print_first_light(const Scene& scene) {
@@ -138,6 +213,7 @@ int main(int argc, char** argv) try {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const Scene scene = load_scene(argv[1]);
   print_edits(scene);
+  print_film(scene);
   print_first_light(scene);
   print_disk_start(scene, argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1000000);
   return 0;

@@ -9,7 +9,7 @@ namespace opaline {
 namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
-constexpr std::uint64_t kSamplesVersion = 1, kCarriedVersion = 1, kTransferVersion = 1, kOctreeVersion = 1,
+constexpr std::uint64_t kSamplesVersion = 1, kCarriedVersion = 2, kTransferVersion = 1, kOctreeVersion = 1,
                         kExitanceVersion = 3;
 
 const char* widest_instructions() {
@@ -78,13 +78,14 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
   return key.key();
 }
 
-StageKey view_key(const Scene& scene, std::span<const MeshKeys> meshes) {
-  const Camera& camera = scene.camera;
-  const Film& film = scene.film;
+StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes) {
+  const Camera& camera = input.scene.camera;
+  const Film& film = input.scene.film;
   KeyBuilder key("view", 1);
   key.add(camera.position).add(camera.look_at).add(camera.up).add(camera.field_of_view);
   key.add(film.resolution).add(film.samples_per_pixel).add(film.filter);
   if (film.crop) key.add(*film.crop);
+  key.add(input.plan.rays);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
   return key.key();
 }

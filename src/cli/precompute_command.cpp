@@ -34,6 +34,7 @@ void precompute_command(const PrecomputeArguments& arguments) {
     threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
   StageCache cache(arguments.cache, arguments.cache_bytes);
   Session session(&cache);
+  session.expect_edits(!arguments.frames.empty());
   if (arguments.frames.empty()) return precompute_frame(arguments, session, cache, {});
   anchor_session(session, arguments.scene, arguments.overrides);
   for_frames(arguments.log, arguments.frames,

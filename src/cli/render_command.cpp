@@ -183,6 +183,7 @@ void render_command(const RenderArguments& arguments) {
   std::optional<StageCache> cache;
   if (!arguments.cache.empty()) cache.emplace(arguments.cache, arguments.cache_bytes);
   Session session(cache ? &*cache : nullptr);
+  session.expect_edits(!arguments.frames.empty());
   if (arguments.frames.empty())
     check_writable(arguments);
   else

@@ -15,16 +15,21 @@ namespace {
 
 class MeshChecker {
  public:
-  MeshChecker(SourceMesh source, const CheckSettings& settings)
-      : settings_(settings), source_(std::move(source)) {
-    report_.warnings = std::move(source_.warnings);
-    report_.zero_area_dropped = source_.collapsed;
-  }
+  MeshChecker(SourceMesh source, const CheckSettings& settings, CheckMemory* memory)
+      : settings_(settings), source_(std::move(source)), memory_(memory) {}
 
   CheckedMesh run() {
-    merge_vertices();
-    drop_collapsed_and_duplicates();
-    mend_winding_and_holes();
+    find_same_vertices();
+    if (!recall()) {
+      start_memory();
+      merge_vertices();
+      drop_collapsed_and_duplicates();
+      mend_winding_and_holes();
+      finish_memory();
+    }
+    for (std::string& text : report_.warnings) text = settings_.name + ": " + text;
+    report_.warnings.insert(report_.warnings.begin(), source_.warnings.begin(), source_.warnings.end());
+    report_.zero_area_dropped += source_.collapsed;
     drop_slivers();
     if (source_.triangles.empty())
       throw bad_file(settings_.name, "the mesh has no area", "at least one triangle with an area",
@@ -38,18 +43,54 @@ class MeshChecker {
   }
 
  private:
-  void warn(const std::string& text) { report_.warnings.push_back(settings_.name + ": " + text); }
+  /// Without the mesh's name until all of them are known.
+  void warn(std::string text) { report_.warnings.push_back(std::move(text)); }
 
   /// site_: the first vertex at the same position, which is what neighbourhood goes by. The mesh itself keeps
   /// vertices apart only where their normals differ.
-  void merge_vertices() {
+  void find_same_vertices() {
     if (!settings_.smooth) source_.normals.clear();
     for (Vec3f& n : source_.normals)
       if (!is_finite(n)) n = {};
-    const std::vector<std::uint32_t> same = weld(source_.positions, source_.normals);
+    same_ = weld(source_.positions, source_.normals);
+    site_ = source_.normals.empty() ? same_ : weld(source_.positions);
+  }
+
+  void merge_vertices() {
     for (Triangle& triangle : source_.triangles)
-      for (std::uint32_t& v : triangle) v = same[v];
-    site_ = source_.normals.empty() ? same : weld(source_.positions);
+      for (std::uint32_t& v : triangle) v = same_[v];
+  }
+
+  /// Takes over what an earlier check found, if it would be found again.
+  bool recall() {
+    if (memory_ == nullptr || !memory_->holds || memory_->fill_holes != settings_.fill_holes ||
+        memory_->may_be_open != settings_.may_be_open || memory_->same != same_ || memory_->site != site_ ||
+        memory_->given != source_.triangles ||
+        any_inward(source_.positions, memory_->mended, memory_->part, memory_->parts))
+      return false;
+    memory_->recalled = true;
+    source_.triangles = memory_->mended;
+    report_ = memory_->report;
+    return true;
+  }
+
+  void start_memory() {
+    if (memory_ == nullptr) return;
+    *memory_ = {};
+    memory_->given = source_.triangles;
+  }
+
+  /// How a hole is filled, and what was inside out, depends on places: such a mesh is checked anew each time.
+  void finish_memory() {
+    if (memory_ == nullptr) return;
+    memory_->holds = !places_matter_;
+    if (places_matter_) return;
+    memory_->fill_holes = settings_.fill_holes;
+    memory_->may_be_open = settings_.may_be_open;
+    memory_->same = std::move(same_);
+    memory_->site = std::move(site_);
+    memory_->mended = source_.triangles;
+    memory_->report = report_;
   }
 
   Triangle sites(const Triangle& t) const { return {site_[t[0]], site_[t[1]], site_[t[2]]}; }
@@ -87,11 +128,17 @@ class MeshChecker {
     if (settings_.fill_holes && !open_edges(edges).empty()) {
       apply(find_winding(source_.positions, triangles, edges), false);
       fill(edges);
+      places_matter_ = true;
       triangles = all_sites();
       edges = EdgeTable(triangles, source_.positions.size());
     }
-    apply(find_winding(source_.positions, triangles, edges), true);
+    Winding winding = find_winding(source_.positions, triangles, edges);
+    apply(winding, true);
     count_edges(edges);
+    places_matter_ = places_matter_ || winding.inside_out > 0;
+    if (memory_ == nullptr) return;
+    memory_->part = std::move(winding.part);
+    memory_->parts = winding.parts;
   }
 
   static std::vector<Edge> open_edges(const EdgeTable& edges) {
@@ -151,10 +198,11 @@ class MeshChecker {
   }
 
   void warn_about_drops() {
-    if (report_.zero_area_dropped > 0)
-      warn(std::to_string(report_.zero_area_dropped) + " triangles without area were dropped");
-    if (report_.duplicates_dropped > 0)
-      warn(std::to_string(report_.duplicates_dropped) + " triangles given twice were dropped");
+    const auto warn_of = [&](std::size_t count, const char* what) {
+      if (count > 0) report_.warnings.push_back(settings_.name + ": " + std::to_string(count) + what);
+    };
+    warn_of(report_.zero_area_dropped, " triangles without area were dropped");
+    warn_of(report_.duplicates_dropped, " triangles given twice were dropped");
   }
 
   /// The mesh with only the vertices its triangles use, in their order.
@@ -178,14 +226,16 @@ class MeshChecker {
 
   const CheckSettings& settings_;
   SourceMesh source_;
+  CheckMemory* memory_;
   MeshReport report_;
-  std::vector<std::uint32_t> site_;
+  std::vector<std::uint32_t> same_, site_;
+  bool places_matter_ = false;
 };
 
 }  // namespace
 
-CheckedMesh check_mesh(SourceMesh source, const CheckSettings& settings) {
-  return MeshChecker(std::move(source), settings).run();
+CheckedMesh check_mesh(SourceMesh source, const CheckSettings& settings, CheckMemory* memory) {
+  return MeshChecker(std::move(source), settings, memory).run();
 }
 
 }  // namespace opaline

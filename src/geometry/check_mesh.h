@@ -16,6 +16,19 @@ struct CheckSettings {
   bool may_be_open = false;  ///< say nothing of boundary edges
 };
 
+/// What checking a mesh found that depends on which triangles meet where, and not on the places themselves.
+struct CheckMemory {
+  bool holds = false, recalled = false;  ///< recalled: the last call made use of it
+  bool fill_holes = false, may_be_open = false;
+  std::vector<Triangle> given;  ///< before anything was done to them
+  std::vector<std::uint32_t> same,
+      site;                         ///< of each vertex the first at its place, with its normal and without
+  std::vector<Triangle> mended;     ///< without doubles, and wound
+  std::vector<std::uint32_t> part;  ///< Winding::part of these
+  std::uint32_t parts = 0;
+  MeshReport report;  ///< warnings do not name the mesh
+};
+
 /// Welds vertices that are exactly equal, drops and counts zero-area and duplicate triangles, winds what is
 /// left consistently and closed components outward, fills holes if asked, counts open and non-manifold edges,
 /// and completes the normals. in    positions finite; normals of any length, zero or not finite where there
@@ -25,6 +38,8 @@ struct CheckSettings {
 ///       changes nothing but the positions
 /// error Error{bad_input} if no triangle with an area is left
 /// A triangle counts as zero-area if twice its area is at most 1e-12 of the square of its longest side.
-CheckedMesh check_mesh(SourceMesh source, const CheckSettings& settings);
+/// in    memory: null, or what earlier calls found, which serves again where the same triangles meet in the
+///       same places; the result is the same
+CheckedMesh check_mesh(SourceMesh source, const CheckSettings& settings, CheckMemory* memory = nullptr);
 
 }  // namespace opaline

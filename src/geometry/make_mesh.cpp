@@ -21,7 +21,8 @@ std::string label(const Shape& shape) {
 
 struct SourceReader {
   const std::string& name;
-  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path); }
+  const SourceMesh* before;
+  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path, before); }
   template <class Builtin>
   SourceMesh operator()(const Builtin& shape) const {
     return tessellate(shape, name);
@@ -82,21 +83,61 @@ void place(SourceMesh& mesh, const Transform& to_world, const std::string& name)
     for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
-}  // namespace
+SourceMesh read_source(const Shape& shape, const std::string& name, const SourceMesh* before) {
+  SourceMesh mesh = std::visit(SourceReader{name, before}, shape.source);
+  if (const auto* file = std::get_if<MeshFile>(&shape.source))
+    if (file->fit_size) fit(mesh, *file->fit_size, name);
+  return mesh;
+}
 
-CheckedMesh make_mesh(const Shape& shape) {
-  const std::string name = label(shape);
-  SourceMesh mesh = std::visit(SourceReader{name}, shape.source);
+CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh mesh, CheckMemory* memory) {
   CheckSettings settings;
   settings.name = name;
   settings.smooth = shape.normals == NormalMode::smooth;
   settings.may_be_open = std::holds_alternative<QuadShape>(shape.source) && !shape.medium;
-  if (const auto* file = std::get_if<MeshFile>(&shape.source)) {
-    settings.fill_holes = file->fill_holes;
-    if (file->fit_size) fit(mesh, *file->fit_size, name);
-  }
+  if (const auto* file = std::get_if<MeshFile>(&shape.source)) settings.fill_holes = file->fill_holes;
   place(mesh, shape.to_world, name);
-  return check_mesh(std::move(mesh), settings);
+  return check_mesh(std::move(mesh), settings, memory);
+}
+
+}  // namespace
+
+struct MeshMemory::State {
+  SourceMesh source;
+  bool is_current = false;  // else a source before the last one: its faces may be the same
+  CheckMemory check;
+  Work work;
+};
+
+MeshMemory::MeshMemory() : state_(std::make_unique<State>()) {}
+MeshMemory::~MeshMemory() = default;
+MeshMemory::MeshMemory(MeshMemory&&) noexcept = default;
+MeshMemory& MeshMemory::operator=(MeshMemory&&) noexcept = default;
+
+void MeshMemory::source_changed() {
+  state_->is_current = false;
+}
+
+const MeshMemory::Work& MeshMemory::work() const {
+  return state_->work;
+}
+
+CheckedMesh make_mesh(const Shape& shape) {
+  const std::string name = label(shape);
+  return make_mesh(shape, name, read_source(shape, name, nullptr), nullptr);
+}
+
+CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory) {
+  const std::string name = label(shape);
+  MeshMemory::State& state = *memory.state_;
+  if (!state.is_current) {
+    state.source = read_source(shape, name, &state.source);
+    state.is_current = true;
+    ++state.work.read;
+  }
+  CheckedMesh mesh = make_mesh(shape, name, state.source, &state.check);
+  state.work.checked += state.check.recalled ? 0 : 1;
+  return mesh;
 }
 
 }  // namespace opaline

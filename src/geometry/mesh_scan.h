@@ -24,6 +24,7 @@ struct MeshScan {
   std::size_t triangles = 0;     ///< after cutting polygons into fans
   std::size_t collapsed = 0;     ///< faces with fewer than three different corners
   std::uint64_t corners = 0;     ///< CornerHash over the faces; STL: 0
+  std::uint64_t faces = 0;       ///< the same with where each face ends; STL: 0
   bool vertex_normals = false;   ///< OpenMesh should deliver vertex normals
   bool corner_normals = false;   ///< they belong to a face's corners (OBJ)
   bool binary = false;           ///< OpenMesh should read binary STL
@@ -41,10 +42,12 @@ MeshScan scan_off(const std::string& path, std::string& bytes);
 class CornerHash {
  public:
   void add(std::uint64_t vertex) { value_ = (value_ ^ (vertex + 1)) * 0x100000001b3u; }
+  void end_face() { faces_ = (faces_ ^ value_) * 0x100000001b3u; }
   std::uint64_t value() const { return value_; }
+  std::uint64_t faces() const { return faces_; }
 
  private:
-  std::uint64_t value_ = 0xcbf29ce484222325u;
+  std::uint64_t value_ = 0xcbf29ce484222325u, faces_ = value_;
 };
 
 /// Coordinates must stay below this: Embree drops triangles beyond 1.8e18 without a word.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "orient.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -64,6 +65,16 @@ struct Solid {
   Bounds box;
 };
 
+/// Of the tetrahedron below the triangle, times 6.
+double signed_volume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& origin) {
+  return dot(a - origin, cross(b - origin, c - origin));
+}
+
+/// A flat double sheet has no outside. size: sum of the magnitudes that sum to the volume.
+bool is_flat(double volume, double size) {
+  return std::abs(volume) <= 1e-12 * size;
+}
+
 class Orienter {
  public:
   Orienter(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
@@ -76,6 +87,7 @@ class Orienter {
     collect_components();
     for (const Component& component : components_) agree(component);
     find_closed();
+    number_closed();
     turn_outward();
     return std::move(result_);
   }
@@ -144,6 +156,14 @@ class Orienter {
     });
   }
 
+  void number_closed() {
+    std::vector<std::uint32_t> number(components_.size(), Winding::kOpen);
+    for (std::uint32_t i = 0; i < components_.size(); ++i)
+      if (components_[i].closed) number[i] = result_.parts++;
+    result_.part.resize(triangles_.size());
+    for (std::size_t t = 0; t < triangles_.size(); ++t) result_.part[t] = number[component_of_[t]];
+  }
+
   /// The triangle with its corners in the order found so far.
   Triangle wound(std::uint32_t t) const {
     const Triangle& c = triangles_[t];
@@ -158,7 +178,7 @@ class Orienter {
     double size = 0;
     for (const std::uint32_t t : own) {
       const auto [a, b, c] = wound(t);
-      const double part = dot(positions_[a] - origin, cross(positions_[b] - origin, positions_[c] - origin));
+      const double part = signed_volume(positions_[a], positions_[b], positions_[c], origin);
       solid.volume += part;
       size += std::abs(part);
       for (const std::uint32_t v : {a, b, c}) {
@@ -166,7 +186,7 @@ class Orienter {
         solid.box.high = component_max(solid.box.high, positions_[v]);
       }
     }
-    if (std::abs(solid.volume) <= 1e-12 * size) solid.volume = 0;  // a flat double sheet has no outside
+    if (is_flat(solid.volume, size)) solid.volume = 0;
     return solid;
   }
 
@@ -230,6 +250,25 @@ class Orienter {
 Winding find_winding(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
                      const EdgeTable& edges) {
   return Orienter(positions, triangles, edges).run();
+}
+
+bool any_inward(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
+                const std::vector<std::uint32_t>& part, std::uint32_t parts) {
+  struct Sum {
+    const Vec3d* origin = nullptr;
+    double volume = 0, size = 0;
+  };
+  std::vector<Sum> sums(parts);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (part[t] == Winding::kOpen) continue;
+    Sum& sum = sums[part[t]];
+    const auto& [a, b, c] = triangles[t];
+    if (sum.origin == nullptr) sum.origin = &positions[a];
+    const double volume = signed_volume(positions[a], positions[b], positions[c], *sum.origin);
+    sum.volume += volume;
+    sum.size += std::abs(volume);
+  }
+  return std::ranges::any_of(sums, [](const Sum& s) { return s.volume < 0 && !is_flat(s.volume, s.size); });
 }
 
 }  // namespace opaline

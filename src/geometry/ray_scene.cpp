@@ -57,6 +57,10 @@ bool count_memory(void* counter, ssize_t bytes, bool) {
   return true;
 }
 
+RTCBuildQuality quality_of(RayBuild build) {
+  return build == RayBuild::quick ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
+}
+
 RTCIntersectContext coherent_context() {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -73,19 +77,21 @@ void check_device(RTCDevice device) {
   require(error == RTC_ERROR_NONE, "Embree reports an error");
 }
 
-RayScene::RayScene(const World& world) : handles_(std::make_unique<Handles>()) {
+RayScene::RayScene(const World& world, RayBuild build) : handles_(std::make_unique<Handles>()) {
   handles_->device = rtcNewDevice(nullptr);
   require(handles_->device != nullptr, "Embree has no device");
   rtcSetDeviceMemoryMonitorFunction(handles_->device, count_memory, &handles_->bytes);
   handles_->scene = rtcNewScene(handles_->device);
   rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST);
-  for (const Mesh& mesh : world.meshes) attach(mesh);
+  rtcSetSceneBuildQuality(handles_->scene, quality_of(build));
+  for (const Mesh& mesh : world.meshes) attach(mesh, build);
   rtcCommitScene(handles_->scene);
   check_device(handles_->device);
 }
 
-void RayScene::attach(const Mesh& mesh) {
+void RayScene::attach(const Mesh& mesh, RayBuild build) {
   RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetGeometryBuildQuality(geometry, quality_of(build));
   std::vector<Vertex> vertices(mesh.positions.size());
   for (std::size_t i = 0; i < vertices.size(); ++i)
     vertices[i] = {Vec3f(mesh.positions[i]), mesh.normals.empty() ? Vec3f{} : mesh.normals[i]};

@@ -117,16 +117,32 @@ void compare(const std::string& path, const MeshScan& scan, const SoupImporter& 
     if (!same_in_float(scan.positions[v], read.positions()[v])) throw differs(path, "coordinates", v, v);
 }
 
+/// The scan holds all the rest of a mesh without normals.
+bool has_faces_of(const MeshScan& scan, const SourceMesh& before) {
+  return before.faces != 0 && scan.faces == before.faces && !scan.vertex_normals && scan.normals.empty() &&
+         scan.positions.size() == before.positions.size() && scan.triangles == before.triangles.size();
+}
+
+SourceMesh with_faces_of(MeshScan scan, const SourceMesh& before) {
+  return {.positions = std::move(scan.positions),
+          .normals = {},
+          .triangles = before.triangles,
+          .faces = scan.faces,
+          .collapsed = scan.collapsed,
+          .warnings = std::move(scan.warnings)};
+}
+
 }  // namespace
 
-SourceMesh read_mesh(const std::string& path) {
+SourceMesh read_mesh(const std::string& path, const SourceMesh* before) {
   const Format& format = format_of(path);
   std::string bytes = read_bytes(path);
-  const MeshScan scan = format.scan(path, bytes);
+  MeshScan scan = format.scan(path, bytes);
   constexpr std::size_t limit = std::size_t(1)
                                 << 30;  // indices of edges must fit 32 bits, OpenMesh's are signed
   if (scan.positions.size() > limit || scan.triangles > limit)
     throw bad_file(path, "the mesh is too large", "at most 2^30 vertices and triangles");
+  if (before != nullptr && has_faces_of(scan, *before)) return with_faces_of(std::move(scan), *before);
   SoupImporter importer(scan);
   if (!read_with_openmesh(bytes, format, scan, importer))
     throw bad_file(path, "OpenMesh cannot read the mesh");
@@ -137,6 +153,7 @@ SourceMesh read_mesh(const std::string& path) {
   mesh.collapsed = dropped;
   mesh.warnings = scan.warnings;
   if (!scan.normals.empty()) mesh.normals = scan.normals;
+  if (mesh.normals.empty()) mesh.faces = scan.faces;
   return mesh;
 }
 

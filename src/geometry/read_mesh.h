@@ -16,6 +16,8 @@ namespace opaline {
 /// error Error{bad_input} naming the file, and the line where known: missing, not a file, empty, unknown
 ///       extension, truncated, not of its format, bad coordinates or indices, no faces. Memory stays within a
 ///       small multiple of the file's length
-SourceMesh read_mesh(const std::string& path);
+/// in    before: null, or what an earlier call returned; where the file has no normals and the same faces as
+///       that one's, OpenMesh need not read them again
+SourceMesh read_mesh(const std::string& path, const SourceMesh* before = nullptr);
 
 }  // namespace opaline

@@ -134,6 +134,7 @@ class ObjScanner {
     }
     scan_.triangles += corners_.size() - 2;
     for (const std::int64_t vertex : corners_) hash_.add(std::uint64_t(vertex));
+    hash_.end_face();
   }
 
   /// As OpenMesh does.
@@ -160,6 +161,7 @@ class ObjScanner {
           " statements that are no part of a polygon mesh are" + " left out, the first is " + first_unread_);
     scan_.vertex_normals = scan_.corner_normals = highest_normal_.index >= 0;
     scan_.corners = hash_.value();
+    scan_.faces = hash_.faces();
   }
 
   void check_range(const Highest& highest, std::size_t count, const char* what) const {

@@ -23,6 +23,7 @@ class OffScanner {
     require_faces(path_, std::size_t(vertices_), std::size_t(faces_));
     check_.throw_if_any(path_);
     scan_.corners = hash_.value();
+    scan_.faces = hash_.faces();
     return std::move(scan_);
   }
 
@@ -117,6 +118,7 @@ class OffScanner {
                        "0 to " + std::to_string(vertices_ - 1), std::to_string(vertex));
       hash_.add(std::uint64_t(vertex));
     }
+    hash_.end_face();
     if (corners >= 3) scan_.triangles += std::size_t(corners) - 2;
     if (corners < 3) ++scan_.collapsed;
     end_line();

@@ -34,6 +34,7 @@ class PlyScanner {
     check_.throw_if_any(path_);
     bytes_.resize(write_);
     scan_.corners = hash_.value();
+    scan_.faces = hash_.faces();
     return std::move(scan_);
   }
 
@@ -260,6 +261,7 @@ class PlyScanner {
         hash_.add(std::uint64_t(vertex));
         keep();
       }
+      hash_.end_face();
       if (count >= 3) scan_.triangles += count - 2;
       if (count < 3) ++scan_.collapsed;
     }

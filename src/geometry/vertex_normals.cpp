@@ -2,6 +2,7 @@
 #include "vertex_normals.h"
 
 #include <cmath>
+#include <numeric>
 
 #include "topology.h"
 
@@ -28,8 +29,10 @@ std::vector<Vec3d> averages(const Mesh& mesh, const std::vector<std::uint32_t>& 
 }
 
 /// Vertices whose triangles cancel out get the normal of one of them.
-void average_missing(Mesh& mesh, const std::vector<bool>& missing) {
-  const std::vector<std::uint32_t> site = weld(mesh.positions);
+void average_missing(Mesh& mesh, const std::vector<bool>& missing, bool all_apart) {
+  std::vector<std::uint32_t> site(all_apart ? mesh.positions.size() : 0);
+  std::iota(site.begin(), site.end(), 0u);
+  if (!all_apart) site = weld(mesh.positions);
   const std::vector<Vec3d> sum = averages(mesh, site);
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t v : t) {
@@ -69,7 +72,7 @@ void complete_normals(Mesh& mesh, const std::string& name, std::vector<std::stri
     missing[v] = unit == Vec3d();
     count += missing[v];
   }
-  if (count > 0) average_missing(mesh, missing);
+  if (count > 0) average_missing(mesh, missing, !own);
   if (!own) return;
   if (count > 0)
     warnings.push_back(name + ": " + std::to_string(count) + " vertices without a usable normal; computed");

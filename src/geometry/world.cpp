@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "geometry/oriented_point.h"
-#include "opaline/geometry/make_mesh.h"
 
 namespace opaline {
 
@@ -26,10 +25,11 @@ World make_world(const Scene& scene) {
 }
 
 World update_world(const Scene& scene, const World& old, std::span<const std::optional<std::size_t>> kept,
-                   std::size_t& loaded) {
+                   std::size_t& loaded, std::span<MeshMemory* const> memories) {
   World world;
   const auto load = [&](std::size_t shape) {
-    CheckedMesh checked = make_mesh(scene.shapes[shape]);
+    CheckedMesh checked =
+        memories.empty() ? make_mesh(scene.shapes[shape]) : make_mesh(scene.shapes[shape], *memories[shape]);
     world.meshes[shape] = std::move(checked.mesh);
     world.reports[shape] = std::move(checked.report);
     world.boxes[shape] = bounds(world.meshes[shape]);

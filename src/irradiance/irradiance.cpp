@@ -42,11 +42,14 @@ LightTransfer transfer_from(const IrradianceInput& input, const Light& light, st
   LightTransfer transfer;
   transfer.weights.resize(input.samples.size());
   unblocked.resize(input.samples.size());
-  const std::size_t batch_size = batch_points(input.light_samples);
+  // A single ray a point: enough of them that many lie together.
+  constexpr std::size_t kSinglePoints = 4096;
+  const std::size_t batch_size = is_delta(light) ? kSinglePoints : batch_points(input.light_samples);
   std::vector<ErrorSums> errors(chunk_count(input.samples.size(), batch_size));
   parallel_chunks(input.samples.size(), batch_size,
                   [&](std::size_t begin, std::size_t end, std::size_t chunk) {
                     ShadowBatch batch(input.rays, light, input.eta, input.light_samples, seed);
+                    batch.scatter();
                     batch.reserve(end - begin);
                     for (std::size_t i = begin; i < end; ++i) {
                       const SurfaceSample& s = input.samples[i];

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "opaline/core/morton.h"
 #include "opaline/core/random.h"
 #include "opaline/diffusion/fresnel.h"
 #include "opaline/geometry/world.h"
@@ -25,6 +26,9 @@ class ShadowBatch {
   /// samples: rays a point; 1 for lights without an area, whatever is asked.
   ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
       : rays_(rays), light_(light), eta_(float(eta)), samples_(is_delta(light) ? 1 : samples), seed_(seed) {}
+
+  /// To be told where points that follow each other do not lie together.
+  void scatter() { scattered_ = samples_ == 1; }
 
   int samples() const { return samples_; }
 
@@ -60,7 +64,10 @@ class ShadowBatch {
   /// order, then forgets them.
   template <class Use>
   void trace(const Use& use) {
-    rays_.occluded(shadow_);
+    if (scattered_ && shadow_.size() > kSorted)
+      trace_sorted();
+    else
+      rays_.occluded(shadow_);
     std::size_t ray = 0;
     for (std::size_t i = 0; i < carried_.size(); ++i) {
       const bool lit = carried_[i] > 0 && shadow_[ray++].far >= 0;
@@ -71,13 +78,38 @@ class ShadowBatch {
   }
 
  private:
+  static constexpr std::size_t kSorted = 256;  // rays that Embree takes at once
+
+  // Points that follow each other need not lie together, and rays that do are traced in half the time.
+  void trace_sorted() {
+    constexpr float kCells = 1023;
+    Vec3f low = shadow_[0].origin, high = low;
+    for (const Ray& ray : shadow_) {
+      low = component_min(low, ray.origin);
+      high = component_max(high, ray.origin);
+    }
+    const float side = max_component(high - low), scale = side > 0 ? kCells / side : 0;
+    order_.resize(shadow_.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      const Vec3f c = (shadow_[i].origin - low) * scale;
+      order_[i] = morton_key(std::uint64_t(c.x), std::uint64_t(c.y), std::uint64_t(c.z)) << 32 | i;
+    }
+    std::ranges::sort(order_);
+    sorted_.resize(shadow_.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) sorted_[i] = shadow_[std::uint32_t(order_[i])];
+    rays_.occluded(sorted_);
+    for (std::size_t i = 0; i < order_.size(); ++i) shadow_[std::uint32_t(order_[i])].far = sorted_[i].far;
+  }
+
   const RayScene& rays_;
   const Light& light_;
   float eta_;
   int samples_;
   std::uint64_t seed_;
+  bool scattered_ = false;
   std::vector<float> carried_;
-  std::vector<Ray> shadow_;
+  std::vector<Ray> shadow_, sorted_;
+  std::vector<std::uint64_t> order_;
 };
 
 }  // namespace opaline

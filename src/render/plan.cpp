@@ -162,6 +162,23 @@ void list_stages(const Scene& scene, Plan& plan) {
   plan.stages.push_back(shading_stage(scene.settings));
 }
 
+// Measured (world.h): a quick build saves .3 us a triangle and costs 5 ns a ray of the picture, which lie
+// together, and 75 ns a ray from a sample. Shadow edges bring about as many again.
+RayBuild cheaper_build(const Scene& scene, const Plan& plan) {
+  constexpr double kSaved = 300, kPictureRay = 5, kSampleRay = 75;  // ns
+  if (scene.settings.method != Method::hierarchical && scene.settings.method != Method::lambert)
+    return RayBuild::careful;
+  double rays = 0, samples = 0;  // rays: towards the lights from one point
+  for (const Light& light : scene.lights) rays += is_delta(light) ? 1 : scene.settings.light_samples;
+  if (scene.settings.method == Method::hierarchical)
+    for (const GroupPlan& group : plan.groups) samples += double(group.samples);
+  const Film& film = scene.film;
+  const double points =
+      double(film.resolution[0]) * double(film.resolution[1]) * double(film.samples_per_pixel);
+  const double lost = kPictureRay * points * (1 + rays) + kSampleRay * 2 * samples * rays;
+  return lost < kSaved * double(plan.triangles) ? RayBuild::quick : RayBuild::careful;
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, const World& world) {
@@ -185,6 +202,7 @@ Plan make_plan(const Scene& scene, const World& world) {
     // Measured at 10 million: samples, weights and tree while its nodes are written; all else needs less.
     plan.bytes += group.samples * (170 + 4 * scene.lights.size());
   }
+  plan.rays = cheaper_build(scene, plan);
   list_stages(scene, plan);
   return plan;
 }

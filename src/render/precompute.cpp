@@ -24,13 +24,14 @@ std::uint64_t sampling_seed(const Settings& settings, std::size_t group) {
   return hash_bits(settings.seed, group);
 }
 
-SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group) {
+SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group, SurfaceCells* cells) {
   const GroupPlan& plan = input.plan.groups[group];
   return sample_surface({.world = input.world,
                          .meshes = plan.meshes,
                          .count = plan.samples,
                          .seed = sampling_seed(input.scene.settings, group),
-                         .monitor = input.monitor});
+                         .monitor = input.monitor},
+                        cells);
 }
 
 std::uint64_t irradiance_seed(const Settings& settings, std::size_t group) {

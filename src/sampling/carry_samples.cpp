@@ -8,9 +8,8 @@
 
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
+#include "sampling/cell_parts.h"
 #include "sampling/stretched_cloud.h"
-#include "sampling/surface_shares.h"
-#include "sampling/triangle_list.h"
 
 namespace opaline {
 namespace {
@@ -40,8 +39,35 @@ double double_area(const Mesh& mesh, std::size_t triangle) {
   return length(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]));
 }
 
+/// Vertices may be this far from where a motion of the whole takes them, mm.
+double most_apart(const Mesh& mesh) {
+  const Bounds box = bounds(mesh);
+  return 1e-6 * length(box.high - box.low);
+}
+
+/// Whether some edges, of all there are, have lengths that no motion leaves them.
+bool has_other_edges(const CarryInput& input) {
+  constexpr std::size_t kLooks = 64;
+  for (std::size_t m = 0; m < input.from_meshes.size(); ++m) {
+    const Mesh &before = input.from.meshes[input.from_meshes[m]],
+               &after = input.to.meshes[input.to_meshes[m]];
+    const double most = 3 * most_apart(before);
+    const std::size_t step = before.triangles.size() / kLooks + 1;
+    for (std::size_t t = 0; t < before.triangles.size(); t += step) {
+      const auto& [a, b, c] = before.triangles[t];
+      const auto differs = [&](std::uint32_t i, std::uint32_t j) {
+        return std::abs(length(before.positions[i] - before.positions[j]) -
+                        length(after.positions[i] - after.positions[j])) > most;
+      };
+      if (differs(a, b) || differs(b, c) || differs(c, a)) return true;
+    }
+  }
+  return false;
+}
+
 /// The motion that takes the first mesh's largest triangle along, if it does so with every vertex of all.
 std::optional<Motion> common_motion(const CarryInput& input) {
+  if (has_other_edges(input)) return {};
   const Mesh &before = input.from.meshes[input.from_meshes[0]], &after = input.to.meshes[input.to_meshes[0]];
   std::uint32_t largest = 0;
   for (std::uint32_t t = 0; t < before.triangles.size(); ++t)
@@ -50,8 +76,7 @@ std::optional<Motion> common_motion(const CarryInput& input) {
   for (std::size_t m = 0; m < input.from_meshes.size(); ++m) {
     const std::vector<Vec3d>& p = input.from.meshes[input.from_meshes[m]].positions;
     const std::vector<Vec3d>& q = input.to.meshes[input.to_meshes[m]].positions;
-    const Bounds box = bounds(input.from.meshes[input.from_meshes[m]]);
-    const double most = 1e-6 * length(box.high - box.low);
+    const double most = most_apart(input.from.meshes[input.from_meshes[m]]);
     for (std::size_t i = 0; i < p.size(); ++i)
       if (!(length(motion(p[i]) - q[i]) <= most)) return {};
   }
@@ -99,9 +124,8 @@ std::vector<SampleGrid::Place> carried_places(const CarryInput& input, const Tri
   return places;
 }
 
-SurfaceSamples divided_anew(const TriangleList& triangles, const SampleGrid& grid, double radius,
-                            Monitor* monitor) {
-  const std::vector<SurfaceShare> shares = surface_shares(triangles, grid, float(radius), monitor);
+/// Numbers of the grid's samples in the order of finished ones.
+std::vector<std::uint32_t> finished_order(const TriangleList& triangles, const SampleGrid& grid) {
   std::vector<std::uint32_t> order(grid.size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
@@ -109,19 +133,83 @@ SurfaceSamples divided_anew(const TriangleList& triangles, const SampleGrid& gri
     const TriangleId of_p = triangles.id(p.triangle), of_q = triangles.id(q.triangle);
     return std::tie(of_p.mesh, of_p.triangle, p.u, p.v) < std::tie(of_q.mesh, of_q.triangle, q.u, q.v);
   });
+  return order;
+}
+
+SurfaceSample finished_sample(TriangleId id, float u, float v, const SurfacePoint& point,
+                              const SurfaceShare& share) {
+  const Vec3f offset = share.area > 0 ? Vec3f(share.moment / share.area) : Vec3f{};
+  return {
+      id.mesh, id.triangle, u, v, point.position, point.normal, float(share.area), point.position + offset};
+}
+
+SurfaceSamples divided_anew(const CarryInput& input, const TriangleList& triangles, const SampleGrid& grid) {
+  const double radius = input.samples.radius;
+  const std::vector<SurfaceShare> shares = surface_shares(triangles, grid, float(radius), input.monitor);
+  const std::vector<std::uint32_t> order = finished_order(triangles, grid);
   SurfaceSamples result{std::vector<SurfaceSample>(order.size()), triangles.area(), radius};
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const SampleGrid::Place& place = grid.place(order[i]);
-      const SurfaceShare& share = shares[order[i]];
       const TriangleId id = triangles.id(place.triangle);
       const SurfacePoint point = surface_point(triangles.mesh(id), id.triangle, place.u, place.v);
-      const Vec3f offset = share.area > 0 ? Vec3f(share.moment / share.area) : Vec3f{};
-      result.samples[i] = {id.mesh,        id.triangle,  place.u,           place.v,
-                           point.position, point.normal, float(share.area), point.position + offset};
+      result.samples[i] = finished_sample(id, place.u, place.v, point, shares[order[i]]);
     }
   });
   return result;
+}
+
+/// Whatever cells the surface was sampled with, for samples that came without.
+SurfaceCells divided_before(const CarryInput& input) {
+  const TriangleList triangles(input.from, input.from_meshes);
+  const float radius = float(input.samples.radius);
+  const SampleGrid grid =
+      StretchedCloud(triangles, triangles, radius, carried_places(input, triangles)).grid();
+  std::vector<SurfacePiece> pieces;
+  surface_shares(triangles, grid, radius, input.monitor, &pieces);
+  return collect_cells(triangles, pieces, finished_order(triangles, grid), input.from_meshes);
+}
+
+/// Where the samples have come to.
+std::vector<SurfacePoint> points_after(const CarryInput& input) {
+  const std::vector<SurfaceSample>& samples = input.samples.samples;
+  const std::vector<std::size_t> place = places_of(input.from_meshes);
+  std::vector<SurfacePoint> points(samples.size());
+  parallel_chunks(samples.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceSample& s = samples[i];
+      points[i] = surface_point(input.to.meshes[input.to_meshes[place[s.mesh]]], s.triangle, s.u, s.v);
+    }
+  });
+  return points;
+}
+
+/// Whether samples may have to go or come.
+bool may_need_mending(const CarryInput& input, std::span<const PlainTriangle> before,
+                      std::span<const PlainTriangle> after, std::span<const SurfacePoint> points) {
+  for (std::size_t t = 0; t < after.size(); ++t)
+    if (double(after[t].area) > kGrown * double(before[t].area)) return true;
+  std::vector<Standing> standing(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) standing[i] = {points[i].position, points[i].geometric};
+  return any_closer(standing, kClosest * float(input.samples.radius));
+}
+
+CarriedSamples bent_along(const CarryInput& input, std::span<const PlainTriangle> triangles,
+                          std::span<const SurfacePoint> points) {
+  const bool divide = input.cells.empty();
+  if (divide) input.cells = divided_before(input);
+  const std::vector<SurfaceSample>& samples = input.samples.samples;
+  const std::vector<std::size_t> place = places_of(input.from_meshes);
+  SurfaceSamples result{std::vector<SurfaceSample>(samples.size()), 0, input.samples.radius};
+  for (const PlainTriangle& triangle : triangles) result.area += double(triangle.area);
+  parallel_chunks(samples.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceSample& s = samples[i];
+      result.samples[i] = finished_sample({input.to_meshes[place[s.mesh]], s.triangle}, s.u, s.v, points[i],
+                                          carried_share(input.cells, i, triangles, points[i].position));
+    }
+  });
+  return {.surface = std::move(result), .divided = divide};
 }
 
 }  // namespace
@@ -136,7 +224,11 @@ bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, co
 }
 
 CarriedSamples carry_samples(const CarryInput& input) {
-  if (const std::optional<Motion> motion = common_motion(input)) return {moved(input, *motion), true, 0, 0};
+  if (const std::optional<Motion> motion = common_motion(input)) return {moved(input, *motion), true};
+  const std::vector<PlainTriangle> plain = plain_triangles(input.to, input.to_meshes);
+  const std::vector<SurfacePoint> points = points_after(input);
+  if (!may_need_mending(input, plain_triangles(input.from, input.from_meshes), plain, points))
+    return bent_along(input, plain, points);
   const TriangleList before(input.from, input.from_meshes),
       after(input.to, input.to_meshes, before, input.from_meshes);
   if (input.monitor != nullptr) input.monitor->begin("sampling", after.size());
@@ -144,7 +236,9 @@ CarriedSamples carry_samples(const CarryInput& input) {
   CarriedSamples result;
   result.removed = cloud.remove_crowded(kClosest);
   result.added = cloud.fill_gaps(kWidest);
-  result.surface = divided_anew(after, cloud.grid(), input.samples.radius, input.monitor);
+  if (result.removed + result.added == 0) return bent_along(input, plain, points);
+  result.surface = divided_anew(input, after, cloud.grid());
+  result.divided = true;
   return result;
 }
 

@@ -3,13 +3,13 @@
 
 #include <tbb/parallel_sort.h>
 
+#include <algorithm>
 #include <tuple>
 
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
+#include "sampling/cell_parts.h"
 #include "sampling/poisson_disk.h"
-#include "sampling/surface_shares.h"
-#include "sampling/triangle_list.h"
 
 namespace opaline {
 namespace {
@@ -27,15 +27,19 @@ Vec3f lowest_corner(const World& world, std::span<const std::uint32_t> meshes) {
 struct PlacedSamples {
   std::vector<SampleGrid::Place> places;
   std::vector<SurfaceShare> shares;
+  std::vector<SurfacePiece> pieces;  // if asked for
 };
 
-PlacedSamples place_samples(const SamplingInput& input, const TriangleList& triangles, float radius) {
+PlacedSamples place_samples(const SamplingInput& input, const TriangleList& triangles, float radius,
+                            bool want_pieces) {
   PoissonDisk poisson(triangles, lowest_corner(input.world, input.meshes), radius);
   for (int round = 0; round < input.candidate_rounds; ++round)
     poisson.throw_darts(input.count, hash_bits(input.seed, std::uint64_t(round)), input.monitor);
   poisson.cover_centroids(input.monitor);
-  std::vector<SurfaceShare> shares = surface_shares(triangles, poisson.grid(), radius, input.monitor);
-  return {poisson.grid().take_places(), std::move(shares)};
+  std::vector<SurfacePiece> pieces;
+  std::vector<SurfaceShare> shares =
+      surface_shares(triangles, poisson.grid(), radius, input.monitor, want_pieces ? &pieces : nullptr);
+  return {poisson.grid().take_places(), std::move(shares), std::move(pieces)};
 }
 
 struct Ordered {
@@ -74,7 +78,7 @@ double SurfaceSamples::spacing() const {
   return samples.empty() ? 0 : std::sqrt(area / double(samples.size()));
 }
 
-SurfaceSamples sample_surface(const SamplingInput& input) {
+SurfaceSamples sample_surface(const SamplingInput& input, SurfaceCells* cells) {
   const TriangleList triangles(input.world, input.meshes);
   SurfaceSamples result;
   result.area = triangles.area();
@@ -87,7 +91,7 @@ SurfaceSamples sample_surface(const SamplingInput& input) {
     input.monitor->begin("sampling",
                          input.count * std::size_t(input.candidate_rounds) + 2 * triangles.size());
 
-  const PlacedSamples placed = place_samples(input, triangles, radius);
+  const PlacedSamples placed = place_samples(input, triangles, radius, cells != nullptr);
   const std::vector<Ordered> order = order_of(placed.places, triangles);
   result.samples.resize(order.size());
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -95,6 +99,10 @@ SurfaceSamples sample_surface(const SamplingInput& input) {
       result.samples[i] =
           make_sample(triangles, placed.places[order[i].sample], placed.shares[order[i].sample]);
   });
+  if (cells == nullptr) return result;
+  std::vector<std::uint32_t> numbers(order.size());
+  std::ranges::transform(order, numbers.begin(), &Ordered::sample);
+  *cells = collect_cells(triangles, placed.pieces, numbers, input.meshes);
   return result;
 }
 

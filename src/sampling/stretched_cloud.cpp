@@ -2,7 +2,7 @@
 #include "sampling/stretched_cloud.h"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <bit>
 #include <numeric>
 #include <unordered_map>
@@ -13,10 +13,6 @@
 
 namespace opaline {
 namespace {
-
-struct Standing {
-  Vec3f position, normal;
-};
 
 std::vector<Standing> standing_on(const TriangleList& triangles,
                                   const std::vector<SampleGrid::Place>& places) {
@@ -76,34 +72,93 @@ class GrowingCloud {
   std::unordered_map<std::uint64_t, std::vector<Standing>> cells_;
 };
 
+/// Places in cells a little over twice as wide as a distance: whoever is closer than it to a place is in one
+/// of the eight cells around the corner that is nearest to the place.
+class CloseCells {
+ public:
+  CloseCells(std::span<const Standing> standing, float distance)
+      : standing_(standing),
+        distance2_(distance * distance),
+        scale_(1 / (2.01f * distance)),
+        entries_(std::bit_ceil(2 * standing.size() + 16)),
+        seen_(entries_.size() / 8),
+        older_(standing.size()) {
+    for (const Standing& s : standing) low_ = component_min(low_, s.position);
+  }
+
+  /// Whether any place before the i-th is close to it and of its sheet; to be asked of each in turn.
+  bool is_close(std::uint32_t i) {
+    constexpr float kLast = 0x1p20f;  // cells beyond are one, which is only slower
+    const Vec3f c = component_min((standing_[i].position - low_) * scale_, Vec3f(kLast)) + Vec3f(1);
+    std::array<std::array<std::uint64_t, 2>, 3> near;  // its cell's coordinate and the other one, shifted
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto own = std::uint64_t(c[k]);
+      near[k] = {own << 21 * k, (c[k] - float(own) < 0.5f ? own - 1 : own + 1) << 21 * k};
+    }
+    for (unsigned corner = 1; corner < 8; ++corner) {
+      const std::uint64_t key = near[0][corner & 1] | near[1][corner >> 1 & 1] | near[2][corner >> 2];
+      if (is_seen(key) && any_in(entries_[slot_of(key)].newest, i)) return true;
+    }
+    const std::uint64_t key = near[0][0] | near[1][0] | near[2][0];
+    Entry& entry = entries_[slot_of(key)];
+    if (any_in(entry.newest, i)) return true;
+    seen_[bit_of(key) >> 6] |= std::uint64_t(1) << (bit_of(key) & 63);
+    older_[i] = entry.newest;
+    entry = {key, i};
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0u;
+  struct Entry {
+    std::uint64_t key = 0;
+    std::uint32_t newest = kNone;  // of the cell's places
+  };
+
+  std::size_t slot_of(std::uint64_t key) const {
+    std::size_t slot = std::size_t((key * 0x9E3779B97F4A7C15ull) >> 20) & (entries_.size() - 1);
+    while (entries_[slot].newest != kNone && entries_[slot].key != key)
+      slot = (slot + 1) & (entries_.size() - 1);
+    return slot;
+  }
+  // Most cells that are asked for are empty, and a bit for each that is not stays in the nearest memory.
+  std::size_t bit_of(std::uint64_t key) const {
+    return std::size_t((key * 0xD6E8FEB86659FD93ull) >> 30) & (64 * seen_.size() - 1);
+  }
+  bool is_seen(std::uint64_t key) const { return seen_[bit_of(key) >> 6] >> (bit_of(key) & 63) & 1; }
+
+  bool any_in(std::uint32_t newest, std::uint32_t i) const {
+    for (std::uint32_t j = newest; j != kNone; j = older_[j]) {
+      const Vec3f d = standing_[j].position - standing_[i].position;
+      if (dot(d, d) < distance2_ && same_sheet(standing_[j].normal, standing_[i].normal)) return true;
+    }
+    return false;
+  }
+
+  std::span<const Standing> standing_;
+  float distance2_, scale_;
+  Vec3f low_{INFINITY};
+  std::vector<Entry> entries_;       // a power of two of them
+  std::vector<std::uint64_t> seen_;  // eight bits an entry
+  std::vector<std::uint32_t> older_;
+};
+
 }  // namespace
 
 StretchedCloud::StretchedCloud(const TriangleList& before, const TriangleList& after, float radius,
                                std::vector<SampleGrid::Place> places)
     : before_(before), after_(after), radius_(radius), places_(std::move(places)) {}
 
-bool StretchedCloud::is_crowded(float distance) const {
-  const SampleGrid all = grid();
-  std::atomic<bool> crowded{false};
-  parallel_chunks(all.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end && !crowded; ++i)
-      all.for_cells_near(all.position(i), distance, [&](const SampleGrid::Cell& cell) {
-        for (std::size_t j = cell.first; j < cell.first + cell.count; ++j) {
-          const Vec3f d = all.position(j) - all.position(i);
-          if (j != i && dot(d, d) < distance * distance &&
-              same_sheet(after_.geometric_normal(all.place(i).triangle),
-                         after_.geometric_normal(all.place(j).triangle)))
-            crowded = true;
-        }
-        return crowded.load();
-      });
-  });
-  return crowded;
+bool any_closer(std::span<const Standing> standing, float distance) {
+  CloseCells cells(standing, distance);
+  for (std::uint32_t i = 0; i < standing.size(); ++i)
+    if (cells.is_close(i)) return true;
+  return false;
 }
 
 std::size_t StretchedCloud::remove_crowded(float radii) {
-  if (!is_crowded(radii * radius_)) return 0;
   const std::vector<Standing> standing = standing_on(after_, places_);
+  if (!any_closer(standing, radii * radius_)) return 0;
   // Who stays is drawn by lot, the same one in every frame.
   std::vector<std::pair<std::uint64_t, std::uint32_t>> lots(places_.size());
   for (std::uint32_t i = 0; i < lots.size(); ++i) {
@@ -130,8 +185,6 @@ std::size_t StretchedCloud::remove_crowded(float radii) {
 }
 
 std::size_t StretchedCloud::fill_gaps(float radii) {
-  // A gap between samples that was as wide before is no matter of stretch.
-  constexpr double kGrown = 1.2 * 1.2;
   constexpr double kTriesPerArea = 4;  // in squared clearances
   const float clearance = radii * radius_;
   std::vector<std::size_t> grown;

@@ -2,12 +2,25 @@
 // Samples on a surface that changed its shape: too many in one place, too few in another.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sampling/sample_grid.h"
 #include "sampling/triangle_list.h"
 
 namespace opaline {
+
+/// A triangle whose area is more than this factor of what it was may hold gaps; a gap between samples that
+/// was as wide before is no matter of stretch.
+inline constexpr double kGrown = 1.2 * 1.2;
+
+/// A place on a surface and the geometric normal there.
+struct Standing {
+  Vec3f position, normal;
+};
+
+/// Whether any two of one sheet are closer than this, mm.
+bool any_closer(std::span<const Standing> standing, float distance);
 
 class StretchedCloud {
  public:
@@ -23,8 +36,6 @@ class StretchedCloud {
   SampleGrid grid() const;
 
  private:
-  bool is_crowded(float distance) const;
-
   const TriangleList& before_;
   const TriangleList& after_;
   float radius_;

@@ -17,7 +17,7 @@ namespace opaline {
 namespace {
 
 struct Share {
-  std::uint32_t sample;
+  std::uint32_t sample, triangle;
   double area;
   Vec3d moment;
 };
@@ -38,6 +38,7 @@ class TriangleDivider {
 
   // Of the whole triangle, or of a part.
   void divide(std::size_t triangle, const std::optional<TrianglePiece>& part) {
+    triangle_ = std::uint32_t(triangle);
     normal_ = triangles_.geometric_normal(triangle);
     const TrianglePiece piece = whole_piece(triangles_, triangle);
     // A needle's samples are few and far apart: it is not cut into millions of pieces for them.
@@ -120,7 +121,7 @@ class TriangleDivider {
   }
 
   void add(std::uint32_t sample, double area, const Vec3d& centroid) {
-    out_.push_back({sample, area, (centroid - Vec3d(grid_.position(sample))) * area});
+    out_.push_back({sample, triangle_, area, (centroid - Vec3d(grid_.position(sample))) * area});
   }
 
   void clip_cells(const TrianglePiece& piece, std::size_t first) {
@@ -159,6 +160,7 @@ class TriangleDivider {
   float radius_, piece_extent_ = 0;
   Monitor* monitor_;
   std::vector<Share>& out_;
+  std::uint32_t triangle_ = 0;
   Vec3f normal_;
   bool any_sheet_ = false;
   std::vector<Owner> owners_;
@@ -167,15 +169,64 @@ class TriangleDivider {
   ConvexPolygon polygon_;
 };
 
+/// Barycentrics of places in a triangle's plane.
+class Barycentrics {
+ public:
+  explicit Barycentrics(const TriangleList::Corners& t) : origin_(t.a) {
+    const Vec3d ab = t.b - t.a, ac = t.c - t.a, normal = cross(ab, ac);
+    const double scale = dot(normal, normal) > 0 ? 1 / dot(normal, normal) : 0;
+    along_u_ = cross(ac, normal) * scale;
+    along_v_ = cross(normal, ab) * scale;
+  }
+  float u(const Vec3d& p) const { return float(dot(p - origin_, along_u_)); }
+  float v(const Vec3d& p) const { return float(dot(p - origin_, along_v_)); }
+
+ private:
+  Vec3d origin_, along_u_, along_v_;
+};
+
+/// Sums the shares of each sample, in place; how many samples there are.
+std::size_t merge_by_sample(std::span<Share> shares) {
+  constexpr std::size_t kFew = 64;
+  const bool sorted = shares.size() > kFew;  // then a sample's are neighbours
+  if (sorted) std::ranges::stable_sort(shares, {}, &Share::sample);
+  std::size_t count = 0;
+  for (const Share& share : shares) {
+    std::size_t i = sorted && count > 0 ? count - 1 : 0;
+    while (i < count && shares[i].sample != share.sample) ++i;
+    if (i == count) {
+      shares[count++] = share;
+    } else {
+      shares[i].area += share.area;
+      shares[i].moment += share.moment;
+    }
+  }
+  return count;
+}
+
+/// The pieces of one triangle, whose shares are used up.
+void add_pieces(const TriangleList& triangles, const SampleGrid& grid, std::span<Share> shares,
+                std::vector<SurfacePiece>& pieces) {
+  const std::uint32_t triangle = shares[0].triangle;
+  const Barycentrics at(triangles.corners(triangles.id(triangle)));
+  const double whole = triangles.area(triangle);
+  for (const Share& sum : shares.first(merge_by_sample(shares))) {
+    if (!(sum.area > 0)) continue;
+    const Vec3d middle = Vec3d(grid.position(sum.sample)) + sum.moment / sum.area;
+    pieces.push_back({triangle, sum.sample, float(sum.area / whole), at.u(middle), at.v(middle)});
+  }
+}
+
 }  // namespace
 
 std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
-                                         Monitor* monitor) {
+                                         Monitor* monitor, std::vector<SurfacePiece>* kept) {
   std::vector<SurfaceShare> shares(grid.size());
   const Tasks tasks(triangles, triangles.area() / double(grid.size()));
   // Blocks bound the memory of the pieces; within one, tasks are summed in order, whatever the threads.
   constexpr std::size_t kBlock = 256;
   std::vector<std::vector<Share>> pieces(std::min(kBlock, tasks.all().size()));
+  std::vector<std::vector<SurfacePiece>> kept_pieces(kept != nullptr ? pieces.size() : 0);
   for (std::size_t begin = 0; begin < tasks.all().size(); begin += kBlock) {
     const std::span<const Task> block =
         std::span(tasks.all()).subspan(begin, std::min(kBlock, tasks.all().size() - begin));
@@ -191,6 +242,17 @@ std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const Sa
         shares[share.sample].area += share.area;
         shares[share.sample].moment += share.moment;
       }
+    if (kept == nullptr) continue;
+    parallel_chunks(block.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      kept_pieces[i].clear();
+      const std::span<Share> all = pieces[i];
+      for (std::size_t first = 0, end = 0; first < all.size(); first = end) {
+        while (end < all.size() && all[end].triangle == all[first].triangle) ++end;
+        add_pieces(triangles, grid, all.subspan(first, end - first), kept_pieces[i]);
+      }
+    });
+    for (std::size_t i = 0; i < block.size(); ++i)
+      kept->insert(kept->end(), kept_pieces[i].begin(), kept_pieces[i].end());
   }
   return shares;
 }

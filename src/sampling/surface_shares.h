@@ -17,9 +17,16 @@ struct SurfaceShare {
                     ///< centroid
 };
 
+/// What a sample owns of one triangle, or of a part of it that was a task of its own.
+struct SurfacePiece {
+  std::uint32_t triangle, sample;  ///< in the list, in the grid
+  float share, u, v;               ///< as in CellPart
+};
+
 /// Each sample's share, in the grid's order. Triangles are halved until they are no larger than the spacing
 /// and then clipped by the bisecting planes: the cells are exact and sum to the surface's area.
+/// out   pieces: unless null, what they are made of
 std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
-                                         Monitor* monitor);
+                                         Monitor* monitor, std::vector<SurfacePiece>* pieces = nullptr);
 
 }  // namespace opaline

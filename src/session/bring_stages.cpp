@@ -55,13 +55,15 @@ void Session::place_anew(Part& part, const PrecomputeInput& input, std::size_t g
   part.samples_key = {};
   if (!anchored_) part.origin = {};
   std::optional<SurfaceSamples> found;
+  SurfaceCells cells;
   if (cache_ != nullptr) found = cache_->find_samples(key, part.plan.meshes);
   work_.found += found ? 1 : 0;
   if (found) {
     part.surface = std::move(*found);
   } else {
-    part.surface = place_samples(input, group);
+    part.surface = place_samples(input, group, edits_ && !anchored_ ? &cells : nullptr);
     work_.samples_placed += part.surface.samples.size();
+    work_.samples_divided += part.surface.samples.size();
     if (cache_ != nullptr) cache_->keep_samples(key, part.surface, part.plan.meshes);
   }
   part.meshes = part.plan.meshes;
@@ -73,6 +75,7 @@ void Session::place_anew(Part& part, const PrecomputeInput& input, std::size_t g
                    part.plan.samples,
                    part.surface.area,
                    {},
+                   std::move(cells),
                    settings.samples.has_value(),
                    settings.sample_spacing};
   part.samples_key = key;
@@ -91,11 +94,12 @@ void Session::carry_along(Part& part, const PrecomputeInput& input, const StageK
     decide(part, fmt::format("{} samples from the cache", part.surface.samples.size()));
   } else {
     CarriedSamples carried = carry_samples({*part.origin.world, part.origin.meshes, *world_, part.plan.meshes,
-                                            part.origin.surface, input.monitor});
+                                            part.origin.surface, part.origin.cells, input.monitor});
     part.surface = std::move(carried.surface);
     work_.samples_carried += part.surface.samples.size() - carried.added;
     work_.samples_placed += carried.added;
     work_.samples_removed += carried.removed;
+    work_.samples_divided += carried.divided ? part.surface.samples.size() : 0;
     if (cache_ != nullptr) cache_->keep_samples(key, part.surface, part.plan.meshes);
     decide(part, carried.rigid ? fmt::format("{} samples went along", part.surface.samples.size())
                                : fmt::format("{} samples went along, {} added, {} removed",

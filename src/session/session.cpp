@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "opaline/render/surface_caches.h"
 #include "session/light_mix.h"
@@ -34,15 +35,16 @@ Session::Session(StageCache* cache) : cache_(cache), mix_(std::make_unique<Light
 Session::~Session() = default;
 
 void Session::edit(Scene scene) {
-  std::vector<StageKey> keys;
-  for (const Shape& shape : scene.shapes) keys.push_back(shape_key(shape));
-  std::size_t loaded = 0;
+  std::vector<StageKey> sources, keys;
+  for (const Shape& shape : scene.shapes) {
+    sources.push_back(source_key(shape));
+    keys.push_back(shape_key(shape, sources.back()));
+  }
+  SessionWork work;
   std::shared_ptr<const World> world = world_;
   std::vector<MeshKeys> meshes = mesh_keys_;
   if (world == nullptr || keys != shape_keys_) {
-    const auto kept = kept_shapes(shape_keys_, keys);
-    world =
-        std::make_shared<const World>(update_world(scene, world != nullptr ? *world : World(), kept, loaded));
+    world = std::make_shared<const World>(loaded_world(scene, sources, keys, work));
     meshes = mesh_keys(*world);
   }
   Plan plan = make_plan(scene, *world);
@@ -51,12 +53,69 @@ void Session::edit(Scene scene) {
   shape_keys_ = std::move(keys);
   mesh_keys_ = std::move(meshes);
   plan_ = std::move(plan);
-  work_ = {};
-  work_.meshes_loaded = loaded;
+  work_ = work;
   decisions_.clear();
   costs_.clear();
   prepared_ = false;
   keep_spacing();
+}
+
+/// One memory a shape: of the same source, or else of a shape of the same name.
+void Session::arrange_memories(const Scene& scene, const std::vector<StageKey>& sources) {
+  std::vector<ShapeMemory> before = std::exchange(shape_memories_, {});
+  shape_memories_.resize(scene.shapes.size());
+  std::vector<bool> found(scene.shapes.size());
+  const auto take = [&](const auto& is_wanted) {
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      const auto it = found[i] ? before.end() : std::ranges::find_if(before, [&](const ShapeMemory& memory) {
+        return is_wanted(memory, i);
+      });
+      if (it == before.end()) continue;
+      shape_memories_[i] = std::move(*it);
+      before.erase(it);
+      found[i] = true;
+    }
+  };
+  take([&](const ShapeMemory& memory, std::size_t i) { return memory.source == sources[i]; });
+  take([&](const ShapeMemory& memory, std::size_t i) { return memory.name == scene.shapes[i].name; });
+}
+
+World Session::loaded_world(const Scene& scene, const std::vector<StageKey>& sources,
+                            const std::vector<StageKey>& shapes, SessionWork& work) {
+  const auto kept = kept_shapes(shape_keys_, shapes);
+  const World none;
+  const World& before = world_ != nullptr ? *world_ : none;
+  shape_memories_.resize(edits_ ? shape_memories_.size() : 0);
+  if (!edits_) {
+    World world = update_world(scene, before, kept, work.meshes_loaded);
+    work.meshes_read = work.meshes_checked = work.meshes_loaded;
+    return world;
+  }
+  arrange_memories(scene, sources);
+  std::vector<MeshMemory*> memories;
+  for (std::size_t i = 0; i < shape_memories_.size(); ++i) {
+    ShapeMemory& memory = shape_memories_[i];
+    if (memory.source != sources[i]) memory.mesh.source_changed();
+    memory.source = {};  // until it is loaded
+    memories.push_back(&memory.mesh);
+  }
+  const auto done = [&] {
+    MeshMemory::Work sum;
+    for (const MeshMemory* memory : memories) {
+      sum.read += memory->work().read;
+      sum.checked += memory->work().checked;
+    }
+    return sum;
+  };
+  const MeshMemory::Work first = done();
+  World world = update_world(scene, before, kept, work.meshes_loaded, memories);
+  work.meshes_read = done().read - first.read;
+  work.meshes_checked = done().checked - first.checked;
+  for (std::size_t i = 0; i < shape_memories_.size(); ++i) {
+    shape_memories_[i].source = sources[i];
+    shape_memories_[i].name = scene.shapes[i].name;
+  }
+  return world;
 }
 
 void Session::anchor(Scene scene, Monitor* monitor) {
@@ -183,9 +242,9 @@ HeldView* Session::held_view() {
     mix_->clear();
     return nullptr;
   }
-  const StageKey key = view_key(scene_, mesh_keys_);
-  const StageKey lights_key =
-      view_lights_key({scene_, *world_, *rays_, plan_}, recentred_lights(scene_, *world_));
+  const PrecomputeInput input{scene_, *world_, *rays_, plan_};
+  const StageKey key = view_key(input, mesh_keys_),
+                 lights_key = view_lights_key(input, recentred_lights(scene_, *world_));
   if (key != view_key_) view_ = {};
   if (lights_key != view_lights_key_) view_.forget_lights();
   if (key != view_key_ || lights_key != view_lights_key_) mix_->clear();
@@ -196,9 +255,12 @@ HeldView* Session::held_view() {
 
 void Session::bring_rays() {
   const auto same = [](const MeshKeys& a, const MeshKeys& b) { return a.all == b.all; };
-  if (rays_ != nullptr && std::ranges::equal(rays_keys_, mesh_keys_, same)) return;
+  if (rays_ != nullptr && rays_build_ == plan_.rays && std::ranges::equal(rays_keys_, mesh_keys_, same))
+    return;
   rays_ = nullptr;  // not both at once
-  rays_ = std::make_unique<RayScene>(*world_);
+  rays_build_ = plan_.rays;
+  rays_ = std::make_unique<RayScene>(*world_, rays_build_);
+  ++work_.ray_builds;
   rays_keys_ = mesh_keys_;
 }
 

@@ -15,6 +15,7 @@ struct SampleOrigin {
   std::size_t count = 0;       // asked for
   double area = 0;             // of the surface then
   SurfaceSamples surface;      // while the part's own are carried; else the part's own are these
+  SurfaceCells cells;          // of these samples; empty until a surface bends where no edits were expected
   bool count_was_set = false;  // by settings.samples
   std::optional<double> spacing_setting;
 };

@@ -24,12 +24,18 @@ struct AddSource {
 
 }  // namespace
 
-StageKey shape_key(const Shape& shape) {
+StageKey source_key(const Shape& shape) {
+  KeyBuilder key("source", 1);
+  key.add(std::uint64_t(shape.source.index()));
+  std::visit(AddSource{key}, shape.source);
+  return key.key();
+}
+
+StageKey shape_key(const Shape& shape, const StageKey& source) {
   KeyBuilder key("shape", 1);
   const bool may_be_open = !shape.medium;  // then an open quad is no reason for a warning
-  key.add(std::uint64_t(shape.source.index())).add(shape.to_world).add(shape.normals).add(may_be_open);
+  key.add(source).add(shape.to_world).add(shape.normals).add(may_be_open);
   key.add(shape.name);  // messages have it
-  std::visit(AddSource{key}, shape.source);
   return key.key();
 }
 

@@ -7,8 +7,11 @@
 
 namespace opaline {
 
-/// Of the file's bytes or the built-in shape's measures, and all that loading does with them. A file that
-/// cannot be read has a key, too: loading will say why.
-StageKey shape_key(const Shape& shape);
+/// Of the file's bytes or the built-in shape's measures. A file that cannot be read has a key, too: loading
+/// will say why.
+StageKey source_key(const Shape& shape);
+
+/// Of the source and all that loading does with it.
+StageKey shape_key(const Shape& shape, const StageKey& source);
 
 }  // namespace opaline

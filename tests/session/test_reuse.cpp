@@ -35,6 +35,9 @@ void expect_row(const Row& row) {
   EXPECT_EQ(work.lights_traced, row.lights_traced);
   EXPECT_EQ(work.sample_rays > 0, row.lights_traced > 0);
   EXPECT_EQ(work.nodes_built > 0, row.builds_trees);
+  if (!row.builds_trees) {
+    EXPECT_EQ(work.ray_builds, 0u);
+  }
   EXPECT_GT(work.queries, 0u);
   EXPECT_TRUE(same_pixels(picture, cold_picture(scene)));
 }
@@ -264,6 +267,35 @@ TEST(Reuse, AnythingElse) {
     EXPECT_FALSE(session.decisions().empty());
     EXPECT_TRUE(same_pixels(picture, cold_picture(scene)));
   }
+}
+
+// Claim: the structure that rays walk is built quickly where one picture's rays are few for its triangles,
+// and carefully for area lights of many rays, large pictures and `direct`, by the scene alone; it is built
+// anew where this changes, and then only. Source: Plan::rays. Fails if: no ray counts, or all count alike.
+TEST(Reuse, RayBuild) {
+  Scene scene = two_balls();
+  scene.lights.erase(scene.lights.begin() + 1);  // the panel
+  Session session;
+  const auto expect = [&](RayBuild build, std::size_t builds) {
+    EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+    EXPECT_EQ(session.plan().rays, build);
+    EXPECT_EQ(session.work().ray_builds, builds);
+  };
+  expect(RayBuild::quick, 1);
+  scene.camera.position.x += 5;
+  expect(RayBuild::quick, 0);
+  Scene large = scene;
+  large.film.resolution = {4096, 4096};
+  EXPECT_EQ(make_plan(large, session.world()).rays, RayBuild::careful);
+  scene.lights.push_back({"panel", QuadLight{{-20, 90, 30}, {40, 0, 0}, {0, 0, 20}, {5, 6, 7}}});
+  scene.settings.light_samples = 64;
+  expect(RayBuild::careful, 1);
+  scene.settings.light_samples = 65;
+  expect(RayBuild::careful, 0);
+  scene.lights.clear();
+  expect(RayBuild::quick, 1);
+  scene.settings.method = Method::direct;
+  EXPECT_EQ(make_plan(scene, session.world()).rays, RayBuild::careful);
 }
 
 // Claim: an edit that cannot be loaded leaves the session with the scene before. Source: session.h. Fails if:

@@ -37,8 +37,8 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
                     std::span<const Light> lights);
 
-/// Of what camera rays meet: the camera, the film, all meshes.
-StageKey view_key(const Scene& scene, std::span<const MeshKeys> meshes);
+/// Of what camera rays meet: the camera, the film, all meshes, how the structure was built that rays walk.
+StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes);
 
 /// Of how the lights reach what camera rays meet: where the lights are and how large, but not their colours;
 /// random numbers; which surfaces are of which kind. in    lights: recentred

@@ -2,18 +2,50 @@
 // From a scene's shape to checked triangles in the world.
 #pragma once
 
+#include <memory>
+
 #include "opaline/geometry/mesh.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {
 
 /// The triangles of one shape in world space, checked and mended.
-/// in    shape: any source; built-in shapes are tessellated finely enough that their area is within 1e-3 of the
+/// in    shape: any source; built-in shapes are tessellated finely enough that their area is within 1e-3 of
+/// the
 ///       true one
-/// out   at least one triangle; every position finite and below 1e18; zero-area and duplicate triangles dropped;
+/// out   at least one triangle; every position finite and below 1e18; zero-area and duplicate triangles
+/// dropped;
 ///       closed components wound outward; holes filled if asked; normals as shape.normals says
-/// error Error{bad_input} naming the file: missing, empty, truncated or unreadable mesh, NaN or huge coordinates,
+/// error Error{bad_input} naming the file: missing, empty, truncated or unreadable mesh, NaN or huge
+/// coordinates,
 ///       index out of range, no area
 CheckedMesh make_mesh(const Shape& shape);
+
+/// What loading a shape found, for loading it again after an edit: its triangles as they were read, and what
+/// checking them found that does not depend on where their corners are. Some 100 bytes a vertex.
+class MeshMemory {
+ public:
+  MeshMemory();
+  ~MeshMemory();
+  MeshMemory(MeshMemory&&) noexcept;
+  MeshMemory& operator=(MeshMemory&&) noexcept;
+
+  /// To be told when the shape's source is another, its file's bytes among it: then it is read again.
+  void source_changed();
+
+  /// What was not found in the memory, since its beginning.
+  struct Work {
+    std::size_t read = 0, checked = 0;  ///< meshes
+  };
+  const Work& work() const;
+
+ private:
+  friend CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory);
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The same mesh, bit for bit, with what the memory holds of the shape, or of another one, not done again.
+CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory);
 
 }  // namespace opaline

@@ -30,6 +30,7 @@ struct Plan {
   std::vector<std::string> warnings;  ///< one line each, with the likely fix
   std::size_t bytes = 0;              ///< expected peak: program, meshes, rays, samples, trees and a picture without empty pixels
   std::size_t triangles = 0;
+  RayBuild rays = RayBuild::careful;  ///< quick where that costs the rays of one picture less than it saves
 };
 
 /// Decides groups and sample counts, unless the settings say otherwise: spacing of the diffuse mean free path, but of one

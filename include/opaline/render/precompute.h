@@ -51,7 +51,8 @@ Precompute precompute(const PrecomputeInput& input);
 // chooses random numbers.
 
 std::uint64_t sampling_seed(const Settings& settings, std::size_t group);
-SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group);
+/// cells: unless null, of the samples.
+SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group, SurfaceCells* cells = nullptr);
 
 std::uint64_t irradiance_seed(const Settings& settings, std::size_t group);
 /// Of irradiance_at at the points of a picture and the places of a surface cache.

@@ -20,10 +20,14 @@ class LightMix;
 
 /// Work of one edit, counted where it is done.
 struct SessionWork {
-  std::size_t meshes_loaded = 0;     ///< read and mended, or built
+  std::size_t meshes_loaded = 0;     ///< put where the scene has them
+  std::size_t meshes_read = 0;       ///< of these, from their files, or built
+  std::size_t meshes_checked = 0;    ///< of these, for how their triangles meet
+  std::size_t ray_builds = 0;        ///< of the structure that rays walk
   std::size_t samples_placed = 0;    ///< by throwing darts, or where a carried surface was stretched
   std::size_t samples_carried = 0;   ///< along with their triangles
   std::size_t samples_removed = 0;   ///< of these, where the surface was squeezed
+  std::size_t samples_divided = 0;   ///< whose shares of the surface were found, not carried
   std::size_t lights_traced = 0;     ///< from all samples of a group, each
   std::uint64_t sample_rays = 0;     ///< shadow rays from samples
   std::size_t nodes_built = 0;       ///< of trees
@@ -45,10 +49,11 @@ struct SessionWork {
 ///                                       twice as dense (in spacing) as it asks for
 ///   eta                                 the light that enters, trees, evaluation
 ///   a light moved, added or removed     that light's share, trees, evaluation
-///   an object moved as a whole          its samples go along; light that enters it, and others where the
-///                                       shadow of a ball around it fell or falls
-///   a mesh bent, the same triangles     samples go along with their triangles (carry_samples); all else of
-///   it anything else                       what depends on it
+///   an object moved as a whole          no file is read; its samples go along; light that enters it, and
+///                                       others where the shadow of a ball around it fell or falls
+///   a mesh bent, the same triangles     it is read, not checked; samples and their cells go along with their
+///                                       triangles (carry_samples); all else of it
+///   anything else                       what depends on it
 ///
 /// Pictures are those of a new session, bit for bit, but for such sums (within the tolerance) and for samples
 /// that went along or stayed denser. Those are the samples of the last surface that was sampled anew,
@@ -84,6 +89,10 @@ class Session {
     mixes_lights_ = hold && mix_lights;
   }
 
+  /// Whether edits are to come, yes at first: what only they need is not kept otherwise. No picture depends
+  /// on it.
+  void expect_edits(bool edits) { edits_ = edits; }
+
   /// The ray structure alone, which prepare has made otherwise.
   void prepare_rays();
 
@@ -111,8 +120,17 @@ class Session {
 
  private:
   struct Part;
+  /// What loading a shape found; the key is its source's, of zeros where loading failed.
+  struct ShapeMemory {
+    std::string name;
+    StageKey source;
+    MeshMemory mesh;
+  };
 
   bool is_needed() const { return scene_.settings.method == Method::hierarchical && !plan_.groups.empty(); }
+  void arrange_memories(const Scene& scene, const std::vector<StageKey>& sources);
+  World loaded_world(const Scene& scene, const std::vector<StageKey>& sources,
+                     const std::vector<StageKey>& shapes, SessionWork& work);
   void keep_spacing();
   void bring_rays();
   std::vector<Part> arranged_parts();
@@ -135,9 +153,11 @@ class Session {
   Scene scene_;
   std::shared_ptr<const World> world_;
   std::vector<StageKey> shape_keys_;  // what each mesh was loaded from
+  std::vector<ShapeMemory> shape_memories_;
   std::vector<MeshKeys> mesh_keys_;
   Plan plan_;
   std::unique_ptr<RayScene> rays_;
+  RayBuild rays_build_ = RayBuild::careful;
   std::vector<MeshKeys> rays_keys_;
   std::vector<Part> parts_;  // a group's, without what groups_ holds
   std::vector<TranslucentGroup> groups_;
@@ -146,7 +166,7 @@ class Session {
   HeldView view_;
   std::unique_ptr<LightMix> mix_;
   StageKey view_key_, view_lights_key_;
-  bool prepared_ = false, anchored_ = false;
+  bool edits_ = true, prepared_ = false, anchored_ = false;
   SessionWork work_;
   std::vector<std::string> decisions_;
   std::vector<StageCost> costs_;
