@@ -196,6 +196,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   render.display_server = parse_server_address(options.display_server);
   check_outputs(render);
   if (!options.target_error.empty()) render.target_error = share_of(options.target_error);
+  render.time_budget = options.time_budget;
   check_quality(render);
   return render;
 }
