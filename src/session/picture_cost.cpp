@@ -24,7 +24,8 @@ double pixels_of(const Rectangle& r) {
   return double(r.x1 - r.x0) * double(r.y1 - r.y0);
 }
 
-/// Threads that have nothing more to do spin for a while, and the kernel has all of their time when they sleep.
+/// Threads that have nothing more to do spin for a while, and the kernel has all of their time when they
+/// sleep.
 void rest() {
   std::this_thread::sleep_for(std::chrono::milliseconds(2));
 }

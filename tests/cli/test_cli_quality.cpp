@@ -74,7 +74,7 @@ TEST(CliQuality, SameBytesForAnyThreads) {
 // either is silent.
 TEST(CliQuality, WarnsWhereNothingCanBePromised) {
   const QualityFolder folder;
-  const Outcome outcome = folder.render({"--target-error", "0.01%", "--set", "settings.max_samples=3000"});
+  const Outcome outcome = folder.render({"--target-error", "0.01%", "--set", "settings.max_samples=300"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_TRUE(contains(outcome.err, "cannot be reached") && contains(outcome.err, "max_samples of 3000"))
       << outcome.err;
@@ -98,7 +98,7 @@ std::string closing_line(const std::string& out, const std::string& label) {
 TEST(CliQuality, BudgetStatesWhatWasSpentAndHowToRepeatIt) {
   const QualityFolder folder;
   const Outcome json = folder.render(
-      {"--time-budget", "1500ms", "--verify", "--log", "json", "--set", "settings.max_samples=3000"});
+      {"--time-budget", "1500ms", "--verify", "--log", "json", "--set", "settings.max_samples=300"});
   ASSERT_EQ(json.exit_code, 0) << json.err;
   const nlohmann::json done = event_of(events_of(json.out), "done"), budget = done["budget"];
   double verifying = 0;
