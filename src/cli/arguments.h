@@ -72,6 +72,7 @@ struct BenchArguments {
   std::vector<Rung> rungs;    ///< more than the ladder has
   int repeats = 3, threads = 1;
   bool quick = false;
+  bool profiles = false;  ///< each translucent scene with each radial profile
   std::string command_line;
   Log log;
 };

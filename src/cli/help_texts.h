@@ -82,6 +82,9 @@ same figures as results.csv, budget.csv and results.json; pictures. Run it again
 this program has finished on the same scene and settings is kept there and not repeated (a ratio then may pair
 runs from before and after).
 
+--profiles measures each translucent scene once with each radial profile of its media. A profile is a model of its
+own: each has its own reference, and what one differs from the other by is in no figure.
+
 --against compares ratios to lambert and errors with an earlier results.json, rung by rung, and exits with 1 if
 one is worse beyond the noise: the ranges of a ratio lie apart by more than half their widths together, an
 error's square by more than three of its standard errors; less than 5 % is never a change.
