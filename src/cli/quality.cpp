@@ -9,6 +9,7 @@
 #include "cli/render_outputs.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/scene/load_scene.h"
 
 namespace opaline {
 namespace {
@@ -19,13 +20,19 @@ Error bad_usage(const std::string& message, const std::string& expected, const s
   return Error(ErrorKind::bad_input, {}, 0, 0, message, expected, got);
 }
 
+/// What is chosen is written down as settings: several groups have a spacing in common.
+void check_groups(const Session& session, const char* option) {
+  if (session.scene().settings.samples && session.plan().groups.size() > 1)
+    throw bad_usage(
+        fmt::format("{} chooses samples by their spacing, so that all groups have as many as they need",
+                    option),
+        "no settings.samples in the scene file");
+}
+
 KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, Session& session) {
   const double before = process_cpu_seconds();
   const Scene scene = session.scene();
-  if (scene.settings.samples && session.plan().groups.size() > 1)
-    throw bad_usage(
-        "--time-budget chooses samples by their spacing, so that all groups have as many as they need",
-        "no settings.samples in the scene file");
+  check_groups(session, "--time-budget");
   const TimeBudget chosen = stages.run("choosing", [&] {
     return fit_budget(session, scene, budget_left(arguments), trial_writing(arguments, scene.film),
                       &stages.monitor());
@@ -65,9 +72,6 @@ void check_quality(const RenderArguments& render) {
     for (const std::string& text : render.overrides)
       if (text.starts_with(std::string(key) + "="))
         throw bad_usage(fmt::format("{} chooses {} itself", option_of(render), key), "one of the two", text);
-  if (!render.frames.empty())
-    throw bad_usage("--target-error chooses for one picture, and frames would flicker",
-                    "a single picture first, then --frames with its settings.samples and tolerance");
 }
 
 double budget_left(const RenderArguments& arguments) {
@@ -93,6 +97,26 @@ void warn_of_little_time(const RenderArguments& arguments, const Film& film, dou
       fmt::format("{:.4g} s of CPU are too little: a single pass of direct takes {:.2g} s, and is made; "
                   "fewer pixels make it cheaper",
                   *arguments.time_budget, spent));
+}
+
+RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache* cache) {
+  const int reference = load_scene(arguments.scene, arguments.overrides).settings.reference_frame;
+  StageRunner stages(arguments.log);
+  Session session(cache);
+  stages.run_unmeasured("loading", [&] {
+    Scene scene = load_scene(arguments.scene, arguments.overrides, reference);
+    session.expect_pictures(scene.camera_frames);
+    session.edit(std::move(scene));
+  });
+  check_groups(session, "--target-error with --frames");
+  RenderArguments settled = arguments;
+  const KnownErrors known = choose_settings(stages, arguments, session);
+  settled.target_error.reset();
+  if (!known.predicted) return settled;
+  for (std::string& text : chosen_overrides(session, 0)) settled.overrides.push_back(std::move(text));
+  settled.overrides.push_back(
+      fmt::format("settings.light_samples={}", session.scene().settings.light_samples));
+  return settled;
 }
 
 FinishPicture trial_writing(const RenderArguments& arguments, const Film& film) {

@@ -23,6 +23,11 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
 /// in    entry_samples: of a direct picture
 std::vector<std::string> chosen_overrides(const Session& session, std::size_t entry_samples);
 
+/// --target-error for all frames of a range: chosen by the reference frame, whichever frames are asked for,
+/// and written down as overrides in its place. Nothing is changed where that frame shows nothing translucent.
+/// error as choose_settings; Error{bad_input}: several groups beside settings.samples
+RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache* cache);
+
 /// What writing the outputs does, on any picture: files beside them that are gone afterwards.
 FinishPicture trial_writing(const RenderArguments& arguments, const Film& film);
 

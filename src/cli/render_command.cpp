@@ -215,9 +215,11 @@ void render_command(const RenderArguments& arguments) {
     render_scene(own, session, shared, frame);
   };
   if (arguments.frames.empty()) return render_one(arguments, {});
-  anchor_session(session, arguments.scene, arguments.overrides);
-  for_frames(arguments.log, arguments.frames,
-             [&](int frame) { render_one(arguments_of_frame(arguments, frame), frame); });
+  const RenderArguments settled =
+      arguments.target_error ? settled_for_frames(arguments, cache ? &*cache : nullptr) : arguments;
+  anchor_session(session, settled.scene, settled.overrides);
+  for_frames(settled.log, settled.frames,
+             [&](int frame) { render_one(arguments_of_frame(settled, frame), frame); });
 }
 
 }  // namespace opaline

@@ -121,7 +121,7 @@ TEST(CliBench, GivenHalves) {
 // noise, so that against the other's no setting would be near. Tolerance: 10 % for a picture of the scene's
 // own settings; the profiles are 100 % apart here. Fails if: both have one reference, or one profile is
 // measured twice.
-TEST(CliBench, EachProfileHasItsReference) {
+TEST(LongCliBench, EachProfileHasItsReference) {
   const SceneFolder folder;
   const Outcome outcome = run_program(bench_line(folder, {"--profiles", "--reference-error", "5%"}));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;

@@ -210,9 +210,6 @@ TEST(CliQuality, SenselessOptionsAreErrors) {
     EXPECT_EQ(outcome.exit_code, 2) << expected;
     EXPECT_TRUE(contains(outcome.err, expected)) << expected << ": " << outcome.err;
   }
-  const Outcome frames = folder.render({"--target-error", "1%", "--frames", "1-2"}, "a.##.exr");
-  EXPECT_EQ(frames.exit_code, 2);
-  EXPECT_TRUE(contains(frames.err, "a single picture first")) << frames.err;
   const Outcome budget = folder.render({"--time-budget", "1s", "--frames", "1-2"}, "a.##.exr");
   EXPECT_EQ(budget.exit_code, 2);
   EXPECT_TRUE(contains(budget.err, "a single picture first")) << budget.err;
