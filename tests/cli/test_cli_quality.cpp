@@ -74,7 +74,7 @@ TEST(CliQuality, SameBytesForAnyThreads) {
 // either is silent.
 TEST(CliQuality, WarnsWhereNothingCanBePromised) {
   const QualityFolder folder;
-  const Outcome outcome = folder.render({"--target-error", "0.01%", "--set", "settings.max_samples=300"});
+  const Outcome outcome = folder.render({"--target-error", "0.01%", "--set", "settings.max_samples=3000"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_TRUE(contains(outcome.err, "cannot be reached") && contains(outcome.err, "max_samples of 3000"))
       << outcome.err;
