@@ -82,7 +82,7 @@ std::string command_of(const std::string& path) {
 // settings are chosen by the frame itself, or by the first of those asked for.
 TEST(CliFrames, TargetErrorIsChosenOnce) {
   const Shot shot;
-  const std::vector<std::string> target{"--target-error", ".7%"};
+  const std::vector<std::string> target{"--target-error", ".1%"};
   const Outcome all = shot.render("1-6", "all", target);
   ASSERT_EQ(all.exit_code, 0) << all.err;
   const std::string command = command_of(shot.picture(1, "all"));
