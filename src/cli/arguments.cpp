@@ -87,6 +87,8 @@ BenchArguments checked(BenchArguments bench, const Options& options) {
   if (!bench.halves.empty() && bench.scenes.size() > 1)
     throw usage_error("--halves are the reference of one scene", "a single scene",
                       std::to_string(bench.scenes.size()));
+  if (!bench.halves.empty() && bench.profiles)
+    throw usage_error("--halves are the reference of one profile: leave --profiles out");
   if (!bench.halves.empty() && !(options.reference_error.empty() && bench.reference_dir.empty()))
     throw usage_error(
         "with --halves no reference is rendered: leave --reference-error and --reference-dir out");
@@ -196,6 +198,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   render.display_server = parse_server_address(options.display_server);
   check_outputs(render);
   if (!options.target_error.empty()) render.target_error = share_of(options.target_error);
+  render.time_budget = options.time_budget;
   check_quality(render);
   return render;
 }

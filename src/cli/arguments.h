@@ -29,6 +29,7 @@ struct RenderArguments {
   bool write_partial = false;
   std::optional<ServerAddress> display_server;
   std::optional<double> target_error;  ///< settings are chosen for it; relative, > 0
+  std::optional<double> time_budget;   ///< settings are chosen for it; CPU of the whole process, s, > 0
   bool verify = false;                 ///< measure the error of the picture
   Log log;
 };
@@ -71,6 +72,7 @@ struct BenchArguments {
   std::vector<Rung> rungs;    ///< more than the ladder has
   int repeats = 3, threads = 1;
   bool quick = false;
+  bool profiles = false;  ///< each translucent scene with each radial profile
   std::string command_line;
   Log log;
 };

@@ -52,9 +52,11 @@ std::vector<BenchScene> open_scenes(const BenchArguments& arguments, const Bench
     if (!seen.insert(file).second) throw bad_file(file, "the scene is given twice");
   std::vector<BenchScene> scenes;
   for (const std::string& file : arguments.scenes) {
-    BenchScene& scene = scenes.emplace_back(open_bench_scene(arguments, file, monitor));
-    const std::string name = scene.name;
-    for (int n = 2; !names.insert(scene.name).second; ++n) scene.name = fmt::format("{}-{}", name, n);
+    for (BenchScene& scene : open_bench_scenes(arguments, file, monitor)) {
+      const std::string name = scene.name;
+      for (int n = 2; !names.insert(scene.name).second; ++n) scene.name = fmt::format("{}-{}", name, n);
+      scenes.push_back(std::move(scene));
+    }
   }
   const std::string folder = arguments.halves.empty() ? reference_folder(arguments, report) : std::string();
   for (BenchScene& scene : scenes) prepare_reference(arguments, folder, scene, monitor);
@@ -68,8 +70,8 @@ std::vector<BenchRow> rows_of(const std::vector<BenchJob>& jobs) {
     if (lambert == nullptr || lambert->scene != job.scene) lambert = &job;  // a scene's first rung
     // A failed rung's earlier rounds are not told.
     const bool failed = !job.failure.empty();
-    rows.push_back(summarize(job.scene->file, *job.rung, failed ? std::span<const BenchRun>() : job.runs,
-                             lambert->runs));
+    rows.push_back(
+        summarize(job.scene->id, *job.rung, failed ? std::span<const BenchRun>() : job.runs, lambert->runs));
     rows.back().failure = job.failure;
   }
   return rows;
@@ -83,11 +85,10 @@ void add_notes(const BenchArguments& arguments, const std::vector<BenchScene>& s
   if (kept > 0) notes.emplace_back("kept", fmt::format("{} runs from before, in this folder", kept));
   for (const BenchScene& scene : scenes) {
     const BenchReference& reference = scene.reference;
-    notes.emplace_back(
-        "scene",
-        fmt::format("{}, {} x {} pixels, {} a pixel, seed {}, of direct {}", scene.file,
-                    scene.scene.film.resolution[0], scene.scene.film.resolution[1],
-                    scene.scene.film.samples_per_pixel, scene.scene.settings.seed, scene.direct_seed));
+    notes.emplace_back("scene", fmt::format("{}, {} x {} pixels, {} a pixel, seed {}, of direct {}", scene.id,
+                                            scene.scene.film.resolution[0], scene.scene.film.resolution[1],
+                                            scene.scene.film.samples_per_pixel, scene.scene.settings.seed,
+                                            scene.direct_seed));
     notes.emplace_back("reference",
                        fmt::format("{}; seeds {}; {}", reference.made, fmt::join(reference.seeds, ", "),
                                    fmt::join(reference.halves, ", ")));

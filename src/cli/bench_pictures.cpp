@@ -61,7 +61,7 @@ struct Reference {
 
 BenchSubject subject_of(const BenchScene& scene, const Reference& reference) {
   BenchSubject subject;
-  subject.scene = scene.file;
+  subject.scene = scene.id;
   subject.key = scene.key;
   subject.title = scene.name;
   subject.reference = scene.reference.made;
@@ -111,7 +111,7 @@ void add_pictures(const BenchFolder& folder, const std::vector<BenchScene>& scen
 std::vector<BudgetRow> budget_rows(const BenchFolder& folder, const std::vector<BudgetJob>& jobs) {
   std::vector<BudgetRow> rows;
   for (const BudgetJob& job : jobs) {
-    rows.push_back({job.scene->file, job.part, std::nullopt, job.failure});
+    rows.push_back({job.scene->id, job.part, std::nullopt, job.failure});
     BudgetRow& row = rows.back();
     if (!job.failure.empty()) continue;
     const Image here = read_image(folder.file(job.here)), converged = read_image(folder.file(job.converged));

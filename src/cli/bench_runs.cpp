@@ -58,7 +58,7 @@ class PartPictures {
     bool is_kept = false;
     const OwnChild child =
         run_or_recall(folder_, kept_run(arguments_, scene_, name, picture, all), monitor, is_kept);
-    write_line(stderr, fmt::format("bench: parts of the error: {} {}: {}{}", scene_.file, part.name,
+    write_line(stderr, fmt::format("bench: parts of the error: {} {}: {}{}", scene_.id, part.name,
                                    child.failure.empty() ? short_time(child.cost.wall_seconds)
                                                          : "failed: " + child.failure,
                                    is_kept ? " (kept from before)" : ""));
@@ -100,7 +100,7 @@ std::size_t run_jobs(const BenchArguments& arguments, const BenchFolder& folder,
       run_once(arguments, folder, job, round, monitor, is_kept);
       kept += is_kept;
       write_line(stderr, fmt::format("bench: round {} of {}: {} {}: {}", round + 1, arguments.repeats,
-                                     job.scene->file, name_of(*job.rung), outcome(job, is_kept)));
+                                     job.scene->id, name_of(*job.rung), outcome(job, is_kept)));
     }
     round_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (const int left = arguments.repeats - round - 1; left > 0)

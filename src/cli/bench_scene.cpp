@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kQuickWidth = 128;
+constexpr std::array<const char*, 2> kProfiles{"dipole", "normalized_diffusion"};
 constexpr std::array<const char*, 2> kReferenceSeeds{"101", "102"};
 
 void add_sets(std::vector<std::string>& arguments, const std::vector<std::string>& overrides) {
@@ -82,7 +83,7 @@ std::string render_half(const BenchArguments& arguments, const std::string& fold
   add_sets(line, render.overrides);
   add_sets(line, {"settings.entry_samples=1000000000",
                   fmt::format("settings.until_error={}", arguments.reference_error)});
-  write_line(stderr, fmt::format("bench: reference of {}, seed {}, until {:.3g} %: {}", scene.file, seed,
+  write_line(stderr, fmt::format("bench: reference of {}, seed {}, until {:.3g} %: {}", scene.id, seed,
                                  100 * arguments.reference_error, half));
   const OwnChild child = run_own_child(line, monitor);
   const Json done = answer_of(child, "done");
@@ -103,12 +104,13 @@ std::uint64_t other_seed(std::uint64_t seed, const std::array<std::string, 2>& t
   return seed;
 }
 
-}  // namespace
-
-BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& file, Monitor& monitor) {
+/// more: overrides after the user's own.
+BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& file,
+                            const std::vector<std::string>& more, Monitor& monitor) {
   BenchScene scene;
-  scene.file = file;
+  scene.file = scene.id = file;
   scene.overrides = arguments.overrides;
+  scene.overrides.insert(scene.overrides.end(), more.begin(), more.end());
   scene.scene = load_scene(file, scene.overrides);
   // In front, as the option would be: what the user sets wins.
   if (arguments.quick) scene.overrides.insert(scene.overrides.begin(), quick_resolution(scene.scene.film));
@@ -121,6 +123,25 @@ BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& 
   scene.rungs = ladder({scene.planned_samples, arguments.quick});
   scene.rungs.insert(scene.rungs.end(), arguments.rungs.begin(), arguments.rungs.end());
   return scene;
+}
+
+}  // namespace
+
+std::vector<BenchScene> open_bench_scenes(const BenchArguments& arguments, const std::string& file,
+                                          Monitor& monitor) {
+  std::vector<BenchScene> scenes{open_bench_scene(arguments, file, {}, monitor)};
+  if (!arguments.profiles || scenes[0].planned_samples == 0) return scenes;
+  const BenchScene own = std::move(scenes[0]);
+  scenes.clear();
+  for (const char* profile : kProfiles) {
+    std::vector<std::string> more;
+    for (const Medium& medium : own.scene.media)
+      more.push_back(fmt::format("media.{}.profile={}", medium.name, profile));
+    BenchScene& scene = scenes.emplace_back(open_bench_scene(arguments, file, more, monitor));
+    scene.id += fmt::format(" ({})", profile);
+    scene.name += fmt::format("-{}", profile);
+  }
+  return scenes;
 }
 
 void prepare_reference(const BenchArguments& arguments, const std::string& folder, BenchScene& scene,

@@ -24,6 +24,7 @@ struct BenchReference {
 
 struct BenchScene {
   std::string file;
+  std::string id;                      ///< in rows: the file, and the profile where each has its turn
   std::string name;                    ///< without folders, for files; no two alike
   std::string key;                     ///< scene_hash of what every run renders
   std::vector<std::string> overrides;  ///< of every run, before a rung's own
@@ -34,9 +35,11 @@ struct BenchScene {
   std::uint64_t direct_seed = 0;  ///< of the direct rungs: not one of the reference's
 };
 
-/// Its settings and rungs; the plan is asked of a child process.
+/// Its settings and rungs, once, or once for each profile if that is asked for and something is translucent;
+/// the plan is asked of a child process.
 /// error Error{bad_input} as load_scene and make_plan
-BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& file, Monitor& monitor);
+std::vector<BenchScene> open_bench_scenes(const BenchArguments& arguments, const std::string& file,
+                                          Monitor& monitor);
 
 /// The user's halves, or two direct renderings, kept in and taken from `folder` under names that hold their
 /// key. error Error{bad_input}: halves of another size; Error{run_failed}: a rendering failed

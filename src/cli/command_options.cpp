@@ -120,6 +120,12 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
       ->check(positive_share_check())
       ->type_name("PERCENT")
       ->group(quality);
+  app.add_option("--time-budget", options.time_budget,
+                 "choose them for the smallest error within this CPU time of all, e.g. 2s; direct: stop then")
+      ->transform(seconds_of())
+      ->check(CLI::PositiveNumber.description(""))
+      ->type_name("TIME")
+      ->group(quality);
   app.add_flag("--verify", render.verify, "measure the error at some 200 points by --method direct")
       ->group(quality);
   app.footer(kRenderNotes);

@@ -19,7 +19,7 @@ struct Options {
   std::optional<std::uint64_t> entry_samples;
   std::optional<std::uint64_t> spp;
   std::optional<std::uint64_t> seed;
-  std::optional<double> exposure;
+  std::optional<double> exposure, time_budget;
   std::vector<std::string> sets;
   std::string log = "text";
   std::string fail_above;

@@ -9,6 +9,7 @@ inline constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o bunny.exr -o bunny.png
   opaline render bunny.json -o draft.png --method lambert --resolution 256x256
   opaline render bunny.json -o bunny.exr --target-error 1% --verify
+  opaline render bunny.json -o bunny.exr --time-budget 2s
   opaline render bunny.json -o warm.exr --set media.marble.eta=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
   opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
   opaline render bunny.json -o bunny.exr --write-partial --display-server localhost
@@ -32,7 +33,15 @@ They are applied first, then each --set in its order: the last one wins.
 --target-error is the mean relative error of the diffuse light over the translucent pixels, of the worst channel,
 against the converged --method direct. What the diffusion model itself is off by is not in it, nor what --spp
 does to edges: that stays yours. Small pictures with more and more samples tell what is needed. --verify
-measures what came of it, at a cost that grows with the square of the accuracy.)";
+measures what came of it, at a cost that grows with the square of the accuracy. With --frames it holds for
+settings.reference_frame: settings are chosen there, once, and all frames share them, so that nothing flickers.
+
+--time-budget is the CPU time of the whole program, all threads, user and system, as the closing table has it: its
+start, loading, choosing and writing are within, --verify is not. Small pictures, tiles of the whole one and small
+files tell what samples cost and bring; as many are taken as there is time for, up to settings.max_samples. Where
+even the cheapest picture takes longer it is made, and a warning says how long. Pixels, --spp and
+settings.light_samples stay yours. What is chosen depends on the clock: the closing line "again by" is a command
+that makes the same pixels without it. With --method direct it is when to stop.)";
 
 inline constexpr const char* kCompareNotes =
     R"(Figures are of the relative error (a - b) / max(|b|, floor), floor being 1e-3 of the p99 of |b|, over the
@@ -73,6 +82,9 @@ error against CPU time, pictures and where they are off, and the parts of the er
 same figures as results.csv, budget.csv and results.json; pictures. Run it again after an interruption: what
 this program has finished on the same scene and settings is kept there and not repeated (a ratio then may pair
 runs from before and after).
+
+--profiles measures each translucent scene once with each radial profile of its media. A profile is a model of its
+own: each has its own reference, and what one differs from the other by is in no figure.
 
 --against compares ratios to lambert and errors with an earlier results.json, rung by rung, and exits with 1 if
 one is worse beyond the noise: the ranges of a ratio lie apart by more than half their widths together, an

@@ -67,6 +67,12 @@ std::string shell_quoted(const std::string& argument) {
   return quoted + "'";
 }
 
+std::string command_of(const RenderArguments& arguments) {
+  std::string command = command_line(arguments.scene, arguments.overrides);
+  if (arguments.target_error) command += fmt::format(" --target-error {}", *arguments.target_error);
+  return command;
+}
+
 // Lengths go in front: what is hashed can be cut in one way only.
 std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,
                        const Scene& scene) {
@@ -94,9 +100,9 @@ Metadata make_metadata(const RenderArguments& arguments, const std::string& hash
   if (!hash.empty()) metadata.emplace_back("opaline:scene_hash", hash);
   metadata.emplace_back("opaline:seed", std::to_string(scene.settings.seed));
   metadata.emplace_back("opaline:settings", compact(settings_json(scene, translucent)));
-  std::string command = command_line(name, arguments.overrides);
-  if (arguments.target_error) command += fmt::format(" --target-error {}", *arguments.target_error);
-  metadata.emplace_back("opaline:command", command);
+  RenderArguments without_folder = arguments;
+  without_folder.scene = name;
+  metadata.emplace_back("opaline:command", command_of(without_folder));
   if (frame) metadata.emplace_back("opaline:frame", std::to_string(*frame));
   return metadata;
 }

@@ -6,6 +6,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "cli/display_server.h"
@@ -103,6 +104,11 @@ CLI::Validator positive_share_check() {
     const std::optional<double> share = share_of(text);
     return share && *share > 0 && *share <= 1;
   });
+}
+
+CLI::Validator seconds_of() {
+  const std::map<std::string, double> units{{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
+  return CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE).description("");
 }
 
 CLI::Validator rung_check() {

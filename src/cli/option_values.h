@@ -32,6 +32,8 @@ CLI::Validator whole_number(WholeRange range);
 CLI::Validator share_check();
 /// Of (0, 1].
 CLI::Validator positive_share_check();
+/// "2s", "500ms", "1.5min", "1h" or seconds alone, to seconds.
+CLI::Validator seconds_of();
 /// What parse_server_address takes.
 CLI::Validator server_address_check();
 /// NAME=VALUE.

@@ -133,6 +133,41 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
                     100 * target, settings.max_samples, 100 * chosen.predicted));
 }
 
+void print_budget(const Log& log, double budget, double before, const TimeBudget& chosen,
+                  const Settings& settings) {
+  const double planned = before + chosen.planned;
+  if (!log.quiet) {
+    Json members{{"time_budget", budget},
+                 {"planned", planned},
+                 {"fits", chosen.fits},
+                 {"at_most", chosen.at_most},
+                 {"sees_translucent", chosen.sees_translucent},
+                 {"samples", chosen.samples},
+                 {"tolerance", settings.tolerance},
+                 {"evaluator", name_of(settings.evaluator)}};
+    if (chosen.predicted) members["predicted_error"] = *chosen.predicted;
+    print_event(log, "budget", members);
+  }
+  if (!chosen.sees_translucent)
+    return print_warning(log,
+                         "nothing translucent is seen: --time-budget has nothing to choose here, and the "
+                         "picture takes as long as it takes");
+  const std::string error =
+      chosen.predicted ? fmt::format(" predicted to be {:.2g} % off", 100 * *chosen.predicted) : "";
+  if (!log.quiet && log.format == LogFormat::text)
+    print_row("budget",
+              fmt::format("{:.4g} s: {}{}, tolerance {:.2g} %; about {:.3g} s are planned{}", budget,
+                          counted(chosen.samples, "sample"), error, 100 * settings.tolerance, planned,
+                          chosen.at_most ? ", more samples being too many for settings.max_samples" : ""));
+  if (!chosen.fits)
+    print_warning(
+        log,
+        fmt::format(
+            "{:.4g} s of CPU are too little: the cheapest picture of this scene takes about {:.2g} s, and is "
+            "made; fewer pixels, a lower --spp or settings.light_samples make it cheaper",
+            budget, planned));
+}
+
 void print_skipped(const Log& log, const std::vector<std::string>& outputs) {
   if (log.quiet) return;
   if (log.format == LogFormat::json) print_event(log, "skipped", {{"outputs", outputs}});

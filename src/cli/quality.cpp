@@ -6,7 +6,10 @@
 #include <algorithm>
 
 #include "cli/names.h"
+#include "cli/render_outputs.h"
+#include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/scene/load_scene.h"
 
 namespace opaline {
 namespace {
@@ -17,46 +20,161 @@ Error bad_usage(const std::string& message, const std::string& expected, const s
   return Error(ErrorKind::bad_input, {}, 0, 0, message, expected, got);
 }
 
+/// What is chosen is written down as settings: several groups have a spacing in common.
+void check_groups(const Session& session, const char* option) {
+  if (session.scene().settings.samples && session.plan().groups.size() > 1)
+    throw bad_usage(
+        fmt::format("{} chooses samples by their spacing, so that all groups have as many as they need",
+                    option),
+        "no settings.samples in the scene file");
+}
+
+KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, Session& session) {
+  const double before = process_cpu_seconds();
+  const Scene scene = session.scene();
+  check_groups(session, "--time-budget");
+  const TimeBudget chosen = stages.run("choosing", [&] {
+    return fit_budget(session, scene, budget_left(arguments), trial_writing(arguments, scene.film),
+                      &stages.monitor());
+  });
+  print_budget(arguments.log, *arguments.time_budget, before, chosen, session.scene().settings);
+  return {{}, chosen.predicted, {}};
+}
+
+/// Which of the two is asked for; "" for neither.
+const char* option_of(const RenderArguments& render) {
+  return render.target_error ? "--target-error" : render.time_budget ? "--time-budget" : "";
+}
+
+void check_budget(const RenderArguments& render) {
+  if (render.target_error)
+    throw bad_usage("--time-budget and --target-error both choose the settings", "one of the two");
+  if (!render.frames.empty())
+    throw bad_usage("--time-budget chooses for one picture, and frames would flicker",
+                    "a single picture first, then --frames with the settings of its closing lines");
+  if (!render.cache.empty())
+    throw bad_usage("--time-budget plans by what stages cost, and what is found in a --cache costs nothing",
+                    "one of the two");
+  const std::pair<bool, const char*> unplanned[] = {{render.write_partial, "--write-partial"},
+                                                    {render.display_server.has_value(), "--display-server"},
+                                                    {!render.samples_ply.empty(), "--samples-ply"},
+                                                    {!render.resume.empty(), "--resume"}};
+  for (const auto& [given, option] : unplanned)
+    if (given) throw bad_usage(fmt::format("--time-budget does not plan for {}", option), "one of the two");
+}
+
 }  // namespace
 
 void check_quality(const RenderArguments& render) {
-  if (!render.target_error) return;
+  if (render.time_budget) check_budget(render);
+  if (!render.target_error && !render.time_budget) return;
   for (const char* key : {"settings.samples", "settings.sample_spacing", "settings.tolerance"})
     for (const std::string& text : render.overrides)
       if (text.starts_with(std::string(key) + "="))
-        throw bad_usage(fmt::format("--target-error chooses {} itself", key), "one of the two", text);
-  if (!render.frames.empty())
-    throw bad_usage("--target-error chooses for one picture, and frames would flicker",
-                    "a single picture first, then --frames with its settings.samples and tolerance");
+        throw bad_usage(fmt::format("{} chooses {} itself", option_of(render), key), "one of the two", text);
 }
 
-std::optional<TargetError> choose_settings(StageRunner& stages, const RenderArguments& arguments,
-                                           Session& session) {
+double budget_left(const RenderArguments& arguments) {
+  // Too little is too little, however much.
+  return std::max(1e-3, *arguments.time_budget - process_cpu_seconds());
+}
+
+Plan announced_plan(const RenderArguments& arguments, const Session& session) {
+  Plan plan = session.plan();
   const Settings& settings = session.scene().settings;
+  if (arguments.time_budget && settings.method == Method::direct && !settings.entry_samples &&
+      !settings.until_error)
+    plan.stages.back() = "shading: direct, for as long as --time-budget leaves";
+  return plan;
+}
+
+void warn_of_little_time(const RenderArguments& arguments, const Film& film, double spent,
+                         const std::optional<DirectResult>& direct) {
+  if (!direct || direct->entry_samples > entry_samples_per_pass(film) || spent <= *arguments.time_budget)
+    return;
+  print_warning(
+      arguments.log,
+      fmt::format("{:.4g} s of CPU are too little: a single pass of direct takes {:.2g} s, and is made; "
+                  "fewer pixels make it cheaper",
+                  *arguments.time_budget, spent));
+}
+
+RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache* cache) {
+  const int reference = load_scene(arguments.scene, arguments.overrides).settings.reference_frame;
+  StageRunner stages(arguments.log);
+  Session session(cache);
+  stages.run_unmeasured("loading", [&] {
+    Scene scene = load_scene(arguments.scene, arguments.overrides, reference);
+    session.expect_pictures(scene.camera_frames);
+    session.edit(std::move(scene));
+  });
+  check_groups(session, "--target-error with --frames");
+  RenderArguments settled = arguments;
+  const KnownErrors known = choose_settings(stages, arguments, session);
+  settled.target_error.reset();
+  if (!known.predicted) return settled;
+  for (std::string& text : chosen_overrides(session, 0)) settled.overrides.push_back(std::move(text));
+  settled.overrides.push_back(
+      fmt::format("settings.light_samples={}", session.scene().settings.light_samples));
+  return settled;
+}
+
+FinishPicture trial_writing(const RenderArguments& arguments, const Film& film) {
+  return [&arguments, &film](const Image& picture) {
+    for (const std::string& path : arguments.outputs) {
+      const AtomicFile trial(path);  // never put in place
+      write_picture(trial.temporary(), picture, film);
+    }
+  };
+}
+
+std::vector<std::string> chosen_overrides(const Session& session, std::size_t entry_samples) {
+  const Settings& settings = session.scene().settings;
+  if (settings.method == Method::direct) return {fmt::format("settings.entry_samples={}", entry_samples)};
+  std::vector<std::string> overrides{fmt::format("settings.tolerance={}", settings.tolerance),
+                                     fmt::format("settings.evaluator={}", name_of(settings.evaluator))};
+  const std::vector<GroupPlan>& groups = session.plan().groups;
+  if (groups.size() == 1)
+    overrides.push_back(fmt::format("settings.samples={}", groups[0].samples));
+  else if (settings.sample_spacing)
+    overrides.push_back(
+        fmt::format("settings.sample_spacing={}", *settings.sample_spacing / session.scene().mm_per_unit));
+  return overrides;
+}
+
+KnownErrors choose_settings(StageRunner& stages, const RenderArguments& arguments, Session& session) {
+  const Settings& settings = session.scene().settings;
+  if (arguments.time_budget && settings.method == Method::lambert)
+    throw bad_usage("--time-budget chooses how light under the surface is summed",
+                    "--method hierarchical or direct", name_of(settings.method));
   const bool hierarchical = settings.method == Method::hierarchical;
   if (!hierarchical && (arguments.target_error || arguments.verify))
     throw bad_usage(arguments.target_error ? "--target-error chooses how light under the surface is summed"
                                            : "--verify measures how light under the surface is summed",
                     "--method hierarchical; the noise of direct ends at --until-error",
                     name_of(settings.method));
-  if (!arguments.target_error) return {};
+  if ((!arguments.target_error && !arguments.time_budget) || !hierarchical) return {};
   if (settings.evaluator == EvaluatorKind::classic)
-    throw bad_usage("--target-error cannot tell the error of the classic traversal", "another --evaluator",
-                    "classic");
+    throw bad_usage(fmt::format("{} cannot tell the error of the classic traversal", option_of(arguments)),
+                    "another --evaluator", "classic");
+  if (arguments.time_budget) return fit_settings(stages, arguments, session);
   const TargetError chosen = stages.run("choosing", [&] {
     return reach_error(session, session.scene(), *arguments.target_error, &stages.monitor());
   });
   print_target(arguments.log, *arguments.target_error, chosen, session.scene().settings);
-  return chosen;
+  KnownErrors errors{arguments.target_error, {}, {}};
+  if (chosen.sees_translucent) errors.predicted = chosen.predicted;
+  return errors;
 }
 
 std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArguments& arguments,
-                                            const Session& session, const std::optional<TargetError>& chosen,
+                                            const Session& session, const KnownErrors& errors,
                                             const Image& picture) {
   if (!arguments.verify || session.groups().empty()) return {};
   // An error far below the target need not be known to its last digit.
-  const double expected = chosen ? std::max(chosen->predicted, kKnownShare * *arguments.target_error)
-                                 : estimated_relative_error(picture);
+  const double expected = errors.predicted
+                              ? std::max(*errors.predicted, kKnownShare * errors.target.value_or(0))
+                              : estimated_relative_error(picture);
   return stages.run("verifying", [&] { return measure_error(session, expected, &stages.monitor()); });
 }
 

@@ -36,6 +36,9 @@ struct Shading {
 };
 
 DirectResult shade_direct(const RenderArguments& arguments, const Session& session, Monitor& monitor) {
+  if (arguments.time_budget)
+    return direct_within({session.scene(), session.world(), session.rays(), session.plan(), &monitor},
+                         budget_left(arguments), trial_writing(arguments, session.scene().film));
   ResumableState resumable(arguments, session.scene());
   try {
     DirectResult result = render_direct({session.scene(), session.world(), session.rays(), session.plan(),
@@ -114,6 +117,16 @@ void show_refinement(StageRunner& stages, const Session& session, PartialPicture
                "refinement");
 }
 
+/// The arguments, with what --time-budget chose in its place.
+RenderArguments repeating(const RenderArguments& arguments, const Session& session, const Shading& shading) {
+  RenderArguments repeated = arguments;
+  if (!arguments.time_budget) return repeated;
+  repeated.time_budget.reset();
+  for (std::string& text : chosen_overrides(session, shading.direct ? shading.direct->entry_samples : 0))
+    repeated.overrides.push_back(std::move(text));
+  return repeated;
+}
+
 /// What is shared by all pictures of the command; null where there is none.
 struct Shared {
   const StageCache* cache = nullptr;
@@ -124,8 +137,9 @@ struct Shared {
 void render_scene(const RenderArguments& arguments, Session& session, const Shared& shared,
                   std::optional<int> frame) {
   StageRunner stages(arguments.log);
+  if (arguments.time_budget) stages.note({"start", 0, process_cpu_seconds(), 0, peak_memory()});
   bool is_there = false;
-  const std::string hash = stages.run("loading", [&] {
+  std::string hash = stages.run("loading", [&] {
     Scene scene = load_scene(arguments.scene, arguments.overrides, frame.value_or(1));
     std::string bytes_hash = frame ? frame_hash(arguments.scene, arguments.overrides, scene)
                                    : scene_hash(arguments.scene, arguments.overrides, scene);
@@ -140,8 +154,8 @@ void render_scene(const RenderArguments& arguments, Session& session, const Shar
   if (!arguments.resume.empty() && scene.settings.method != Method::direct)
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct");
   check_precompute(arguments, scene, session.plan());
-  KnownErrors errors{arguments.target_error, choose_settings(stages, arguments, session), {}};
-  print_plan(arguments.log, scene, session.plan());
+  KnownErrors errors = choose_settings(stages, arguments, session);
+  print_plan(arguments.log, scene, announced_plan(arguments, session));
 
   std::optional<PartialPicture> partial;
   if (arguments.write_partial || shared.viewer != nullptr)
@@ -159,14 +173,22 @@ void render_scene(const RenderArguments& arguments, Session& session, const Shar
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
-  errors.measured = verify_picture(stages, arguments, session, errors.chosen, image);
-  image.metadata = make_metadata(arguments, hash, scene, session.groups(), frame);
+  errors.measured = verify_picture(stages, arguments, session, errors, image);
+  const RenderArguments repeated = repeating(arguments, session, shading);
+  if (arguments.time_budget) hash = scene_hash(repeated.scene, repeated.overrides, scene);
+  image.metadata = make_metadata(repeated, hash, scene, session.groups(), frame);
   if (errors.target || errors.measured)
     image.metadata.emplace_back("opaline:error", compact(errors_json(errors)));
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
 
   auto outputs = stages.run("writing", [&] { return write_outputs(arguments, session, image); });
   Summary summary = summarize(session, shading);
+  if (arguments.time_budget) {
+    double spent = 0;
+    for (const StageCost& cost : stages.costs()) spent += cost.stage == "verifying" ? 0 : cost.cpu_seconds;
+    summary.budget = {*arguments.time_budget, spent, command_of(repeated)};
+    warn_of_little_time(arguments, scene.film, spent, shading.direct);
+  }
   summary.costs = stages.costs();
   summary.errors = errors;
   summary.outputs = std::move(outputs);
@@ -195,9 +217,11 @@ void render_command(const RenderArguments& arguments) {
     render_scene(own, session, shared, frame);
   };
   if (arguments.frames.empty()) return render_one(arguments, {});
-  anchor_session(session, arguments.scene, arguments.overrides);
-  for_frames(arguments.log, arguments.frames,
-             [&](int frame) { render_one(arguments_of_frame(arguments, frame), frame); });
+  const RenderArguments settled =
+      arguments.target_error ? settled_for_frames(arguments, cache ? &*cache : nullptr) : arguments;
+  anchor_session(session, settled.scene, settled.overrides);
+  for_frames(settled.log, settled.frames,
+             [&](int frame) { render_one(arguments_of_frame(settled, frame), frame); });
 }
 
 }  // namespace opaline

@@ -12,6 +12,7 @@
 #include "opaline/render/plan.h"
 #include "opaline/session/measured_error.h"
 #include "opaline/session/target_error.h"
+#include "opaline/session/time_budget.h"
 
 namespace opaline {
 
@@ -25,6 +26,11 @@ void print_decisions(const Log& log, const std::vector<std::string>& decisions, 
 /// What was chosen for --target-error, and a warning where that does not reach it.
 void print_target(const Log& log, double target, const TargetError& chosen, const Settings& settings);
 
+/// What was chosen for --time-budget, and a warning where that is too little; `before`: CPU before the
+/// choice, s.
+void print_budget(const Log& log, double budget, double before, const TimeBudget& chosen,
+                  const Settings& settings);
+
 /// A frame's pictures that were there already.
 void print_skipped(const Log& log, const std::vector<std::string>& outputs);
 
@@ -36,13 +42,19 @@ struct LightNoise {
 
 /// Errors that are known of a picture; none: not asked for.
 struct KnownErrors {
-  std::optional<double> target;
-  std::optional<TargetError> chosen;
+  std::optional<double> target, predicted;
   std::optional<MeasuredError> measured;
 };
 
 /// target, predicted, measured, standard_error: those that are known.
 Json errors_json(const KnownErrors& errors);
+
+/// A picture within a CPU time.
+struct SpentBudget {
+  double seconds = 0;   ///< the budget
+  double spent = 0;     ///< CPU of the whole process but verifying, s
+  std::string command;  ///< that makes the same picture without a clock
+};
 
 struct Summary {
   std::vector<StageCost> costs;
@@ -51,6 +63,7 @@ struct Summary {
   std::vector<LightNoise> noise;
   double estimated_error = 0;  ///< of `hierarchical`, see estimated_relative_error; 0: there is none
   KnownErrors errors;
+  std::optional<SpentBudget> budget;
   std::size_t entry_samples = 0;  ///< of `direct`, a pixel
   double direct_error = 0;        ///< its relative_noise
   /// Of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.

@@ -33,8 +33,8 @@ void print_costs(const Summary& summary) {
 std::string error_text(const Summary& summary) {
   const KnownErrors& errors = summary.errors;
   std::string text;
-  if (errors.chosen && errors.chosen->sees_translucent)
-    text = fmt::format("predicted {:.2g} %", 100 * errors.chosen->predicted);
+  if (errors.predicted)
+    text = fmt::format("predicted {:.2g} %", 100 * *errors.predicted);
   else if (summary.estimated_error > 0)
     text = fmt::format("estimated {:.2g} %", 100 * summary.estimated_error);
   if (text.empty()) return text;
@@ -66,7 +66,17 @@ void print_text(const Summary& summary) {
           "{} in the shading pass: {:.3g} Mray per CPU second, {:.3g} inside Embree alone (the floor)",
           grouped(summary.rays), mega_rays(summary.rays, summary.shading_seconds),
           mega_rays(summary.rays, summary.embree_seconds)));
+  if (summary.budget) {
+    const SpentBudget& budget = *summary.budget;
+    row("budget", fmt::format("{:.3g} s of CPU spent, {:.3g} % of {:.4g} s", budget.spent,
+                              100 * budget.spent / budget.seconds, budget.seconds));
+    row("again by", budget.command);
+  }
   for (const std::string& output : summary.outputs) row("wrote", output);
+}
+
+Json budget_json(const SpentBudget& budget) {
+  return {{"seconds", budget.seconds}, {"spent", budget.spent}, {"command", budget.command}};
 }
 
 Json done_json(const Summary& summary) {
@@ -75,21 +85,23 @@ Json done_json(const Summary& summary) {
   for (const LightNoise& n : summary.noise)
     noise.push_back({{"group", n.group}, {"light", n.light}, {"relative_error", n.relative_error}});
   const StageCost total = total_of(summary.costs);
-  return {{"wall_seconds", total.wall_seconds},
-          {"cpu_seconds", total.cpu_seconds},
-          {"stages", stages},
-          {"peak_memory_bytes", summary.peak_memory},
-          {"samples", summary.samples},
-          {"queries", summary.queries},
-          {"irradiance_noise", noise},
-          {"estimated_error", summary.estimated_error},
-          {"errors", errors_json(summary.errors)},
-          {"entry_samples", summary.entry_samples},
-          {"direct_noise", summary.direct_error},
-          {"shading_rays", summary.rays},
-          {"shading_cpu_seconds", summary.shading_seconds},
-          {"embree_cpu_seconds", summary.embree_seconds},
-          {"outputs", summary.outputs}};
+  Json json{{"wall_seconds", total.wall_seconds},
+            {"cpu_seconds", total.cpu_seconds},
+            {"stages", stages},
+            {"peak_memory_bytes", summary.peak_memory},
+            {"samples", summary.samples},
+            {"queries", summary.queries},
+            {"irradiance_noise", noise},
+            {"estimated_error", summary.estimated_error},
+            {"errors", errors_json(summary.errors)},
+            {"entry_samples", summary.entry_samples},
+            {"direct_noise", summary.direct_error},
+            {"shading_rays", summary.rays},
+            {"shading_cpu_seconds", summary.shading_seconds},
+            {"embree_cpu_seconds", summary.embree_seconds},
+            {"outputs", summary.outputs}};
+  if (summary.budget) json["budget"] = budget_json(*summary.budget);
+  return json;
 }
 
 }  // namespace
@@ -97,7 +109,7 @@ Json done_json(const Summary& summary) {
 Json errors_json(const KnownErrors& errors) {
   Json json = Json::object();
   if (errors.target) json["target"] = *errors.target;
-  if (errors.chosen) json["predicted"] = errors.chosen->predicted;
+  if (errors.predicted) json["predicted"] = *errors.predicted;
   if (errors.measured) {
     json["measured"] = errors.measured->error;
     json["standard_error"] = errors.measured->standard_error;

@@ -58,6 +58,9 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
   app.add_option("--reference-dir", bench.reference_dir,
                  "keeps these halves; default: references in the report or beside the CSV")
       ->type_name("FOLDER");
+  app.add_flag("--profiles", bench.profiles,
+               "each translucent scene with each radial profile (dipole, normalized_diffusion), which has a "
+               "reference of its own");
   app.add_flag("--quick", bench.quick, "to try it: few rungs, 128 pixels wide");
   app.footer(kBenchNotes);
 }

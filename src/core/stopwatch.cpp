@@ -37,6 +37,11 @@ StageCost Stopwatch::cost(std::string stage) const {
   return {std::move(stage), wall.count(), seconds(usage.ru_utime) - user_ + system, system, bytes_of(usage)};
 }
 
+double process_cpu_seconds() {
+  const rusage usage = usage_so_far();
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 std::size_t peak_memory() {
   return bytes_of(usage_so_far());
 }

@@ -60,7 +60,7 @@ Scene read_scene(const Document& document) {
   Scene scene;
   scene.file = document.file;
   const auto unit = reader.find("mm_per_unit");
-  const double mm_per_unit = unit ? unit->number({1e-12, 1e12}) : 1;
+  const double mm_per_unit = scene.mm_per_unit = unit ? unit->number({1e-12, 1e12}) : 1;
   if (const auto media = reader.find("media"))
     for (const Value& medium : media->members()) scene.media.push_back(read_medium(medium));
   ShapeContext context{std::filesystem::path(document.file).parent_path().string(),

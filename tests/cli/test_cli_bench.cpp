@@ -116,6 +116,34 @@ TEST(CliBench, GivenHalves) {
   EXPECT_TRUE(contains(note->second, "seed 0, of direct 2")) << note->second;
 }
 
+// Claim: --profiles measures a translucent scene twice in one report, each profile against a reference of its
+// own, with the whole ladder; an opaque one once. By hand: the profiles' references differ by more than their
+// noise, so that against the other's no setting would be near. Tolerance: 10 % for a picture of the scene's
+// own settings; the profiles are 100 % apart here. Fails if: both have one reference, or one profile is
+// measured twice.
+TEST(LongCliBench, EachProfileHasItsReference) {
+  const SceneFolder folder;
+  const Outcome outcome = run_program(bench_line(folder, {"--profiles", "--reference-error", "5%"}));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const CsvTable table = table_of(folder);
+  ASSERT_EQ(table.rows.size(), 16u);
+  std::map<std::string, double> errors;
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    const std::string scene = cell(table, row, "scene");
+    EXPECT_EQ(scene, folder.scene + (row < 8 ? " (dipole)" : " (normalized_diffusion)"));
+    if (cell(table, row, "rung") == "hierarchical") errors[scene] = number(table, row, "error_worst");
+  }
+  ASSERT_EQ(errors.size(), 2u);
+  for (const auto& [scene, error] : errors) EXPECT_LT(error, 10) << scene;
+  const auto files = std::distance(std::filesystem::directory_iterator(folder.path / "references"), {});
+  EXPECT_EQ(files, 8);  // two halves each, and their sums
+
+  const Outcome opaque = run_program(bench_line(folder, {"--profiles", "--reference-error", "30%", "--set",
+                                                         R"(shapes.ball={"sphere": {"radius": 10}})"}));
+  ASSERT_EQ(opaque.exit_code, 0) << opaque.err;
+  EXPECT_EQ(table_of(folder).rows.size(), 2u);
+}
+
 // Claim: what cannot be measured is said before any run: exit 2 and one line for bad input, 3 for a folder
 // that is not there, no CSV. Source: commands.h. Fails if: a check comes after the runs, or is left out.
 TEST(CliBench, MistakesComeFirst) {
@@ -136,6 +164,7 @@ TEST(CliBench, MistakesComeFirst) {
       {{folder.scene, "--csv", csv, "--rung", "near_field"}, 2, "near_field=false"},
       {{folder.scene, folder.scene, "--csv", csv, "--halves", half, half}, 2, "one scene"},
       {{folder.scene, folder.scene, "--csv", csv}, 2, "given twice"},
+      {{folder.scene, "--csv", csv, "--halves", half, half, "--profiles"}, 2, "leave --profiles out"},
       {{folder.scene, "--csv", csv, "--halves", half, half, "--reference-error", "2%"}, 2, "leave"},
       {{folder.scene, "--csv", csv, "--halves", half, half, "--resolution", "16x16"}, 2, "16 x 16"},
       {{folder.scene, "--csv", csv, "--set", "media.marbel.eta=2"}, 2, "did you mean 'marble'"},
@@ -155,9 +184,9 @@ TEST(CliBench, MistakesComeFirst) {
 }
 
 // Claim: an interruption ends the child too, leaves the old CSV, and keeps what the reference has so far.
-// Source: the design exit codes. The noise asked for takes hours, so the interruption comes first; it comes later
-// and later until the child has had time for a pass (.1 s of it on an idle machine). Fails if: the child goes on
-// (its sums then grow), or the CSV is opened for writing at the start.
+// Source: the design exit codes. The noise asked for takes hours, so the interruption comes first; it comes
+// later and later until the child has had time for a pass (.1 s of it on an idle machine). Fails if: the
+// child goes on (its sums then grow), or the CSV is opened for writing at the start.
 TEST(CliBench, InterruptLeavesTheOldCsv) {
   const SceneFolder folder;
   put_bytes(folder.file("out.csv"), "old");

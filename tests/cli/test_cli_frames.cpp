@@ -71,6 +71,35 @@ struct Shot : SceneFolder {
   }
 };
 
+std::string command_of(const std::string& path) {
+  for (const auto& [name, value] : read_image(path).metadata)
+    if (name == "opaline:command") return value;
+  return {};
+}
+
+// Claim: --target-error chooses once, by the reference frame, for all frames: they share their settings, a
+// frame of another process has the same bytes, and what is there is left alone. Source: quality.h. Fails if:
+// settings are chosen by the frame itself, or by the first of those asked for.
+TEST(CliFrames, TargetErrorIsChosenOnce) {
+  const Shot shot;
+  const std::vector<std::string> target{"--target-error", ".1%"};
+  const Outcome all = shot.render("1-6", "all", target);
+  ASSERT_EQ(all.exit_code, 0) << all.err;
+  const std::string command = command_of(shot.picture(1, "all"));
+  EXPECT_TRUE(contains(command, "--set settings.samples=") && !contains(command, "--target-error"))
+      << command;
+  std::size_t targets = 0;
+  for (const nlohmann::json& event : events_of(all.out)) targets += event["event"] == "target" ? 1 : 0;
+  EXPECT_EQ(targets, 1u);
+  ASSERT_EQ(shot.render("6", "one", target).exit_code, 0);
+  EXPECT_TRUE(bytes_of(shot.picture(6, "one")) == bytes_of(shot.picture(6, "all")));
+  EXPECT_EQ(command_of(shot.picture(6, "all")), command);
+  const Outcome again = shot.render("1-6", "all", target);
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_TRUE(contains(again.out, R"("event":"skipped")")) << again.out;
+  EXPECT_FALSE(contains(again.out, R"("event":"done")")) << again.out;
+}
+
 std::vector<std::string> decisions_of(const Outcome& outcome) {
   std::vector<std::string> all;
   for (const nlohmann::json& event : events_of(outcome.out))

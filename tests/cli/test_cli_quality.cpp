@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `opaline render --target-error --verify`: what it says, and what it does not take.
+// `opaline render` with --target-error, --time-budget and --verify: what it says, and what it does not take.
 #include <algorithm>
 
 #include "opaline/image/image.h"
@@ -86,6 +86,96 @@ TEST(CliQuality, WarnsWhereNothingCanBePromised) {
   EXPECT_TRUE(contains(opaque.err, "promises nothing")) << opaque.err;
 }
 
+/// The closing line of that label; empty if there is none.
+std::string closing_line(const std::string& out, const std::string& label) {
+  const std::size_t at = out.rfind("\n" + label + " ");
+  return at == std::string::npos ? "" : out.substr(at + 1, out.find('\n', at + 1) - at - 1);
+}
+
+// Claim: the closing lines state the predicted and the measured error, the CPU of the whole table against the
+// budget, --verify not counted, and a command that makes the same pixels without a clock. Fails if: --verify
+// is counted, the start of the program is not, or a chosen setting is left out of the command.
+TEST(CliQuality, BudgetStatesWhatWasSpentAndHowToRepeatIt) {
+  const QualityFolder folder;
+  const Outcome json = folder.render(
+      {"--time-budget", "1500ms", "--verify", "--log", "json", "--set", "settings.max_samples=300"});
+  ASSERT_EQ(json.exit_code, 0) << json.err;
+  const nlohmann::json done = event_of(events_of(json.out), "done"), budget = done["budget"];
+  double verifying = 0;
+  for (const nlohmann::json& stage : done["stages"])
+    if (stage["stage"] == "verifying") verifying = stage["cpu_seconds"];
+  EXPECT_GT(verifying, 0);
+  EXPECT_EQ(done["stages"][0]["stage"], "start");
+  EXPECT_EQ(budget["seconds"], 1.5);
+  EXPECT_NEAR(double(budget["spent"]), double(done["cpu_seconds"]) - verifying, 1e-6);
+  EXPECT_GT(done["errors"]["predicted"], 0);
+  EXPECT_GT(done["errors"]["measured"], 0);
+
+  const std::string command = metadata_of(folder.file("a.exr"), "opaline:command");
+  ASSERT_TRUE(contains(command, "--set settings.samples=")) << command;
+  std::vector<std::string> repeat;
+  std::istringstream words(command.substr(command.find("--set")));
+  for (std::string word; words >> word;) repeat.push_back(word);
+  ASSERT_EQ(folder.render(repeat, "b.exr").exit_code, 0) << command;
+  const Image a = read_image(folder.file("a.exr")), b = read_image(folder.file("b.exr"));
+  EXPECT_TRUE(std::ranges::equal(a.pixels, b.pixels));
+  EXPECT_EQ(metadata_of(folder.file("b.exr"), "opaline:command"), command);
+  EXPECT_EQ(metadata_of(folder.file("b.exr"), "opaline:scene_hash"),
+            metadata_of(folder.file("a.exr"), "opaline:scene_hash"));
+
+  const Outcome text = folder.render({"--time-budget", "1.5"}, "c.exr");
+  EXPECT_TRUE(contains(closing_line(text.out, "budget"), "s of CPU spent, ")) << text.out;
+  EXPECT_TRUE(contains(closing_line(text.out, "again by"), "--set settings.tolerance=")) << text.out;
+  EXPECT_TRUE(text.out.starts_with("budget      1.5 s: ")) << text.out;
+  EXPECT_EQ(folder.entries(), 4u);  // nothing of the trials
+}
+
+// Claim: spacings are repeated in the scene's own units where several groups have them. Fails if: they are in
+// mm.
+TEST(CliQuality, BudgetOfTwoGroupsIsRepeatedInSceneUnits) {
+  const QualityFolder folder;
+  put_bytes(folder.scene, R"({"mm_per_unit": 10, "media": {"marble": {"preset": "marble"}},
+    "shapes": [{"name": "a", "sphere": {"center": [-1, 0, 0], "radius": 0.9}, "medium": "marble"},
+               {"name": "b", "sphere": {"center": [1, 0, 0], "radius": 0.5}, "medium": "marble"}],
+    "lights": [{"type": "point", "position": [2, 3, 4], "intensity": 1000}],
+    "camera": {"position": [0, 0, 7]}, "film": {"resolution": [64, 64]}})");
+  ASSERT_EQ(folder.render({"--time-budget", "1s", "--quiet"}).exit_code, 0);
+  const std::string command = metadata_of(folder.file("a.exr"), "opaline:command");
+  std::vector<std::string> repeat;
+  std::istringstream words(command.substr(command.find("--set")));
+  for (std::string word; words >> word;) repeat.push_back(word);
+  ASSERT_TRUE(contains(command, "sample_spacing")) << command;
+  ASSERT_EQ(folder.render(repeat, "b.exr").exit_code, 0) << command;
+  EXPECT_TRUE(
+      std::ranges::equal(read_image(folder.file("a.exr")).pixels, read_image(folder.file("b.exr")).pixels));
+  const Outcome own = folder.render({"--time-budget", "1s", "--set", "settings.max_samples=100000"});
+  EXPECT_EQ(own.exit_code, 0) << own.err;
+}
+
+// Claim: too little time is a warning that says what the least is, hierarchical and direct; the picture is
+// made. Fails if: either is silent, or an error.
+TEST(CliQuality, TooLittleTimeIsSaid) {
+  const QualityFolder folder;
+  for (const char* method : {"hierarchical", "direct"}) {
+    const Outcome outcome = folder.render({"--time-budget", "1ms", "--method", method});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "0.001 s of CPU are too little") &&
+                contains(outcome.err, "and is made"))
+        << outcome.err;
+  }
+}
+
+// Claim: direct stops in time, and its command has the entry samples that it had.
+TEST(CliQuality, DirectStopsInTime) {
+  const QualityFolder folder;
+  const Outcome json = folder.render({"--time-budget", "1.5s", "--method", "direct", "--log", "json"});
+  ASSERT_EQ(json.exit_code, 0) << json.err;
+  const nlohmann::json done = event_of(events_of(json.out), "done");
+  EXPECT_GT(done["entry_samples"], 16);
+  const std::string entries = "settings.entry_samples=" + std::to_string(int(done["entry_samples"]));
+  EXPECT_TRUE(contains(done["budget"]["command"], entries)) << done["budget"];
+}
+
 // Claim: what makes no sense is exit 2 with what was expected, and nothing is written: values that are no
 // error, settings that are chosen beside it, frames, methods without samples, the classic evaluator. Fails
 // if: a check goes.
@@ -103,15 +193,26 @@ TEST(CliQuality, SenselessOptionsAreErrors) {
       {{"--target-error", "1%", "--method", "direct"}, "--until-error"},
       {{"--target-error", "1%", "--method", "lambert"}, "--method hierarchical"},
       {{"--verify", "--method", "lambert"}, "--method hierarchical"},
-      {{"--target-error", "1%", "--evaluator", "classic"}, "classic"}};
+      {{"--target-error", "1%", "--evaluator", "classic"}, "classic"},
+      {{"--time-budget", "banana"}, "--time-budget"},
+      {{"--time-budget", "0"}, "--time-budget"},
+      {{"--time-budget", "-1s"}, "--time-budget"},
+      {{"--time-budget", "2 parsecs"}, "--time-budget"},
+      {{"--time-budget", "1s", "--target-error", "1%"}, "one of the two"},
+      {{"--time-budget", "1s", "--set", "settings.samples=100"}, "chooses settings.samples itself"},
+      {{"--time-budget", "1s", "--cache", "stages"}, "--cache"},
+      {{"--time-budget", "1s", "--write-partial"}, "does not plan for --write-partial"},
+      {{"--time-budget", "1s", "--samples-ply", "a.ply"}, "does not plan for --samples-ply"},
+      {{"--time-budget", "1s", "--method", "lambert"}, "--method hierarchical or direct"},
+      {{"--time-budget", "1s", "--evaluator", "classic"}, "classic"}};
   for (const auto& [options, expected] : senseless) {
     const Outcome outcome = folder.render(options);
     EXPECT_EQ(outcome.exit_code, 2) << expected;
     EXPECT_TRUE(contains(outcome.err, expected)) << expected << ": " << outcome.err;
   }
-  const Outcome frames = folder.render({"--target-error", "1%", "--frames", "1-2"}, "a.##.exr");
-  EXPECT_EQ(frames.exit_code, 2);
-  EXPECT_TRUE(contains(frames.err, "a single picture first")) << frames.err;
+  const Outcome budget = folder.render({"--time-budget", "1s", "--frames", "1-2"}, "a.##.exr");
+  EXPECT_EQ(budget.exit_code, 2);
+  EXPECT_TRUE(contains(budget.err, "a single picture first")) << budget.err;
   EXPECT_EQ(folder.entries(), 1u);
 }
 

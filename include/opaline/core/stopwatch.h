@@ -27,6 +27,9 @@ class Stopwatch {
   double user_, system_;
 };
 
+/// User and system, all threads, of this process so far.
+double process_cpu_seconds();
+
 /// Largest resident set of this process so far, bytes.
 std::size_t peak_memory();
 

@@ -214,7 +214,8 @@ struct Settings {
 };
 
 struct Scene {
-  std::string file;  ///< for messages
+  std::string file;        ///< for messages
+  double mm_per_unit = 1;  ///< of the file, for what is written in its units; nothing here is
   std::vector<Medium> media;
   std::vector<Shape> shapes;
   std::vector<Light> lights;
