@@ -14,8 +14,9 @@ namespace {
 // The exitance that hangs on which of the two irradiances is right, above which shadow rays are worth their
 // time.
 constexpr float kWorth = 0.02f;
-// Places of a point alone, and how many each of many neighbours brings at least.
-constexpr int kAlone = 16, kEach = 3;
+// Places of a point alone; of neighbours together, which fill the near field of each less evenly; and how
+// many each of many neighbours brings at least.
+constexpr int kAlone = 16, kTogether = 48, kEach = 3;
 constexpr std::size_t kMostTogether = 48;  // points that share their places
 
 }  // namespace
@@ -71,13 +72,16 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   const std::vector<std::size_t> ends = split(lighting.points, marked);
   Places places;
   std::vector<int> drawn;
-  for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++])
+  for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
+    const std::uint64_t key = lighting.keys[marked[first]];
+    const std::size_t before = places.rays.size();
     for (std::size_t m = first; m < ends[set]; ++m) {
       drawn.push_back(
           places_of(marked[m], std::span(marked).subspan(first, ends[set] - first), lighting.points));
-      draw(lighting.points[marked[m]], lighting.keys[marked[m]], drawn[m], places);
-      places.sets.resize(places.rays.size(), std::uint32_t(set));
+      draw(lighting.points[marked[m]], key, places.rays.size() - before, drawn[m], places);
     }
+    places.sets.resize(places.rays.size(), std::uint32_t(set));
+  }
   find(lighting.rays, places);
   PointIrradianceInput around = lighting;
   around.points = places.points;
@@ -142,32 +146,32 @@ std::vector<std::size_t> NearFieldSampler::split(std::span<const SurfacePoint> p
   return ends;
 }
 
-// So many that with those of its neighbours the point has kAlone or more.
+// So many that with those of its neighbours the point has kTogether or more.
 int NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint32_t> set,
                                 std::span<const SurfacePoint> points) const {
   const float square = float(root_mean_square_ * root_mean_square_);
   int neighbours = 0;
-  for (std::size_t i = 0; i < set.size() && neighbours * kEach < kAlone; ++i) {
+  for (std::size_t i = 0; i < set.size() && neighbours * kEach < kTogether; ++i) {
     const Vec3f apart = points[set[i]].position - points[point].position;
     neighbours += dot(apart, apart) < square && dot(points[point].normal, points[set[i]].normal) > 0;
   }
-  return std::max(kEach, (kAlone + neighbours - 1) / std::max(1, neighbours));
+  return std::clamp(kTogether / std::max(1, neighbours), kEach, kAlone);
 }
 
-// On a golden spiral, turned at random from point to point: what the few places miss becomes noise without a
-// pattern.
-void NearFieldSampler::draw(const SurfacePoint& point, std::uint64_t key, int count, Places& places) const {
-  constexpr double kGoldenAngle = 2 * std::numbers::pi * (2 - std::numbers::phi);
+// Neighbours take their places from one low-discrepancy sequence, `key`'s, each from where the last one
+// ended.
+void NearFieldSampler::draw(const SurfacePoint& point, std::uint64_t key, std::size_t first, int count,
+                            Places& places) const {
+  const std::array<double, 2> shift{unit_double(hash_bits(3000, key)), unit_double(hash_bits(3001, key))};
   Vec3f x, y;
   tangent_frame(point.normal, x, y);
-  const double turn = 2 * std::numbers::pi * unit_double(hash_bits(3000, key));
-  const double within = unit_double(hash_bits(3001, key));
-  for (int k = 0; k < count; ++k) {
-    const float r = float(drawn_distance((k + within) / count));
-    const double angle = turn + kGoldenAngle * k;
+  for (std::size_t k = first; k < first + std::size_t(count); ++k) {
+    const auto [u, v] = r2_point(k, shift);
+    const float r = float(drawn_distance(u));
+    const double angle = 2 * std::numbers::pi * v;
     const Vec3f place = point.position + x * (r * float(std::cos(angle))) + y * (r * float(std::sin(angle)));
     places.rays.push_back({Ray(place + point.normal * r, -point.normal, 2 * r), {}});
-    places.keys.push_back(hash_bits(key, std::uint64_t(k)));
+    places.keys.push_back(hash_bits(key, k));
   }
 }
 
