@@ -90,7 +90,7 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   around.variance = {};
   const std::vector<RgbF> entered = irradiance_at(around);
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
-    const auto [begin, end] = std::ranges::equal_range(places.sets, std::uint32_t(set));
+    const auto [begin, end] = std::equal_range(places.sets.begin(), places.sets.end(), std::uint32_t(set));
     const std::size_t skip = std::size_t(begin - places.sets.begin()), count = std::size_t(end - begin);
     const std::span<const std::uint32_t> own_set = std::span(marked).subspan(first, ends[set] - first);
     const std::vector<Means> means =
