@@ -146,7 +146,7 @@ std::vector<std::size_t> NearFieldSampler::split(std::span<const SurfacePoint> p
   return ends;
 }
 
-// So many that with those of its neighbours the point has kTogether or more.
+// So many that with those of its neighbours the point has about kTogether, but kAlone of its own at most.
 int NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint32_t> set,
                                 std::span<const SurfacePoint> points) const {
   const float square = float(root_mean_square_ * root_mean_square_);
@@ -221,7 +221,7 @@ std::vector<NearFieldSampler::Means> NearFieldSampler::means_of(std::span<const 
   std::vector<Densities> here(n);
   std::vector<Means> means(n);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto [position, normal, geometric, offset] = places[i];
+    const Vec3f &position = places[i].position, &geometric = places[i].geometric;
     const float px = position.x, py = position.y, pz = position.z;
     const float gx = geometric.x, gy = geometric.y, gz = geometric.z;
     for (std::size_t m = 0; m < n; ++m) {

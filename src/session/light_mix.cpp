@@ -75,32 +75,40 @@ bool LightMix::is_single(std::size_t light) const {
 }
 
 std::optional<Image> LightMix::mixed(const Scene& scene, const Render& render) {
-  if (!last_ || without_colours(*last_) != without_colours(scene)) {
-    clear();
+  LightMix next = std::exchange(*this, {});  // should a part fail, nothing half done is left
+  const auto start_over = [&]() -> std::optional<Image> {
     last_ = scene;
     return {};
+  };
+  if (!next.last_ || without_colours(*next.last_) != without_colours(scene)) return start_over();
+  const std::vector<Light> before = std::exchange(next.last_->lights, scene.lights);
+  if (before != scene.lights) ++next.recoloured_;
+  std::optional<Image> image;
+  if (next.recoloured_ >= 2) {
+    if (!next.separate(scene, before, render)) return start_over();
+    image = next.others_;
+    for (const Part& part : next.single_) add_scaled(*image, part.image, emission(scene.lights[part.light]));
   }
-  const std::vector<Light> before = std::exchange(last_->lights, scene.lights);
-  if (before != scene.lights) ++recoloured_;
-  if (recoloured_ < 2) return {};
+  *this = std::move(next);
+  return image;
+}
+
+bool LightMix::separate(const Scene& scene, const std::vector<Light>& before, const Render& render) {
   std::vector<std::size_t> changed;
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
     if (!is_single(l) && before[l] != scene.lights[l]) changed.push_back(l);
-  if (!has_room(scene.film, single_.size() + changed.size() + 2)) return {};
+  if (changed.empty()) return true;
+  if (!has_room(scene.film, single_.size() + changed.size() + 2)) return false;
   for (const std::size_t l : changed) {
     Scene alone = without_colours(scene);
     set_emission(alone.lights[l], Rgb(1));
     single_.push_back({l, render(alone)});
   }
-  if (!changed.empty()) {
-    Scene rest = scene;
-    for (const Part& part : single_) set_emission(rest.lights[part.light], {});
-    const bool is_dark = rest.lights == without_colours(scene).lights;
-    others_ = is_dark ? black_out(single_[0].image) : render(rest);
-  }
-  Image image = *others_;
-  for (const Part& part : single_) add_scaled(image, part.image, emission(scene.lights[part.light]));
-  return image;
+  Scene rest = scene;
+  for (const Part& part : single_) set_emission(rest.lights[part.light], {});
+  const bool is_dark = rest.lights == without_colours(scene).lights;
+  others_ = is_dark ? black_out(single_[0].image) : render(rest);
+  return true;
 }
 
 }  // namespace opaline

@@ -35,6 +35,8 @@ class LightMix {
     Image image;
   };
   bool is_single(std::size_t light) const;
+  // Gives the lights that changed pictures of their own; false: there is no room.
+  bool separate(const Scene& scene, const std::vector<Light>& before, const Render& render);
 
   std::optional<Scene> last_;
   std::size_t recoloured_ = 0;  // times in a row
