@@ -9,10 +9,6 @@
 namespace opaline {
 namespace {
 
-Rectangle common_part(const Rectangle& a, const Rectangle& b) {
-  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-}
-
 // Pixels without anything stay as they are: zero, and their memory untouched.
 std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, const Scene& scene,
                   Image& image) {

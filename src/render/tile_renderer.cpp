@@ -29,6 +29,10 @@ std::vector<Rectangle> tiles_of(const Film& film) {
   return tiles;
 }
 
+Rectangle common_part(const Rectangle& a, const Rectangle& b) {
+  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
 Image empty_image(const Rectangle& part, const Film& film, std::vector<std::string> channels) {
   Image image;
   image.width = part.x1 - part.x0;
@@ -60,10 +64,11 @@ void TileRenderer::trace(std::span<TracedRay> rays, HeldView::Batch* held) const
   }
   input_.rays.intersect(rays);
   if (held == nullptr) return;
+  if (std::ranges::any_of(rays, is_hit)) {
+    held->hits.reserve(rays.size());
+    for (const auto& [ray, hit] : rays) held->hits.push_back({hit.mesh, hit.triangle, hit.u, hit.v, ray.far});
+  }
   held->is_traced = true;
-  if (std::ranges::none_of(rays, is_hit)) return;
-  held->hits.reserve(rays.size());
-  for (const auto& [ray, hit] : rays) held->hits.push_back({hit.mesh, hit.triangle, hit.u, hit.v, ray.far});
 }
 
 TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass,

@@ -16,6 +16,9 @@ namespace opaline {
 /// that are evaluated together are the same, and so are a crop's pixels.
 std::vector<Rectangle> tiles_of(const Film& film);
 
+/// The pixels of both; they must meet.
+Rectangle common_part(const Rectangle& a, const Rectangle& b);
+
 /// Calls use(x, y, i) for the pixels of a tile that the part has; i: row by row in the tile.
 template <class Use>
 void for_each_pixel(const Rectangle& tile, const Rectangle& part, const Use& use) {

@@ -30,11 +30,6 @@ void rest() {
   std::this_thread::sleep_for(std::chrono::milliseconds(2));
 }
 
-Rectangle inside(const Rectangle& tile, const Rectangle& part) {
-  return {std::max(tile.x0, part.x0), std::max(tile.y0, part.y0), std::min(tile.x1, part.x1),
-          std::min(tile.y1, part.y1)};
-}
-
 /// How much is to be shaded in parts of a picture, by a small picture of it.
 class Coverage {
  public:
@@ -75,7 +70,7 @@ ShadingCost::ShadingCost(const Scene& scene, const Image& probe) : tried_(kFirst
   const Rectangle part = rendered_part(scene.film);
   const Coverage coverage(scene.film, probe);
   for (const Rectangle& tile : tiles_of(scene.film))
-    tiles_.push_back({coverage.of(tile), inside(tile, part)});
+    tiles_.push_back({coverage.of(tile), common_part(tile, part)});
   std::ranges::stable_sort(tiles_, {}, &Tile::coverage);
 }
 
