@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <OpenImageIO/color.h>
-#include <OpenImageIO/imageio.h>
+#include <png.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
-#include "encode.h"
+#include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
 
@@ -32,27 +32,35 @@ std::uint8_t quantize(float value, double gain) {
   return static_cast<std::uint8_t>(std::lround(255.0f * std::min(encoded, 1.0f)));
 }
 
+std::string encoded(const std::string& path, int width, int height, const std::vector<std::uint8_t>& rgb) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(width);
+  png.height = static_cast<png_uint_32>(height);
+  png.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string bytes(size, '\0');
+  if (png_image_write_to_memory(&png, bytes.data(), &size, 0, rgb.data(), 0, nullptr) == 0)
+    throw run_failed(path, std::string("cannot write: ") + png.message);
+  bytes.resize(size);
+  return bytes;
+}
+
 }  // namespace
 
 void write_png(const std::string& path, const Image& image, double exposure) {
   const std::size_t channels = image.channels.size();
-  const auto width = static_cast<std::size_t>(image.width);
+  const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   require(image.width > 0 && image.height > 0, "a picture has pixels");
-  require(image.pixels.size() == width * static_cast<std::size_t>(image.height) * channels,
-          "a value per pixel and channel");
+  require(image.pixels.size() == pixels * channels, "a value per pixel and channel");
   const std::array<std::size_t, 3> rgb = rgb_channels(image);
   const double gain = std::exp2(exposure);
-
-  OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeUInt8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  std::vector<std::uint8_t> strip;
-  encode(path, "png", spec, OIIO::TypeUInt8, [&](int first, int count) {
-    const float* values = image.pixels.data() + static_cast<std::size_t>(first) * width * channels;
-    strip.resize(static_cast<std::size_t>(count) * width * 3);
-    for (std::size_t i = 0; i < strip.size(); ++i)
-      strip[i] = quantize(values[i / 3 * channels + rgb[i % 3]], gain);
-    return strip.data();
-  });
+  AtomicFile file(path);
+  std::vector<std::uint8_t> bytes(pixels * 3);
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = quantize(image.pixels[i / 3 * channels + rgb[i % 3]], gain);
+  file.append(encoded(path, image.width, image.height, bytes));
+  file.commit();
 }
 
 }  // namespace opaline
