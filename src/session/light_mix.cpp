@@ -2,6 +2,7 @@
 #include "session/light_mix.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -84,8 +85,11 @@ std::optional<Image> LightMix::mixed(const Scene& scene, const Render& render) {
   const std::vector<Light> before = std::exchange(next.last_->lights, scene.lights);
   if (before != scene.lights) ++next.recoloured_;
   std::optional<Image> image;
-  if (next.recoloured_ >= 2) {
-    if (!next.separate(scene, before, render)) return start_over();
+  if (next.recoloured_ >= 2 || (next.recoloured_ == 1 && next.others_)) {
+    std::vector<std::size_t> changed;
+    for (std::size_t l = 0; l < scene.lights.size(); ++l)
+      if (!next.is_single(l) && before[l] != scene.lights[l]) changed.push_back(l);
+    if (!next.separate(scene, changed, render)) return start_over();
     image = next.others_;
     for (const Part& part : next.single_) add_scaled(*image, part.image, emission(scene.lights[part.light]));
   }
@@ -93,13 +97,19 @@ std::optional<Image> LightMix::mixed(const Scene& scene, const Render& render) {
   return image;
 }
 
-bool LightMix::separate(const Scene& scene, const std::vector<Light>& before, const Render& render) {
-  std::vector<std::size_t> changed;
-  for (std::size_t l = 0; l < scene.lights.size(); ++l)
-    if (!is_single(l) && before[l] != scene.lights[l]) changed.push_back(l);
-  if (changed.empty()) return true;
-  if (!has_room(scene.film, single_.size() + changed.size() + 2)) return false;
-  for (const std::size_t l : changed) {
+void LightMix::get_ready(const Scene& scene, const Render& render) {
+  LightMix next;
+  next.last_ = scene;
+  std::vector<std::size_t> all(scene.lights.size());
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  next.separate(scene, all, render);
+  *this = std::move(next);
+}
+
+bool LightMix::separate(const Scene& scene, const std::vector<std::size_t>& lights, const Render& render) {
+  if (lights.empty()) return true;
+  if (!has_room(scene.film, single_.size() + lights.size() + 2)) return false;
+  for (const std::size_t l : lights) {
     Scene alone = without_colours(scene);
     set_emission(alone.lights[l], Rgb(1));
     single_.push_back({l, render(alone)});

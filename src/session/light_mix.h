@@ -13,7 +13,8 @@ namespace opaline {
 
 /// Light adds up, and no channel knows of another: a picture by lights of other colours is a sum of pictures
 /// by white ones. From the second edit in a row that changes colours alone, the lights that changed each have
-/// a picture of their own, and the others one together; a further such edit is a sum. A mixed picture differs
+/// a picture of their own, and the others one together; a further such edit is a sum; and the first one is,
+/// where all were made ready before. A mixed picture differs
 /// from one rendered anew by what the evaluator's tolerance allows, and its `error` layer is the sum of the
 /// parts', as if their errors went together.
 class LightMix {
@@ -26,6 +27,9 @@ class LightMix {
   /// kMostMixBytes.
   std::optional<Image> mixed(const Scene& scene, const Render& render);
 
+  /// A picture by each light of the scene, unless they would take too much memory.
+  void get_ready(const Scene& scene, const Render& render);
+
   /// Lets go of everything.
   void clear() { *this = {}; }
 
@@ -35,8 +39,8 @@ class LightMix {
     Image image;
   };
   bool is_single(std::size_t light) const;
-  // Gives the lights that changed pictures of their own; false: there is no room.
-  bool separate(const Scene& scene, const std::vector<Light>& before, const Render& render);
+  // Gives lights pictures of their own; false: there is no room.
+  bool separate(const Scene& scene, const std::vector<std::size_t>& lights, const Render& render);
 
   std::optional<Scene> last_;
   std::size_t recoloured_ = 0;  // times in a row

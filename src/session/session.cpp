@@ -197,42 +197,49 @@ void Session::prepare(Monitor* monitor) {
 RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
   prepare(monitor);
   HeldView* const view = held_view();
-  if (view != nullptr && mixes_lights_)
-    if (std::optional<Image> mixed = mixed_picture(*view, monitor)) {
+  if (view != nullptr && mixes_lights_) {
+    if (!can_mix()) mix_->clear();
+    const auto render_part = [&](const Scene& scene) { return recoloured(scene, *view, monitor); };
+    if (std::optional<Image> mixed = can_mix() ? mix_->mixed(scene_, render_part) : std::nullopt) {
       if (after_tile) after_tile(*mixed, rendered_part(scene_.film));
       return {std::move(*mixed)};
     }
+  }
   RenderResult result = opaline::render({scene_, *world_, *rays_, groups_, monitor, after_tile, view});
   work_.queries += result.queries;
   return result;
 }
 
-/// The picture as a sum of those by single lights, where nothing but colours changes again and again.
-std::optional<Image> Session::mixed_picture(HeldView& view, Monitor* monitor) {
-  const auto has_cache = [](const TranslucentGroup& group) { return group.surface_cache.has_value(); };
-  if (std::ranges::any_of(groups_, has_cache)) {
-    mix_->clear();
-    return {};
+void Session::ready_light_mix(Monitor* monitor) {
+  prepare(monitor);
+  HeldView* const view = held_view();
+  if (view != nullptr && mixes_lights_ && can_mix())
+    mix_->get_ready(scene_, [&](const Scene& scene) { return recoloured(scene, *view, monitor); });
+}
+
+bool Session::can_mix() const {
+  return std::ranges::none_of(groups_, [](const TranslucentGroup& g) { return g.surface_cache.has_value(); });
+}
+
+/// The picture of a scene that differs by its lights' colours.
+Image Session::recoloured(const Scene& scene, HeldView& view, Monitor* monitor) {
+  const std::vector<Light> lights = recentred_lights(scene, *world_);
+  std::vector<TranslucentGroup> groups;
+  for (const TranslucentGroup& group : groups_) {
+    const std::vector<RgbF> irradiance = combine_lights(group.transfers, lights);
+    groups.push_back({group.plan,
+                      group.profile,
+                      {},
+                      {},
+                      {},
+                      combined_noise(group.transfers, lights),
+                      gather_flux(group.surface.samples, irradiance),
+                      group.kernel});
+    work_.nodes_built += groups.back().octree.nodes.size();
   }
-  return mix_->mixed(scene_, [&](const Scene& scene) {
-    const std::vector<Light> lights = recentred_lights(scene, *world_);
-    std::vector<TranslucentGroup> groups;
-    for (const TranslucentGroup& group : groups_) {
-      const std::vector<RgbF> irradiance = combine_lights(group.transfers, lights);
-      groups.push_back({group.plan,
-                        group.profile,
-                        {},
-                        {},
-                        {},
-                        combined_noise(group.transfers, lights),
-                        gather_flux(group.surface.samples, irradiance),
-                        group.kernel});
-      work_.nodes_built += groups.back().octree.nodes.size();
-    }
-    RenderResult part = opaline::render({scene, *world_, *rays_, groups, monitor, {}, &view});
-    work_.queries += part.queries;
-    return std::move(part.image);
-  });
+  RenderResult part = opaline::render({scene, *world_, *rays_, groups, monitor, {}, &view});
+  work_.queries += part.queries;
+  return std::move(part.image);
 }
 
 /// What is held of earlier pictures and still holds; null: nothing is to be held.

@@ -54,6 +54,24 @@ TEST(LightMix, FailedPartLeavesNothing) {
   }
 }
 
+// Claim: made ready before, the first edit of colours is a sum, of whichever light, a light that was black
+// among them; the same scene again is not. Fails if: a light that was off has no picture, or the first edit
+// renders.
+TEST(LightMix, MadeReadyBefore) {
+  for (std::size_t edited = 0; edited < 3; ++edited) {
+    LightMix mix;
+    Scene scene = coloured(1, 0, 4);
+    red(mix, scene);
+    mix.get_ready(scene, sum_of_colours);
+    EXPECT_FALSE(mix.mixed(scene, sum_of_colours));
+    const double before = double(sum_of_colours(scene).pixels[0]);
+    const Rgb colour = emission(scene.lights[edited]);
+    std::get<PointLight>(scene.lights[edited].source).intensity.x = colour.x + 7;
+    const auto none = [](const Scene&) -> Image { throw std::runtime_error("rendered"); };
+    EXPECT_EQ(red(mix, scene, none), before + 7);
+  }
+}
+
 // Claim: where one picture more has no room, everything is let go of. Fails if: the light that had none keeps
 // its old colour in the picture of the others.
 TEST(LightMix, NoRoomForOneMore) {

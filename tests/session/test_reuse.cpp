@@ -151,6 +151,11 @@ TEST(Reuse, LightColoursAgainAndAgain) {
   EXPECT_LE(errors.back(), .02);
   recolour({3e4, 2e4, 0}, {9, 50, 50});
   EXPECT_GT(session.work().queries, 0u);
+  scene.film.crop = {{4, 5, 20, 30}};
+  picture_of(session, scene);
+  session.ready_light_mix();
+  recolour({1e4, 2e4, 0}, {50, 50, 50});
+  EXPECT_EQ(session.work().queries, 0u) << "made ready";
   scene.media[0].profile = ProfileKind::normalized_diffusion;
   EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
 }

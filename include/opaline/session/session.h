@@ -44,7 +44,8 @@ struct SessionWork {
 ///                                       Other edits trace these rays again, too, unless the view is held
 ///   a light's colour or power           sums over lights, trees; no ray from a sample
 ///                                       Where lights may be mixed, from the second such edit in a row on, a
-///                                       picture by each that changes and one by the others; then their sum
+///                                       picture by each that changes and one by the others; then their sum;
+///                                       at once where ready_light_mix was called before
 ///   a medium                            evaluation; its samples stay while they are dense enough and at most
 ///                                       twice as dense (in spacing) as it asks for
 ///   eta                                 the light that enters, trees, evaluation
@@ -88,6 +89,11 @@ class Session {
     holds_view_ = hold;
     mixes_lights_ = hold && mix_lights;
   }
+
+  /// A picture by each light, so that the next edit of colours is a sum already: for while nobody waits. Does
+  /// nothing unless lights may be mixed.
+  /// error as prepare
+  void ready_light_mix(Monitor* monitor = nullptr);
 
   /// Whether edits are to come, yes at first: what only they need is not kept otherwise. No picture depends
   /// on it.
@@ -146,7 +152,8 @@ class Session {
                       std::size_t most_places);
   void assemble();
   HeldView* held_view();
-  std::optional<Image> mixed_picture(HeldView& view, Monitor* monitor);
+  bool can_mix() const;
+  Image recoloured(const Scene& scene, HeldView& view, Monitor* monitor);
   void decide(const Part& part, const std::string& text);
 
   StageCache* cache_;
