@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -11,13 +12,13 @@
 namespace opaline {
 namespace {
 
-// The exitance that hangs on which of the two irradiances is right, above which shadow rays are worth their
-// time.
-constexpr float kWorth = 0.02f;
-// Places of a point alone; of neighbours together, which fill the near field of each less evenly; and how
-// many each of many neighbours brings at least.
-constexpr int kAlone = 16, kTogether = 48, kEach = 3;
-constexpr std::size_t kMostTogether = 48;  // points that share their places
+// What may be at stake before shadow rays are worth their time; and what usually is, where they are.
+constexpr float kWorth = 0.02f, kUsual = 0.06f;
+// Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
+// field of each less evenly; and how many each of many neighbours brings at least.
+constexpr int kAlone = 24, kTogether = 48, kEach = 3;
+constexpr float kMost = 96;  // places of a point at all
+constexpr std::size_t kMostTogether = 64;  // points that share their places
 
 }  // namespace
 
@@ -67,7 +68,7 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
                                                     std::span<Exitance> exitance) const {
   std::vector<std::uint32_t> marked;
   for (std::uint32_t i = 0; i < exitance.size(); ++i)
-    if (is_beside_edge(own[i], exitance[i])) marked.push_back(i);
+    if (at_stake(own[i], exitance[i]) > kWorth) marked.push_back(i);
   if (marked.empty()) return marked;
   const std::vector<std::size_t> ends = split(lighting.points, marked);
   Places places;
@@ -76,8 +77,13 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
     const std::uint64_t key = lighting.keys[marked[first]];
     const std::size_t before = places.rays.size();
     for (std::size_t m = first; m < ends[set]; ++m) {
-      drawn.push_back(
-          places_of(marked[m], std::span(marked).subspan(first, ends[set] - first), lighting.points));
+      // Of what lies beyond an edge in a part p of the near field, about p is at stake, and the deviation of a
+      // place is as the root of p.
+      const float wanted = std::sqrt(at_stake(own[marked[m]], exitance[marked[m]]) / kUsual) *
+                           places_of(marked[m], std::span(marked).subspan(first, ends[set] - first),
+                                     lighting.points);
+      const double rounding = unit_double(hash_bits(3002, lighting.keys[marked[m]]));
+      drawn.push_back(std::max(1, int(std::min(wanted, kMost) + rounding)));
       draw(lighting.points[marked[m]], key, places.rays.size() - before, drawn[m], places);
     }
     places.sets.resize(places.rays.size(), std::uint32_t(set));
@@ -109,13 +115,15 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   return marked;
 }
 
-bool NearFieldSampler::is_beside_edge(const RgbF& own, const Exitance& e) const {
+// The share of the exitance that hangs on which of the two irradiances is right.
+float NearFieldSampler::at_stake(const RgbF& own, const Exitance& e) const {
+  float most = 0;
   for (std::size_t c = 0; c < 3; ++c) {
-    const float share = kernel_.own_irradiance[c];
-    if (e.near[c] * share * (1 - share) * std::abs(own[c] - e.irradiance[c]) > kWorth * e.exitance[c])
-      return true;
+    const float share = kernel_.own_irradiance[c],
+                part = e.near[c] * share * (1 - share) * std::abs(own[c] - e.irradiance[c]);
+    if (part > 0) most = std::max(most, part / std::max(e.exitance[c], std::numeric_limits<float>::min()));
   }
-  return false;
+  return most;
 }
 
 // Sorts the points into sets of neighbours; returns where each set ends.
@@ -147,7 +155,7 @@ std::vector<std::size_t> NearFieldSampler::split(std::span<const SurfacePoint> p
 }
 
 // So many that with those of its neighbours the point has about kTogether, but kAlone of its own at most.
-int NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint32_t> set,
+float NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint32_t> set,
                                 std::span<const SurfacePoint> points) const {
   const float square = float(root_mean_square_ * root_mean_square_);
   int neighbours = 0;
@@ -155,7 +163,7 @@ int NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint32
     const Vec3f apart = points[set[i]].position - points[point].position;
     neighbours += dot(apart, apart) < square && dot(points[point].normal, points[set[i]].normal) > 0;
   }
-  return std::clamp(kTogether / std::max(1, neighbours), kEach, kAlone);
+  return float(std::clamp(kTogether / std::max(1, neighbours), kEach, kAlone));
 }
 
 // Neighbours take their places from one low-discrepancy sequence, `key`'s, each from where the last one

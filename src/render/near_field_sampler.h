@@ -15,8 +15,8 @@ namespace opaline {
 /// irradiance, that of the point mixed with the samples' mean (SplitKernel::own_irradiance); where the two
 /// differ, a shadow edge runs through the near field and neither is what enters it. Shadow rays from these
 /// places tell. Neighbouring points share their places: each counts as drawn from the mean of the points' own
-/// kernels.
-/// from  balance heuristic: Veach & Guibas 1995, sec. 3
+/// kernels. Points bring as many as goes with the deviation that is to be expected.
+/// from  balance heuristic: Veach & Guibas 1995, sec. 3; allocation: Neyman 1934
 class NearFieldSampler {
  public:
   /// group: not without meshes; it must outlive the sampler.
@@ -34,10 +34,10 @@ class NearFieldSampler {
   struct Means;
   /// Of the near kernel, whose integral is 1, per channel, and their mean, 1/mm^2.
   typedef float Densities __attribute__((vector_size(16)));
-  bool is_beside_edge(const RgbF& own, const Exitance& exitance) const;
+  float at_stake(const RgbF& own, const Exitance& exitance) const;
   static std::vector<std::size_t> split(std::span<const SurfacePoint> points,
                                         std::span<std::uint32_t> marked);
-  int places_of(std::uint32_t point, std::span<const std::uint32_t> set,
+  float places_of(std::uint32_t point, std::span<const std::uint32_t> set,
                 std::span<const SurfacePoint> points) const;
   void draw(const SurfacePoint& point, std::uint64_t key, std::size_t first, int count, Places& places) const;
   void find(const RayScene& rays, Places& places) const;
