@@ -17,7 +17,8 @@ constexpr float kWorth = 0.02f, kUsual = 0.06f;
 // Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
 // field of each less evenly; and how many each of many neighbours brings at least.
 constexpr int kAlone = 24, kTogether = 48, kEach = 3;
-constexpr float kMost = 96;  // places of a point at all
+constexpr float kMost = 96;     // places of a point at all
+constexpr int kFewerRays = 16;  // than a point's own are traced from a place to each light with an area
 constexpr std::size_t kMostTogether = 64;  // points that share their places
 
 }  // namespace
@@ -77,11 +78,11 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
     const std::uint64_t key = lighting.keys[marked[first]];
     const std::size_t before = places.rays.size();
     for (std::size_t m = first; m < ends[set]; ++m) {
-      // Of what lies beyond an edge in a part p of the near field, about p is at stake, and the deviation of a
-      // place is as the root of p.
-      const float wanted = std::sqrt(at_stake(own[marked[m]], exitance[marked[m]]) / kUsual) *
-                           places_of(marked[m], std::span(marked).subspan(first, ends[set] - first),
-                                     lighting.points);
+      // Of what lies beyond an edge in a part p of the near field, about p is at stake, and the deviation of
+      // a place is as the root of p.
+      const float wanted =
+          std::sqrt(at_stake(own[marked[m]], exitance[marked[m]]) / kUsual) *
+          places_of(marked[m], std::span(marked).subspan(first, ends[set] - first), lighting.points);
       const double rounding = unit_double(hash_bits(3002, lighting.keys[marked[m]]));
       drawn.push_back(std::max(1, int(std::min(wanted, kMost) + rounding)));
       draw(lighting.points[marked[m]], key, places.rays.size() - before, drawn[m], places);
@@ -92,7 +93,7 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   PointIrradianceInput around = lighting;
   around.points = places.points;
   around.keys = places.keys;
-  around.light_samples = std::max(1, lighting.light_samples / kAlone);
+  around.light_samples = std::max(1, lighting.light_samples / kFewerRays);
   around.variance = {};
   const std::vector<RgbF> entered = irradiance_at(around);
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
@@ -156,7 +157,7 @@ std::vector<std::size_t> NearFieldSampler::split(std::span<const SurfacePoint> p
 
 // So many that with those of its neighbours the point has about kTogether, but kAlone of its own at most.
 float NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint32_t> set,
-                                std::span<const SurfacePoint> points) const {
+                                  std::span<const SurfacePoint> points) const {
   const float square = float(root_mean_square_ * root_mean_square_);
   int neighbours = 0;
   for (std::size_t i = 0; i < set.size() && neighbours * kEach < kTogether; ++i) {

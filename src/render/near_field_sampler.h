@@ -38,7 +38,7 @@ class NearFieldSampler {
   static std::vector<std::size_t> split(std::span<const SurfacePoint> points,
                                         std::span<std::uint32_t> marked);
   float places_of(std::uint32_t point, std::span<const std::uint32_t> set,
-                std::span<const SurfacePoint> points) const;
+                  std::span<const SurfacePoint> points) const;
   void draw(const SurfacePoint& point, std::uint64_t key, std::size_t first, int count, Places& places) const;
   void find(const RayScene& rays, Places& places) const;
   double drawn_distance(double u) const;

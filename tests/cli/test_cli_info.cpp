@@ -59,8 +59,8 @@ TEST(CliInfo, FullStandardOutput) {
   EXPECT_EQ(outcome.exit_code, 3);
 }
 
-// Claim: the program starts without OpenImageIO and the libraries that it brings along, .2 s of CPU: only what
-// reads a picture loads them. Source: picture_reader.h. Fails if: it is linked again, by anything.
+// Claim: the program starts without OpenImageIO and the libraries that it brings along, .2 s of CPU: only
+// what reads a picture loads them. Source: picture_reader.h. Fails if: it is linked again, by anything.
 TEST(CliStart, LoadsNoPictureReader) {
   ::setenv("LD_TRACE_LOADED_OBJECTS", "1", 1);  // ld.so(8): names the libraries instead of starting
   const Outcome libraries = run_program({"--version"});

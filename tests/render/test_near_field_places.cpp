@@ -53,9 +53,9 @@ double largest_noise() {
   return largest;
 }
 
-// Claim: where most is at stake, beside the edges of deep shadows, there are most places: no pixel is far off.
-// Source: near_field_sampler.h. Tolerance: measured 5.1 %. Fails if: the stakes are not looked at (9.8 %), or
-// another pass draws the same places (0).
+// Claim: where most is at stake, beside the edges of deep shadows, there are most places: no pixel is far
+// off. Source: near_field_sampler.h. Tolerance: measured 5.1 %. Fails if: the stakes are not looked at (9.8
+// %), or another pass draws the same places (0).
 TEST(NearFieldPlaces, AreMoreWhereMoreIsAtStake) {
   const double noise = largest_noise();
   EXPECT_LT(noise, .07);
