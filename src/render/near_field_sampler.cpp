@@ -17,8 +17,9 @@ constexpr float kWorth = 0.02f, kUsual = 0.06f;
 // Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
 // field of each less evenly; and how many each of many neighbours brings at least.
 constexpr int kAlone = 24, kTogether = 48, kEach = 3;
-constexpr float kMost = 96;     // places of a point at all
-constexpr int kFewerRays = 16;  // than a point's own are traced from a place to each light with an area
+constexpr float kMost = 96;           // places of a point at all
+constexpr std::uint64_t kStride = 5;  // in the sequence from one point's places to the next one's
+constexpr int kFewerRays = 16;        // than a point's own are traced from a place to each light with an area
 constexpr std::size_t kMostTogether = 64;  // points that share their places
 
 }  // namespace
@@ -75,8 +76,6 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   Places places;
   std::vector<int> drawn;
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
-    const std::uint64_t key = lighting.keys[marked[first]];
-    const std::size_t before = places.rays.size();
     for (std::size_t m = first; m < ends[set]; ++m) {
       // Of what lies beyond an edge in a part p of the near field, about p is at stake, and the deviation of
       // a place is as the root of p.
@@ -85,7 +84,7 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
           places_of(marked[m], std::span(marked).subspan(first, ends[set] - first), lighting.points);
       const double rounding = unit_double(hash_bits(3002, lighting.keys[marked[m]]));
       drawn.push_back(std::max(1, int(std::min(wanted, kMost) + rounding)));
-      draw(lighting.points[marked[m]], key, places.rays.size() - before, drawn[m], places);
+      draw(lighting, marked[m], drawn[m], places);
     }
     places.sets.resize(places.rays.size(), std::uint32_t(set));
   }
@@ -167,20 +166,22 @@ float NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint
   return float(std::clamp(kTogether / std::max(1, neighbours), kEach, kAlone));
 }
 
-// Neighbours take their places from one low-discrepancy sequence, `key`'s, each from where the last one
-// ended.
-void NearFieldSampler::draw(const SurfacePoint& point, std::uint64_t key, std::size_t first, int count,
+// All points together take their places from one low-discrepancy sequence, each from where its number in the
+// batch says: not from where another's end, or all would change from frame to frame where one comes or goes.
+void NearFieldSampler::draw(const PointIrradianceInput& lighting, std::uint32_t number, int count,
                             Places& places) const {
-  const std::array<double, 2> shift{unit_double(hash_bits(3000, key)), unit_double(hash_bits(3001, key))};
+  const SurfacePoint& point = lighting.points[number];
+  const std::uint64_t batch = lighting.keys.front(), first = kStride * std::uint64_t(number);
+  const std::array<double, 2> shift{unit_double(hash_bits(3000, batch)), unit_double(hash_bits(3001, batch))};
   Vec3f x, y;
   tangent_frame(point.normal, x, y);
-  for (std::size_t k = first; k < first + std::size_t(count); ++k) {
+  for (std::uint64_t k = first; k < first + std::uint64_t(count); ++k) {
     const auto [u, v] = r2_point(k, shift);
     const float r = float(drawn_distance(u));
     const double angle = 2 * std::numbers::pi * v;
     const Vec3f place = point.position + x * (r * float(std::cos(angle))) + y * (r * float(std::sin(angle)));
     places.rays.push_back({Ray(place + point.normal * r, -point.normal, 2 * r), {}});
-    places.keys.push_back(hash_bits(key, k));
+    places.keys.push_back(hash_bits(lighting.keys[number], k));
   }
 }
 

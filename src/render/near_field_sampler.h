@@ -39,7 +39,7 @@ class NearFieldSampler {
                                         std::span<std::uint32_t> marked);
   float places_of(std::uint32_t point, std::span<const std::uint32_t> set,
                   std::span<const SurfacePoint> points) const;
-  void draw(const SurfacePoint& point, std::uint64_t key, std::size_t first, int count, Places& places) const;
+  void draw(const PointIrradianceInput& lighting, std::uint32_t number, int count, Places& places) const;
   void find(const RayScene& rays, Places& places) const;
   double drawn_distance(double u) const;
   std::vector<Means> means_of(std::span<const SurfacePoint> points, std::span<const std::uint32_t> marked,
