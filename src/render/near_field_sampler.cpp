@@ -17,9 +17,9 @@ constexpr float kWorth = 0.02f, kUsual = 0.06f;
 // Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
 // field of each less evenly; and how many each of many neighbours brings at least.
 constexpr int kAlone = 24, kTogether = 48, kEach = 3;
-constexpr float kMost = 96;           // places of a point at all
-constexpr std::uint64_t kStride = 5;  // in the sequence from one point's places to the next one's
-constexpr int kFewerRays = 16;        // than a point's own are traced from a place to each light with an area
+constexpr float kMost = 96;            // places of a point at all
+constexpr std::uint64_t kStride = 11;  // in the sequence from one point's places to the next one's
+constexpr int kFewerRays = 16;  // than a point's own are traced from a place to each light with an area
 constexpr std::size_t kMostTogether = 64;  // points that share their places
 
 }  // namespace
@@ -171,7 +171,8 @@ float NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint
 void NearFieldSampler::draw(const PointIrradianceInput& lighting, std::uint32_t number, int count,
                             Places& places) const {
   const SurfacePoint& point = lighting.points[number];
-  const std::uint64_t batch = lighting.keys.front(), first = kStride * std::uint64_t(number);
+  const std::uint64_t batch = hash_bits(lighting.seed, lighting.keys.front()),
+                      first = kStride * std::uint64_t(number);
   const std::array<double, 2> shift{unit_double(hash_bits(3000, batch)), unit_double(hash_bits(3001, batch))};
   Vec3f x, y;
   tangent_frame(point.normal, x, y);
