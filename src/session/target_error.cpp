@@ -13,7 +13,7 @@ namespace opaline {
 namespace {
 
 // Nearly all predictions are less than this factor too low.
-constexpr double kSafety = 1.35;
+constexpr double kSafety = 1.4;
 // So far beyond the samples at hand an error is extrapolated.
 constexpr double kFarthest = 1.5;
 // Shadow rays double where their noise alone is more than this share of the target.
