@@ -47,6 +47,7 @@ Costs costs_of(const Scene& scene) {
 
 void print_row(Scene scene, std::size_t samples) {
   scene.settings.samples = samples;
+  scene.settings.max_samples = std::max(scene.settings.max_samples, samples);
   Scene lambert = scene;
   lambert.settings.method = Method::lambert;
   std::array<std::vector<double>, 3> stages;
