@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -17,7 +16,6 @@ constexpr float kWorth = 0.02f, kUsual = 0.06f;
 // Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
 // field of each less evenly; and how many each of many neighbours brings at least.
 constexpr int kAlone = 24, kTogether = 48, kEach = 3;
-constexpr float kMost = 96;            // places of a point at all
 constexpr std::uint64_t kStride = 11;  // in the sequence from one point's places to the next one's
 constexpr int kFewerRays = 16;  // than a point's own are traced from a place to each light with an area
 constexpr std::size_t kMostTogether = 64;  // points that share their places
@@ -69,8 +67,11 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
                                                     std::span<const RgbF> own,
                                                     std::span<Exitance> exitance) const {
   std::vector<std::uint32_t> marked;
-  for (std::uint32_t i = 0; i < exitance.size(); ++i)
-    if (at_stake(own[i], exitance[i]) > kWorth) marked.push_back(i);
+  std::vector<float> stakes(exitance.size());
+  for (std::uint32_t i = 0; i < exitance.size(); ++i) {
+    stakes[i] = at_stake(own[i], exitance[i]);
+    if (stakes[i] > kWorth) marked.push_back(i);
+  }
   if (marked.empty()) return marked;
   const std::vector<std::size_t> ends = split(lighting.points, marked);
   Places places;
@@ -80,10 +81,10 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
       // Of what lies beyond an edge in a part p of the near field, about p is at stake, and the deviation of
       // a place is as the root of p.
       const float wanted =
-          std::sqrt(at_stake(own[marked[m]], exitance[marked[m]]) / kUsual) *
+          std::sqrt(stakes[marked[m]] / kUsual) *
           places_of(marked[m], std::span(marked).subspan(first, ends[set] - first), lighting.points);
       const double rounding = unit_double(hash_bits(3002, lighting.keys[marked[m]]));
-      drawn.push_back(std::max(1, int(std::min(wanted, kMost) + rounding)));
+      drawn.push_back(std::max(1, int(wanted + rounding)));
       draw(lighting, marked[m], drawn[m], places);
     }
     places.sets.resize(places.rays.size(), std::uint32_t(set));
@@ -121,7 +122,7 @@ float NearFieldSampler::at_stake(const RgbF& own, const Exitance& e) const {
   for (std::size_t c = 0; c < 3; ++c) {
     const float share = kernel_.own_irradiance[c],
                 part = e.near[c] * share * (1 - share) * std::abs(own[c] - e.irradiance[c]);
-    if (part > 0) most = std::max(most, part / std::max(e.exitance[c], std::numeric_limits<float>::min()));
+    most = std::max(most, part < e.exitance[c] ? part / e.exitance[c] : part > 0 ? 1.0f : 0.0f);
   }
   return most;
 }

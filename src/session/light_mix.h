@@ -13,10 +13,9 @@ namespace opaline {
 
 /// Light adds up, and no channel knows of another: a picture by lights of other colours is a sum of pictures
 /// by white ones. From the second edit in a row that changes colours alone, the lights that changed each have
-/// a picture of their own, and the others one together; a further such edit is a sum; and the first one is,
-/// where all were made ready before. A mixed picture differs
-/// from one rendered anew by what the evaluator's tolerance allows, and its `error` layer is the sum of the
-/// parts', as if their errors went together.
+/// a picture of their own, and the others one together; a further such edit is a sum, as is the first where
+/// all were made ready before. A mixed picture differs from one rendered anew by what the evaluator's
+/// tolerance allows, and its `error` layer is the sum of the parts', as if their errors went together.
 class LightMix {
  public:
   /// The picture of a scene that differs from the one before by its lights' colours.

@@ -197,10 +197,11 @@ void Session::prepare(Monitor* monitor) {
 RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
   prepare(monitor);
   HeldView* const view = held_view();
-  if (view != nullptr && mixes_lights_) {
-    if (!can_mix()) mix_->clear();
+  if (!can_mix()) {
+    mix_->clear();
+  } else {
     const auto render_part = [&](const Scene& scene) { return recoloured(scene, *view, monitor); };
-    if (std::optional<Image> mixed = can_mix() ? mix_->mixed(scene_, render_part) : std::nullopt) {
+    if (std::optional<Image> mixed = mix_->mixed(scene_, render_part)) {
       if (after_tile) after_tile(*mixed, rendered_part(scene_.film));
       return {std::move(*mixed)};
     }
@@ -213,12 +214,14 @@ RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
 void Session::ready_light_mix(Monitor* monitor) {
   prepare(monitor);
   HeldView* const view = held_view();
-  if (view != nullptr && mixes_lights_ && can_mix())
+  if (can_mix())
     mix_->get_ready(scene_, [&](const Scene& scene) { return recoloured(scene, *view, monitor); });
 }
 
+/// After prepare.
 bool Session::can_mix() const {
-  return std::ranges::none_of(groups_, [](const TranslucentGroup& g) { return g.surface_cache.has_value(); });
+  return mixes_lights_ &&
+         std::ranges::none_of(groups_, [](const TranslucentGroup& g) { return g.surface_cache.has_value(); });
 }
 
 /// The picture of a scene that differs by its lights' colours.

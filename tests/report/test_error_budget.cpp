@@ -39,6 +39,8 @@ TEST(ErrorBudget, OneSettingApart) {
   EXPECT_EQ(settings_with(parts[0].here).light_samples, 1024);
   EXPECT_EQ(settings_with(parts[0].converged).light_samples, 64);
   EXPECT_EQ(settings_with(parts[1].converged).light_samples, 1024);
+  EXPECT_EQ(settings_with(parts[4].here).light_samples, 1024);
+  EXPECT_EQ(settings_with(parts[4].converged).light_samples, 1024);
 }
 
 // Claim: an opaque scene has no parts; a huge cloud is not multiplied beyond memory, but still at least
