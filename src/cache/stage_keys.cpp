@@ -90,19 +90,24 @@ StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes
   return key.key();
 }
 
-StageKey view_lights_key(const PrecomputeInput& input, std::span<const Light> lights) {
+StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
-  KeyBuilder key("lights of the view", 1);
+  KeyBuilder key("surfaces of the view", 1);
   key.add(settings.method).add(settings.light_samples).add(point_irradiance_seed(settings));
-  for (const Light& light : lights) {
-    key.add(std::uint64_t(light.source.index())).add(light_seed(0, light));
-    std::visit(AddPlace{key}, light.source);
-  }
+  for (const Light& light : lights)
+    if (!is_delta(light)) key.add(view_light_key(light));
   for (const Shape& shape : input.scene.shapes) {
     key.add(shape.medium.has_value());
     if (shape.medium) key.add(input.scene.media[*shape.medium].eta);
   }
   for (const GroupPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));
+  return key.key();
+}
+
+StageKey view_light_key(const Light& light) {
+  KeyBuilder key("light of the view", 1);
+  key.add(std::uint64_t(light.source.index())).add(light_seed(0, light));
+  std::visit(AddPlace{key}, light.source);
   return key.key();
 }
 

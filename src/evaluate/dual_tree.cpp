@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "evaluate/chunk_packets.h"
@@ -44,11 +45,7 @@ struct alignas(16) Takers {
   }
 };
 
-// Packets of a chunk and their first guesses.
-struct ChunkPlan {
-  PacketCut cut;
-  std::array<RgbF, PacketCut::kMost> guesses;
-};
+using Guesses = std::array<RgbF, PacketCut::kMost>;  // of the exitance of a chunk's packets
 
 // Up to kChunk queries that lie near each other.
 class Chunk {
@@ -61,25 +58,25 @@ class Chunk {
                     input.octree.normals.data(), input.kernel.radius * input.kernel.radius} {}
 
   // A coarse exitance of each packet.
-  void guess(std::span<const std::uint32_t> order, ChunkPlan& plan) {
-    chunk_.fill(input_.queries, order, plan.cut);
-    guess_exitance(input_, lane_input_, kernels_, chunk_, plan.guesses);
+  void guess(std::span<const std::uint32_t> order, const PacketCut& cut, Guesses& guesses) {
+    chunk_.fill(input_.queries, order, cut);
+    guess_exitance(input_, lane_input_, kernels_, chunk_, guesses);
   }
 
   // dark: exitance below which errors are absolute
-  void evaluate(std::span<const std::uint32_t> order, const ChunkPlan& plan, const RgbF& dark,
-                std::span<Exitance> result) {
-    chunk_.fill(input_.queries, order, plan.cut);
+  void evaluate(std::span<const std::uint32_t> order, const PacketCut& cut, const Guesses& guesses,
+                const RgbF& dark, std::span<Exitance> result) {
+    chunk_.fill(input_.queries, order, cut);
     for (const std::uint32_t query : order) __builtin_prefetch(&result[query], 1);  // to be written
     for (std::size_t p = 0; p < chunk_.count; ++p) {
       sums_[p] = {};
-      guess_[p] = component_max(plan.guesses[p], dark);
+      guess_[p] = component_max(guesses[p], dark);
     }
     gather(nodes_.data(), std::array{std::uint32_t(0)}, block_);
     const SourceBlock root = block_;
     refine(0, 0, chunk_.count, {&root, 1}, 1, {}, {});
-    for (std::size_t p = 0, first = 0; p < chunk_.count; first += plan.cut.counts[p++])
-      set_exitance(input_, sums_[p], order.subspan(first, plan.cut.counts[p]), result);
+    for (std::size_t p = 0, first = 0; p < chunk_.count; first += cut.counts[p++])
+      set_exitance(input_, sums_[p], order.subspan(first, cut.counts[p]), result);
   }
 
  private:
@@ -258,13 +255,13 @@ class Chunk {
 };
 
 // Exitance, per channel, below which errors are held against it instead of the query's own.
-RgbF darkest(const EvaluateInput& input, std::span<const ChunkPlan> plans) {
+RgbF darkest(const EvaluateInput& input, std::span<const PacketCut> cuts, std::span<const Guesses> guesses) {
   RgbF dark;
   std::vector<float> values;
   for (std::size_t c = 0; c < 3; ++c) {
     values.clear();
-    for (const ChunkPlan& plan : plans)
-      for (std::size_t p = 0; p < plan.cut.packets; ++p) values.push_back(plan.guesses[p][c]);
+    for (std::size_t chunk = 0; chunk < cuts.size(); ++chunk)
+      for (std::size_t p = 0; p < cuts[chunk].packets; ++p) values.push_back(guesses[chunk][p][c]);
     const std::size_t p99 = (values.size() * 99 + 99) / 100 - 1;
     std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(p99));
     dark[c] = std::max(kDark * values[p99], kDarkest * input.kernel.total[c]);
@@ -276,19 +273,28 @@ RgbF darkest(const EvaluateInput& input, std::span<const ChunkPlan> plans) {
 
 void evaluate_dual_tree(const EvaluateInput& input, std::span<Exitance> result) {
   const LaneKernels& kernels = lane_kernels(input.instruction_set);
-  std::vector<std::uint32_t> order = chunk_order(input.queries);
+  QueryPackets cut_now;
+  const bool is_cut = input.packets != nullptr && !input.packets->order.empty() &&
+                      input.packets->radius == input.kernel.radius;
+  if (!is_cut) cut_now = {input.kernel.radius, chunk_order(input.queries), {}};
+  QueryPackets& packets = is_cut ? *input.packets : cut_now;
+  std::vector<std::uint32_t>& order = packets.order;
   if (order.empty()) return;
-  std::vector<ChunkPlan> plans(chunk_count(order.size(), kChunk));
+  std::vector<Guesses> guesses(chunk_count(order.size(), kChunk));
+  packets.cuts.resize(guesses.size());
   parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     const std::span<std::uint32_t> own = std::span(order).subspan(begin, end - begin);
-    plans[chunk].cut = sort_into_packets(own, input.queries, input.kernel.radius);
-    Chunk(input, kernels).guess(own, plans[chunk]);
+    PacketCut& cut = packets.cuts[chunk];
+    if (!is_cut) cut = sort_into_packets(own, input.queries, input.kernel.radius);
+    Chunk(input, kernels).guess(own, cut, guesses[chunk]);
   });
-  const RgbF dark = darkest(input, plans);
+  const RgbF dark = darkest(input, packets.cuts, guesses);
   parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-    Chunk(input, kernels).evaluate(std::span(order).subspan(begin, end - begin), plans[chunk], dark, result);
+    const std::span<const std::uint32_t> own = std::span(order).subspan(begin, end - begin);
+    Chunk(input, kernels).evaluate(own, packets.cuts[chunk], guesses[chunk], dark, result);
     advance(input.monitor, end - begin);
   });
+  if (!is_cut && input.packets != nullptr) *input.packets = std::move(cut_now);
 }
 
 }  // namespace opaline

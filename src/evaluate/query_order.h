@@ -2,7 +2,6 @@
 // Query points in an order in which neighbours stand together.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,13 +14,6 @@ inline constexpr std::size_t kChunk = 256;  ///< queries that walk the tree toge
 
 /// Queries in chunks of kChunk neighbours; those that are not finite are left out: nothing reaches them.
 std::vector<std::uint32_t> chunk_order(std::span<const Query> queries);
-
-/// How many queries each packet of a chunk holds, in their order.
-struct PacketCut {
-  static constexpr std::size_t kMost = 32;
-  std::size_t packets = 0;
-  std::array<std::uint8_t, kMost> counts{};
-};
 
 /// Sorts a chunk into packets of at most kLanes queries: cut at the middle of the longest side, and again
 /// where parts lie so far from each other that they have fewer neighbours within `reach`, mm, apart than

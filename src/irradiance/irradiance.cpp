@@ -115,53 +115,51 @@ double combined_noise(std::span<const LightTransfer> transfers, std::span<const 
   return sum > 0 ? std::sqrt(squares) / sum : 0;
 }
 
-PointTransfers transfers_at(const PointIrradianceInput& input) {
-  const std::size_t n = input.points.size();
+PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light) {
+  const std::size_t n = input.points.size(), batch_size = batch_points(input.light_samples);
   PointTransfers transfers;
-  transfers.weights.resize(n * input.lights.size());
-  if (!input.variance.empty()) transfers.variances.resize(transfers.weights.size());
-  const std::size_t batch_size = batch_points(input.light_samples);
+  transfers.weights.resize(n);
+  if (!input.variance.empty()) transfers.variances.resize(n);
+  ShadowBatch batch(input.rays, input.lights[light], input.eta, input.light_samples,
+                    light_seed(input.seed, input.lights[light]));
+  const Halves halves(batch.samples());
   std::vector<std::array<double, 2>> sums;  // over the halves of a point's rays
-  for (std::size_t l = 0; l < input.lights.size(); ++l) {
-    float* const weights = transfers.weights.data() + l * n;
-    ShadowBatch batch(input.rays, input.lights[l], input.eta, input.light_samples,
-                      light_seed(input.seed, input.lights[l]));
-    const Halves halves(batch.samples());
-    batch.reserve(std::min(batch_size, n));
-    for (std::size_t begin = 0; begin < n; begin += batch_size) {
-      const std::size_t end = std::min(n, begin + batch_size);
-      for (std::size_t i = begin; i < end; ++i) batch.add(input.points[i], input.keys[i]);
-      if (batch.samples() < 2) {
-        batch.trace([&](std::size_t p, int, float e, float) { weights[begin + p] = e; });
-        continue;
-      }
-      sums.assign(end - begin, {});
-      batch.trace([&](std::size_t p, int s, float e, float) { sums[p][halves.of(s)] += double(e); });
-      for (std::size_t p = 0; p < sums.size(); ++p) {
-        weights[begin + p] = float(sums[p][0] + sums[p][1]);
-        if (!transfers.variances.empty())
-          transfers.variances[l * n + begin + p] = float(halves.variance(sums[p]));
-      }
+  batch.reserve(std::min(batch_size, n));
+  for (std::size_t begin = 0; begin < n; begin += batch_size) {
+    const std::size_t end = std::min(n, begin + batch_size);
+    for (std::size_t i = begin; i < end; ++i) batch.add(input.points[i], input.keys[i]);
+    if (batch.samples() < 2) {
+      batch.trace([&](std::size_t p, int, float e, float) { transfers.weights[begin + p] = e; });
+      continue;
+    }
+    sums.assign(end - begin, {});
+    batch.trace([&](std::size_t p, int s, float e, float) { sums[p][halves.of(s)] += double(e); });
+    for (std::size_t p = 0; p < sums.size(); ++p) {
+      transfers.weights[begin + p] = float(sums[p][0] + sums[p][1]);
+      if (!transfers.variances.empty()) transfers.variances[begin + p] = float(halves.variance(sums[p]));
     }
   }
   return transfers;
 }
 
-std::vector<RgbF> combine_lights(const PointTransfers& transfers, const PointIrradianceInput& input) {
-  const std::size_t n = input.points.size();
-  std::vector<RgbF> irradiance(n);
+std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers,
+                                 const PointIrradianceInput& input) {
+  std::vector<RgbF> irradiance(input.points.size());
   for (std::size_t l = 0; l < input.lights.size(); ++l) {
     const RgbF colour(emission(input.lights[l]));
-    for (std::size_t i = 0; i < n; ++i) {
-      irradiance[i] += colour * transfers.weights[l * n + i];
-      if (!input.variance.empty()) input.variance[i] += colour * colour * transfers.variances[l * n + i];
+    const auto& [weights, variances] = transfers[l];
+    for (std::size_t i = 0; i < irradiance.size(); ++i) {
+      irradiance[i] += colour * weights[i];
+      if (!input.variance.empty()) input.variance[i] += colour * colour * variances[i];
     }
   }
   return irradiance;
 }
 
 std::vector<RgbF> irradiance_at(const PointIrradianceInput& input) {
-  return combine_lights(transfers_at(input), input);
+  std::vector<PointTransfers> transfers;
+  for (std::size_t l = 0; l < input.lights.size(); ++l) transfers.push_back(transfers_at(input, l));
+  return combine_lights(transfers, input);
 }
 
 }  // namespace opaline

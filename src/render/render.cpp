@@ -29,7 +29,7 @@ bool fits(const RenderInput& input) {
   const Film& film = input.scene.film;
   const std::size_t rays =
       std::size_t(film.resolution[0]) * std::size_t(film.resolution[1]) * std::size_t(film.samples_per_pixel);
-  return rays * (sizeof(HeldView::CameraHit) + 2 * sizeof(float) * input.scene.lights.size()) <=
+  return rays * (sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) + 2 * sizeof(float) * input.scene.lights.size()) <=
          kMostHeldBytes;
 }
 

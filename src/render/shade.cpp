@@ -42,10 +42,12 @@ float cos_view(const Vec3f& normal, const Vec3f& direction) {
 }
 
 // Irradiance at the points, by shadow rays unless they are held.
-std::vector<RgbF> irradiance(const PointIrradianceInput& lighting, PointTransfers* held) {
+std::vector<RgbF> irradiance(const PointIrradianceInput& lighting, HeldView::Surface* held) {
   if (held == nullptr) return irradiance_at(lighting);
-  if (held->weights.empty()) *held = transfers_at(lighting);
-  return combine_lights(*held, lighting);
+  held->lights.resize(lighting.lights.size());
+  for (std::size_t l = 0; l < held->lights.size(); ++l)
+    if (held->lights[l].weights.empty()) held->lights[l] = transfers_at(lighting, l);
+  return combine_lights(held->lights, lighting);
 }
 
 // Whether pictures trace shadow rays for the exitance of a group.
@@ -80,12 +82,12 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
 std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                           std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held) const {
   std::size_t queries = 0;
-  if (held != nullptr) held->lights.resize(kinds_.size());
+  if (held != nullptr) held->surfaces.resize(kinds_.size());
   const std::vector<Surfaces> surfaces = collect(rays, keys, out);
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
     if (surfaces[k].points.empty()) continue;
     write(surfaces[k],
-          light(kinds_[k], surfaces[k], rays, pass, held != nullptr ? &held->lights[k] : nullptr), rays, out);
+          light(kinds_[k], surfaces[k], rays, pass, held != nullptr ? &held->surfaces[k] : nullptr), rays, out);
     if (kinds_[k].eta > 0 && has_visible_lights()) add_mirrored_lights(surfaces[k], rays, out);
     if (kinds_[k].group != nullptr) queries += surfaces[k].points.size();
   }
@@ -127,7 +129,7 @@ std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
 }
 
 Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
-                          const Pass& pass, PointTransfers* held) const {
+                          const Pass& pass, HeldView::Surface* held) const {
   if (kind.group != nullptr) return evaluated(kind, surfaces, rays, held);
   if (kind.entries != nullptr)
     return {direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}), {}, {}};
@@ -146,14 +148,14 @@ Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<
 }
 
 Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
-                              PointTransfers* held) const {
+                              HeldView::Surface* held) const {
   Lit lit;
   const TranslucentGroup& group = *kind.group;
   const PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
   if (needs_irradiance(group)) lit.irradiance = irradiance(lighting, held);
   std::vector<Exitance> exitance = group.surface_cache
                                        ? interpolated(*group.surface_cache, surfaces, lit, rays)
-                                       : summed(group, surfaces, lit);
+                                       : summed(group, surfaces, lit, held != nullptr ? &held->packets : nullptr);
   const auto& near_field = near_fields_[std::size_t(&group - input_.groups.data())];
   if (near_field) near_field->refine(lighting, lit.irradiance, exitance);
   const bool traced = !lit.irradiance.empty();
@@ -165,15 +167,15 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces, std::s
   return lit;
 }
 
-std::vector<Exitance> Shader::summed(const TranslucentGroup& group, const Surfaces& surfaces,
-                                     const Lit& lit) const {
+std::vector<Exitance> Shader::summed(const TranslucentGroup& group, const Surfaces& surfaces, const Lit& lit,
+                                     QueryPackets* packets) const {
   std::vector<Query> queries;
   queries.reserve(surfaces.points.size());
   for (const SurfacePoint& point : surfaces.points) queries.push_back({point.position, point.normal});
   const Settings& settings = input_.scene.settings;
   return evaluate({group.octree, group.kernel, queries, lit.irradiance, settings.evaluator,
                    settings.tolerance, settings.max_solid_angle, settings.instruction_set,
-                   group.irradiance_noise});
+                   group.irradiance_noise, nullptr, packets});
 }
 
 std::vector<Exitance> Shader::interpolated(const SurfaceCache& cache, const Surfaces& surfaces,

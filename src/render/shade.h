@@ -67,10 +67,11 @@ class Shader {
   std::vector<Surfaces> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                 std::span<PixelSample> out) const;
   Lit light(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays, const Pass& pass,
-            PointTransfers* held) const;
+            HeldView::Surface* held) const;
   Lit evaluated(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,
-                PointTransfers* held) const;
-  std::vector<Exitance> summed(const TranslucentGroup& group, const Surfaces& surfaces, const Lit& lit) const;
+                HeldView::Surface* held) const;
+  std::vector<Exitance> summed(const TranslucentGroup& group, const Surfaces& surfaces, const Lit& lit,
+                               QueryPackets* packets) const;
   static std::vector<Exitance> interpolated(const SurfaceCache& cache, const Surfaces& surfaces,
                                             const Lit& lit, std::span<const TracedRay> rays);
   PointIrradianceInput lighting_of(const Surfaces& surfaces, float eta) const;

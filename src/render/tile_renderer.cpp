@@ -83,14 +83,15 @@ TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass,
   if (held != nullptr) held->resize(samples);
   Tile result;
   for (std::uint64_t s = 0; s < samples; ++s) {
+    HeldView::Batch* const batch = held != nullptr ? &(*held)[s] : nullptr;
+    advance(input_.monitor, 1);
+    if (batch != nullptr && batch->is_traced && batch->hits.empty() && !shader_.has_visible_lights()) continue;
     std::size_t i = 0;
     for (int y = tile.y0; y < tile.y1; ++y)
       for (int x = tile.x0; x < tile.x1; ++x, ++i) {
         rays[i] = {camera_.ray(x, y, int(s)), {}};
         keys[i] = first_key + (std::uint64_t(y) * width + std::uint64_t(x)) * samples + s;
       }
-    advance(input_.monitor, 1);
-    HeldView::Batch* const batch = held != nullptr ? &(*held)[s] : nullptr;
     trace(rays, batch);
     if (!shader_.has_visible_lights() && std::ranges::none_of(rays, is_hit)) continue;
     if (result.sums.empty()) {

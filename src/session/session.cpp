@@ -253,13 +253,26 @@ HeldView* Session::held_view() {
     return nullptr;
   }
   const PrecomputeInput input{scene_, *world_, *rays_, plan_};
-  const StageKey key = view_key(input, mesh_keys_),
-                 lights_key = view_lights_key(input, recentred_lights(scene_, *world_));
+  const std::vector<Light> lights = recentred_lights(scene_, *world_);
+  const StageKey key = view_key(input, mesh_keys_), surfaces_key = view_surfaces_key(input, lights);
+  std::vector<StageKey> light_keys;
+  for (const Light& light : lights) light_keys.push_back(view_light_key(light));
+  const bool sees_the_same = key == view_key_ && surfaces_key == view_surfaces_key_;
   if (key != view_key_) view_ = {};
-  if (lights_key != view_lights_key_) view_.forget_lights();
-  if (key != view_key_ || lights_key != view_lights_key_) mix_->clear();
+  if (!sees_the_same) view_.forget_surfaces();
+  if (!sees_the_same || light_keys != view_light_keys_) mix_->clear();
+  if (light_keys != view_light_keys_) {
+    std::vector<std::optional<std::size_t>> before;
+    for (const StageKey& light : light_keys) {
+      const auto old = std::ranges::find(view_light_keys_, light);
+      before.emplace_back();
+      if (old != view_light_keys_.end()) before.back() = std::size_t(old - view_light_keys_.begin());
+    }
+    view_.set_lights(before);
+  }
   view_key_ = key;
-  view_lights_key_ = lights_key;
+  view_surfaces_key_ = surfaces_key;
+  view_light_keys_ = std::move(light_keys);
   return &view_;
 }
 

@@ -2,6 +2,8 @@
 // Edits that leave the surfaces as they are: each row of the table in session.h recomputes what it says, and
 // the picture is a new session's, bit for bit. Every test fails if a key lacks what its edit changes (another
 // picture) or has more (more work).
+#include <fmt/format.h>
+
 #include <cstring>
 #include <thread>
 
@@ -19,10 +21,11 @@ struct Row {
   bool builds_trees = false;
 };
 
-void expect_row(const Row& row) {
-  SCOPED_TRACE(row.name);
+void expect_row(const Row& row, bool hold_view) {
+  SCOPED_TRACE(fmt::format("{}, view {}", row.name, hold_view ? "held" : "not held"));
   Scene scene = two_balls();
   Session session;
+  session.hold_view(hold_view);
   picture_of(session, scene);
   EXPECT_EQ(session.work().meshes_loaded, 3u);
   EXPECT_GT(session.work().samples_placed, 4500u);
@@ -40,6 +43,11 @@ void expect_row(const Row& row) {
   }
   EXPECT_GT(work.queries, 0u);
   EXPECT_TRUE(same_pixels(picture, cold_picture(scene)));
+}
+
+void expect_row(const Row& row) {
+  expect_row(row, false);
+  expect_row(row, true);
 }
 
 // Claim: camera, film and exposure cost camera rays and evaluation alone. Source: the table.
@@ -202,6 +210,47 @@ TEST(Reuse, Lights) {
   expect_row({"light samples", [](Scene& s) { s.settings.light_samples = 9; }, 2, true});
   expect_row({"area light renamed", [](Scene& s) { s.lights[1].name = "window"; }, 2, true});
   expect_row({"point renamed", [](Scene& s) { s.lights[0].name = "lamp"; }});
+}
+
+// Claim: with the view held, a light that moved is looked for by one ray from each place that it could shine
+// on, and no other ray is traced; so is one that came; the picture is the cold one. One that hides part of the
+// view changes what is seen. Source: held_view.h. Fails if: another light's rays are traced again, or are
+// taken for this one's.
+TEST(Reuse, HeldViewAndMovedLight) {
+  Scene scene = two_balls();
+  scene.settings.method = Method::lambert;
+  scene.lights.erase(scene.lights.begin() + 1);  // the panel
+  Session session;
+  session.hold_view(true);
+  const Image picture = picture_of(session, scene);
+  const std::size_t seen = [&] {
+    std::size_t pixels = 0;
+    const std::size_t alpha = std::size_t(std::ranges::find(picture.channels, "A") - picture.channels.begin());
+    for (std::size_t i = alpha; i < picture.pixels.size(); i += picture.channels.size())
+      pixels += picture.pixels[i] > 0;
+    return pixels;
+  }();
+  const auto expect_rays = [&](std::size_t least, std::size_t most) {
+    session.edit(scene);
+    session.prepare();
+    const std::uint64_t before = session.rays().statistics().rays;
+    EXPECT_TRUE(same_pixels(session.render().image, cold_picture(scene)));
+    const std::uint64_t rays = session.rays().statistics().rays - before;
+    EXPECT_GE(rays, least);
+    EXPECT_LE(rays, most);
+  };
+  std::get<PointLight>(scene.lights[0].source).position.x += 9;
+  expect_rays(1, seen);
+  std::swap(scene.lights[0], scene.lights[1]);
+  expect_rays(0, 0);
+  scene.lights.insert(scene.lights.begin(), {"lamp", PointLight{{0, 90, 0}, {1e4, 1e4, 1e4}}});
+  expect_rays(1, seen);
+  scene.lights.erase(scene.lights.begin() + 1);
+  expect_rays(0, 0);
+  scene.lights.push_back({"ball", SphereLight{{5, 12, 40}, 6, {9, 9, 9}}});
+  expect_rays(1, seen * std::size_t(2 + scene.settings.light_samples));
+  std::get<SphereLight>(scene.lights.back().source).center.x -= 9;
+  expect_rays(1, seen * std::size_t(2 + scene.settings.light_samples));
 }
 
 // Claim: methods without samples make none; back again, they are still there. Source: "what depends on it".

@@ -40,9 +40,12 @@ StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers
 /// Of what camera rays meet: the camera, the film, all meshes, how the structure was built that rays walk.
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes);
 
-/// Of how the lights reach what camera rays meet: where the lights are and how large, but not their colours;
-/// random numbers; which surfaces are of which kind. in    lights: recentred
-StageKey view_lights_key(const PrecomputeInput& input, std::span<const Light> lights);
+/// Of which surfaces the camera's rays meet are of which kind, lights that hide some included, and of the
+/// random numbers that lights are sampled with there. in    lights: recentred
+StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights);
+
+/// Of how one light reaches them: where it is and how large, but not its colour. in    light: recentred
+StageKey view_light_key(const Light& light);
 
 /// Whether a mesh could be in the way between a light and a group's meshes, to judge by the balls around them
 /// all; at most too cautious.

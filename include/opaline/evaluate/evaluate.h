@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -60,6 +61,20 @@ struct Exitance {
   RgbF error{};
 };
 
+/// How many queries each packet of a chunk of neighbours holds, in their order.
+struct PacketCut {
+  static constexpr std::size_t kMost = 32;
+  std::size_t packets = 0;
+  std::array<std::uint8_t, kMost> counts{};
+};
+
+/// Which queries walk the tree together: it depends on where they lie, and on nothing else.
+struct QueryPackets {
+  float radius = 0;                  ///< h of the kernel that they were cut for
+  std::vector<std::uint32_t> order;  ///< of the finite queries; empty: not known
+  std::vector<PacketCut> cuts;       ///< one a chunk
+};
+
 struct EvaluateInput {
   const Octree& octree;
   const SplitKernel& kernel;
@@ -72,6 +87,7 @@ struct EvaluateInput {
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
   double irradiance_noise = 0;  ///< relative standard error of the samples' irradiance
   Monitor* monitor = nullptr;
+  QueryPackets* packets = nullptr;  ///< dual_tree: of an earlier evaluation of these queries, or to be filled
 };
 
 /// Radiant exitance at each query point, in their order; finite and >= 0.

@@ -56,17 +56,18 @@ struct PointIrradianceInput {
   std::span<RgbF> variance = {};
 };
 
-/// What reaches points from each light per unit emission: light by light, a number a point.
+/// What reaches points from one light per unit emission.
 struct PointTransfers {
-  std::vector<float> weights;    ///< E per unit emission, >= 0
+  std::vector<float> weights;    ///< one a point: E per unit emission, >= 0
   std::vector<float> variances;  ///< of the weights; empty: not asked for
 };
 
-/// Shadow rays from each point; variances where input.variance is not empty.
-PointTransfers transfers_at(const PointIrradianceInput& input);
+/// Shadow rays from each point to one of input.lights; variances where input.variance is not empty.
+PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light);
 
 /// E per point, W/mm^2: the sum over lights of emission x weight; adds to input.variance if it is not empty.
-std::vector<RgbF> combine_lights(const PointTransfers& transfers, const PointIrradianceInput& input);
+/// in    transfers: one a light
+std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers, const PointIrradianceInput& input);
 
 /// Irradiance at arbitrary points, all lights together: for shading where samples are not wanted or too
 /// coarse.

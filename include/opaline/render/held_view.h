@@ -4,31 +4,53 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "opaline/evaluate/evaluate.h"
 #include "opaline/irradiance/irradiance.h"
 
 namespace opaline {
 
-/// Kept from one picture to the next by Session::hold_view: 20 bytes a camera ray, and 4 a light where the
-/// ray met a surface, 8 where the light's error is estimated, too.
+/// Kept from one picture to the next by Session::hold_view: 20 bytes a camera ray, and where the ray met a
+/// surface 4, and 4 a light, 8 where the light's error is estimated, too.
 struct HeldView {
   struct CameraHit {
     std::uint32_t mesh, triangle;  ///< Hit::kMiss: none
     float u, v, far;
   };
+  /// Where the camera rays of a batch met one kind of surface.
+  struct Surface {
+    std::vector<PointTransfers> lights;  ///< one a light, without weights where it is to be traced
+    QueryPackets packets;
+  };
   /// One camera ray of each pixel of a tile.
   struct Batch {
     bool is_traced = false;
-    std::vector<CameraHit> hits;         ///< empty: all missed
-    std::vector<PointTransfers> lights;  ///< one a kind of surface; empty: to be traced
+    std::vector<CameraHit> hits;    ///< empty: all missed
+    std::vector<Surface> surfaces;  ///< by kind; empty: not known
   };
   std::vector<std::vector<Batch>> tiles;  ///< one batch a sample of the pixels
 
-  /// Lets go of what depends on the lights.
-  void forget_lights() {
+  /// Lets go of all that depends on which surfaces are of which kind.
+  void forget_surfaces() {
     for (std::vector<Batch>& tile : tiles)
-      for (Batch& batch : tile) batch.lights.clear();
+      for (Batch& batch : tile) batch.surfaces.clear();
+  }
+
+  /// Takes over other lights. before: which of those held each of them is; none: it is to be traced
+  void set_lights(std::span<const std::optional<std::size_t>> before) {
+    for (std::vector<Batch>& tile : tiles)
+      for (Batch& batch : tile)
+        for (Surface& surface : batch.surfaces) {
+          std::vector<PointTransfers> lights(before.size());
+          for (std::size_t l = 0; l < before.size(); ++l)
+            if (before[l] && *before[l] < surface.lights.size())
+              lights[l] = std::move(surface.lights[*before[l]]);
+          surface.lights = std::move(lights);
+        }
   }
 };
 

@@ -172,7 +172,8 @@ class Session {
   bool holds_view_ = false, mixes_lights_ = false;
   HeldView view_;
   std::unique_ptr<LightMix> mix_;
-  StageKey view_key_, view_lights_key_;
+  StageKey view_key_, view_surfaces_key_;
+  std::vector<StageKey> view_light_keys_;
   bool edits_ = true, prepared_ = false, anchored_ = false;
   SessionWork work_;
   std::vector<std::string> decisions_;
