@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -55,18 +56,24 @@ class Chunk {
         kernels_(kernels),
         nodes_(input.octree.nodes),
         lane_input_{*input.kernel.lanes, input.octree.nodes.data(), input.octree.samples.data(),
-                    input.octree.normals.data(), input.kernel.radius * input.kernel.radius} {}
-
-  // A coarse exitance of each packet.
-  void guess(std::span<const std::uint32_t> order, const PacketCut& cut, Guesses& guesses) {
-    chunk_.fill(input_.queries, order, cut);
-    guess_exitance(input_, lane_input_, kernels_, chunk_, guesses);
+                    input.octree.normals.data(), input.kernel.radius * input.kernel.radius} {
+    constexpr std::size_t kUsual = 256;  // nodes that a list comes to, or less
+    for (PacketLists& lists : lists_)
+      for (auto* list : {&lists.expanded, &lists.far, &lists.near}) list->reserve(kUsual);
+    for (auto* list : {&rest_, &queue_}) list->reserve(4 * kUsual);
+    takers_.reserve(4 * kUsual);
   }
 
-  // dark: exitance below which errors are absolute
+  void fill(std::span<const std::uint32_t> order, const PacketCut& cut) {
+    chunk_.fill(input_.queries, order, cut);
+  }
+
+  // A coarse exitance of each packet.
+  void guess(Guesses& guesses) const { guess_exitance(input_, lane_input_, kernels_, chunk_, guesses); }
+
+  // order, cut: as filled; dark: exitance below which errors are absolute
   void evaluate(std::span<const std::uint32_t> order, const PacketCut& cut, const Guesses& guesses,
                 const RgbF& dark, std::span<Exitance> result) {
-    chunk_.fill(input_.queries, order, cut);
     for (const std::uint32_t query : order) __builtin_prefetch(&result[query], 1);  // to be written
     for (std::size_t p = 0; p < chunk_.count; ++p) {
       sums_[p] = {};
@@ -282,16 +289,25 @@ void evaluate_dual_tree(const EvaluateInput& input, std::span<Exitance> result) 
   if (order.empty()) return;
   std::vector<Guesses> guesses(chunk_count(order.size(), kChunk));
   packets.cuts.resize(guesses.size());
-  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+  std::optional<Chunk> only;  // of few queries, such as a tile's
+  const auto filled = [&](std::optional<Chunk>& room, std::span<const std::uint32_t> own,
+                          const PacketCut& cut) -> Chunk& {
+    room.emplace(input, kernels).fill(own, cut);
+    return *room;
+  };
+  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t number) {
     const std::span<std::uint32_t> own = std::span(order).subspan(begin, end - begin);
-    PacketCut& cut = packets.cuts[chunk];
+    PacketCut& cut = packets.cuts[number];
     if (!is_cut) cut = sort_into_packets(own, input.queries, input.kernel.radius);
-    Chunk(input, kernels).guess(own, cut, guesses[chunk]);
+    std::optional<Chunk> room;
+    filled(guesses.size() == 1 ? only : room, own, cut).guess(guesses[number]);
   });
   const RgbF dark = darkest(input, packets.cuts, guesses);
-  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t number) {
     const std::span<const std::uint32_t> own = std::span(order).subspan(begin, end - begin);
-    Chunk(input, kernels).evaluate(own, packets.cuts[chunk], guesses[chunk], dark, result);
+    const PacketCut& cut = packets.cuts[number];
+    std::optional<Chunk> room;
+    (only ? *only : filled(room, own, cut)).evaluate(own, cut, guesses[number], dark, result);
     advance(input.monitor, end - begin);
   });
   if (!is_cut && input.packets != nullptr) *input.packets = std::move(cut_now);

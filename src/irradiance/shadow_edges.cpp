@@ -58,7 +58,8 @@ class EdgeFinder {
         transfers_(transfers),
         reach_(kReach * spacing),
         grid_(samples_, reach_),
-        spans_(grid_.cells().size() * transfers.size()) {
+        spans_(grid_.cells().size() * transfers.size()),
+        has_edge_near_(grid_.cells().size()) {
     for (const LightTransfer& t : transfers) {
       const double sum = std::accumulate(t.weights.begin(), t.weights.end(), 0.0);
       floors_.push_back(kOfMean * float(sum / double(t.weights.size())));
@@ -67,6 +68,13 @@ class EdgeFinder {
       for (const auto& [position, i] : grid_.members(grid_.cells()[c]))
         for (std::size_t l = 0; l < transfers.size(); ++l)
           spans_[c * transfers.size() + l].add(span_of(l, i));
+    // Half a light is missing somewhere beside an edge; most cells are far from any such place.
+    constexpr float kMissing = 1 - 0.99f * kChange;
+    std::array<std::uint32_t, 27> indices;
+    for (std::size_t i = 0; i < spans_.size(); ++i)
+      if (spans_[i].low < kMissing)
+        for (const std::uint32_t c : grid_.around(grid_.cells()[i / transfers.size()], indices))
+          has_edge_near_[c] = true;
   }
 
   std::size_t cells() const { return grid_.cells().size(); }
@@ -75,6 +83,7 @@ class EdgeFinder {
   /// cell.
   template <class Use>
   void for_edges(std::size_t cell, const Use& use) const {
+    if (!has_edge_near_[cell]) return;
     std::array<std::uint32_t, 27> indices;
     const std::span<const std::uint32_t> around = grid_.around(grid_.cells()[cell], indices);
     std::vector<std::uint32_t> candidates, neighbours, lights;
@@ -113,6 +122,7 @@ class EdgeFinder {
   float reach_;
   NeighbourGrid grid_;
   std::vector<Span> spans_;    // cells x lights
+  std::vector<bool> has_edge_near_;  // one a cell; true at times where there is none
   std::vector<float> floors_;  // one a light
 };
 

@@ -190,6 +190,7 @@ void NearFieldSampler::draw(const PointIrradianceInput& lighting, std::uint32_t 
 // Keeps the places that lie on the group's surface and show their outside.
 void NearFieldSampler::find(const RayScene& rays, Places& places) const {
   rays.intersect(places.rays);
+  places.points.reserve(places.rays.size());
   std::size_t kept = 0;
   for (std::size_t i = 0; i < places.rays.size(); ++i) {
     const auto& [ray, hit] = places.rays[i];
@@ -221,6 +222,7 @@ std::vector<NearFieldSampler::Means> NearFieldSampler::means_of(std::span<const 
                                                                 std::span<const RgbF> entered) const {
   const std::size_t n = marked.size();
   std::array<std::vector<float>, 6> of;  // position and normal
+  for (std::vector<float>& values : of) values.reserve(n);
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (const std::uint32_t m : marked) {
       of[axis].push_back(points[m].position[axis]);

@@ -24,13 +24,21 @@ std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, c
   return non_finite;
 }
 
-// Whether what the camera sees may be held.
-bool fits(const RenderInput& input) {
-  const Film& film = input.scene.film;
-  const std::size_t rays =
-      std::size_t(film.resolution[0]) * std::size_t(film.resolution[1]) * std::size_t(film.samples_per_pixel);
-  return rays * (sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) + 2 * sizeof(float) * input.scene.lights.size()) <=
+// Whether so much may be held for each camera ray.
+bool fits(const Film& film, std::size_t bytes) {
+  return std::size_t(film.resolution[0]) * std::size_t(film.resolution[1]) *
+             std::size_t(film.samples_per_pixel) * bytes <=
          kMostHeldBytes;
+}
+
+// What is held of earlier pictures and to be held of this one, if there is room for it.
+HeldView* view_of(const RenderInput& input, std::size_t tiles) {
+  const std::size_t least =
+      sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) + 2 * sizeof(float) * input.scene.lights.size();
+  if (input.view == nullptr || !fits(input.scene.film, least)) return nullptr;
+  input.view->tiles.resize(tiles);
+  input.view->has_room_for_points = fits(input.scene.film, least + sizeof(SurfacePoint));
+  return input.view;
 }
 
 }  // namespace
@@ -43,8 +51,7 @@ RenderResult render(const RenderInput& input) {
   const Shader shader(input);
   const TileRenderer renderer(input, shader);
   const std::vector<Rectangle> tiles = tiles_of(film);
-  HeldView* const view = fits(input) ? input.view : nullptr;
-  if (view != nullptr) view->tiles.resize(tiles.size());
+  HeldView* const view = view_of(input, tiles.size());
   if (input.monitor != nullptr)
     input.monitor->begin("shading", tiles.size() * std::size_t(film.samples_per_pixel));
   std::atomic<std::size_t> queries{0}, non_finite{0};

@@ -41,6 +41,18 @@ float cos_view(const Vec3f& normal, const Vec3f& direction) {
   return std::min(1.0f, std::abs(dot(normal, direction)) / length(direction));
 }
 
+SurfacePoint point_of(const Hit& hit, const RayScene& rays) {
+  return rays.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
+}
+
+// Of the rays that hit something.
+std::vector<SurfacePoint> points_of(std::span<const TracedRay> traced, const RayScene& rays) {
+  std::vector<SurfacePoint> points;
+  for (const auto& [ray, hit] : traced)
+    if (hit.mesh != Hit::kMiss) points.push_back(point_of(hit, rays));
+  return points;
+}
+
 // Irradiance at the points, by shadow rays unless they are held.
 std::vector<RgbF> irradiance(const PointIrradianceInput& lighting, HeldView::Surface* held) {
   if (held == nullptr) return irradiance_at(lighting);
@@ -83,7 +95,7 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
                           std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held) const {
   std::size_t queries = 0;
   if (held != nullptr) held->surfaces.resize(kinds_.size());
-  const std::vector<Surfaces> surfaces = collect(rays, keys, out);
+  const std::vector<Surfaces> surfaces = collect(rays, keys, out, held);
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
     if (surfaces[k].points.empty()) continue;
     write(surfaces[k],
@@ -97,10 +109,14 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
 // Sorts the hits by kind; rays that meet a light or nothing are done.
 std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
                                               std::span<const std::uint64_t> keys,
-                                              std::span<PixelSample> out) const {
+                                              std::span<PixelSample> out, HeldView::Batch* held) const {
   std::vector<Surfaces> surfaces(kinds_.size());
+  const bool holds_points = held != nullptr && input_.view->has_room_for_points;
+  if (holds_points && held->points.empty()) held->points = points_of(rays, input_.rays);
+  std::size_t hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto& [ray, hit] = rays[i];
+    if (hit.mesh != Hit::kMiss) ++hits;
     const EmitterHit emitter = nearest_emitter(ray.origin, ray.direction, ray.far);
     if (emitter.hit) {
       out[i].emitted = emitter.radiance;
@@ -114,7 +130,7 @@ std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
         own.keys.reserve(rays.size());
         own.rays.reserve(rays.size());
       }
-      SurfacePoint point = input_.rays.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
+      SurfacePoint point = holds_points ? held->points[hits - 1] : point_of(hit, input_.rays);
       // An opaque sheet has two equal sides; a translucent one is lit and seen from outside.
       if (!appearance.translucent && dot(point.geometric, ray.direction) > 0) {
         point.geometric = -point.geometric;
@@ -159,6 +175,8 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces, std::s
   const auto& near_field = near_fields_[std::size_t(&group - input_.groups.data())];
   if (near_field) near_field->refine(lighting, lit.irradiance, exitance);
   const bool traced = !lit.irradiance.empty();
+  for (std::vector<RgbF>* values : {&lit.exitance, &lit.error, &lit.irradiance})
+    values->reserve(exitance.size());
   for (const Exitance& e : exitance) {
     lit.exitance.push_back(e.exitance);
     lit.error.push_back(e.error);

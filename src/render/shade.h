@@ -65,7 +65,7 @@ class Shader {
   };
 
   std::vector<Surfaces> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                                std::span<PixelSample> out) const;
+                                std::span<PixelSample> out, HeldView::Batch* held) const;
   Lit light(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays, const Pass& pass,
             HeldView::Surface* held) const;
   Lit evaluated(const Kind& kind, const Surfaces& surfaces, std::span<const TracedRay> rays,

@@ -15,7 +15,7 @@
 namespace opaline {
 
 /// Kept from one picture to the next by Session::hold_view: 20 bytes a camera ray, and where the ray met a
-/// surface 4, and 4 a light, 8 where the light's error is estimated, too.
+/// surface 4, 4 a light (8 where the light's error is estimated, too), and 40 where there is room for them.
 struct HeldView {
   struct CameraHit {
     std::uint32_t mesh, triangle;  ///< Hit::kMiss: none
@@ -29,10 +29,12 @@ struct HeldView {
   /// One camera ray of each pixel of a tile.
   struct Batch {
     bool is_traced = false;
-    std::vector<CameraHit> hits;    ///< empty: all missed
-    std::vector<Surface> surfaces;  ///< by kind; empty: not known
+    std::vector<CameraHit> hits;       ///< empty: all missed
+    std::vector<SurfacePoint> points;  ///< of those that hit, in their order; empty: to be found
+    std::vector<Surface> surfaces;     ///< by kind; empty: not known
   };
   std::vector<std::vector<Batch>> tiles;  ///< one batch a sample of the pixels
+  bool has_room_for_points = false;
 
   /// Lets go of all that depends on which surfaces are of which kind.
   void forget_surfaces() {
