@@ -220,35 +220,39 @@ std::vector<NearFieldSampler::Means> NearFieldSampler::means_of(std::span<const 
                                                                 std::span<const int> drawn,
                                                                 std::span<const SurfacePoint> places,
                                                                 std::span<const RgbF> entered) const {
-  const std::size_t n = marked.size();
-  std::array<std::vector<float>, 6> of;  // position and normal
-  for (std::vector<float>& values : of) values.reserve(n);
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const std::uint32_t m : marked) {
-      of[axis].push_back(points[m].position[axis]);
-      of[axis + 3].push_back(points[m].normal[axis]);
-    }
-  const float *x = of[0].data(), *y = of[1].data(), *z = of[2].data();
-  const float *nx = of[3].data(), *ny = of[4].data(), *nz = of[5].data();
+  // Points past the last have no normal: they see no place.
+  constexpr std::size_t kAtOnce = 4;
+  static_assert(kMostTogether % kAtOnce == 0);
+  const std::size_t n = marked.size(), end = (n + kAtOnce - 1) / kAtOnce * kAtOnce;
+  using Numbers = std::array<float, kMostTogether>;
+  Numbers x{}, y{}, z{}, nx{}, ny{}, nz{}, brought{};
+  for (std::size_t m = 0; m < n; ++m) {
+    const auto& [position, normal, geometric, offset] = points[marked[m]];
+    x[m] = position.x, y[m] = position.y, z[m] = position.z;
+    nx[m] = normal.x, ny[m] = normal.y, nz[m] = normal.z;
+    brought[m] = float(drawn[m]);
+  }
   const float rings = float(kRings) / kernel_.radius;
-  std::vector<int> ring(n);
-  std::vector<Densities> here(n);
+  std::array<int, kMostTogether> ring;
+  std::array<Densities, kMostTogether> here;
   std::vector<Means> means(n);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Vec3f &position = places[i].position, &geometric = places[i].geometric;
     const float px = position.x, py = position.y, pz = position.z;
     const float gx = geometric.x, gy = geometric.y, gz = geometric.z;
-    for (std::size_t m = 0; m < n; ++m) {
+    for (std::size_t m = 0; m < end; ++m) {
       const float dx = x[m] - px, dy = y[m] - py, dz = z[m] - pz;
-      const float r = std::sqrt(dx * dx + dy * dy + dz * dz) * rings;
-      const bool is_seen = nx[m] * gx + ny[m] * gy + nz[m] * gz > 0;
-      ring[m] = int(is_seen && r < kRings ? r : float(kRings));
+      // Without a branch, so that compilers take several points at once.
+      const float r = std::sqrt(dx * dx + dy * dy + dz * dz) * rings, within = r < kRings ? r : float(kRings);
+      ring[m] = int(nx[m] * gx + ny[m] * gy + nz[m] * gz > 0 ? within : float(kRings));
     }
-    float expected = 0;  // places per mm^2 here
-    for (std::size_t m = 0; m < n; ++m) {
-      here[m] = densities_[std::size_t(ring[m])];
-      expected += float(drawn[m]) * here[m][3];
-    }
+    std::array<Densities, kAtOnce> sums{};
+    for (std::size_t m = 0; m < end; m += kAtOnce)
+      for (std::size_t k = 0; k < kAtOnce; ++k) {
+        here[m + k] = densities_[std::size_t(ring[m + k])];
+        sums[k] += here[m + k] * brought[m + k];
+      }
+    const float expected = (sums[0] + sums[1] + (sums[2] + sums[3]))[3];  // places per mm^2 here
     if (!(expected > 0)) continue;
     const Densities inverse = Densities{} + 1 / expected,
                     irradiance{entered[i].x, entered[i].y, entered[i].z, 0};
