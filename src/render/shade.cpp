@@ -31,10 +31,10 @@ Appearance appearance_of(const RenderInput& input, std::span<const EntrySampler>
   return appearance;
 }
 
-// Radiance in the view direction of a surface that sends out `exitance`.
-RgbF outgoing_radiance(const Appearance& a, const RgbF& exitance, float cos_view) {
-  if (!a.translucent) return exitance * kInversePi;
-  return exitance * (kInversePi * fresnel_transmittance(cos_view, a.eta) / (1 - a.average_reflectance));
+// Radiance in the view direction over the exitance.
+float radiance_of_exitance(const Appearance& a, float cos_view) {
+  if (!a.translucent) return kInversePi;
+  return kInversePi * fresnel_transmittance(cos_view, a.eta) / (1 - a.average_reflectance);
 }
 
 float cos_view(const Vec3f& normal, const Vec3f& direction) {
@@ -215,12 +215,12 @@ void Shader::write(const Surfaces& surfaces, const Lit& lit, std::span<const Tra
     const SurfacePoint& point = surfaces.points[i];
     PixelSample& sample = out[surfaces.rays[i]];
     const RgbF exitance = lit.exitance.empty() ? appearance.albedo * lit.irradiance[i] : lit.exitance[i];
-    const float cosine = cos_view(point.normal, ray.direction);
-    sample.diffuse = outgoing_radiance(appearance, exitance, cosine);
+    const float radiance = radiance_of_exitance(appearance, cos_view(point.normal, ray.direction));
+    sample.diffuse = exitance * radiance;
     sample.coverage = 1;
     sample.albedo = appearance.albedo;
     if (!lit.irradiance.empty()) sample.irradiance = lit.irradiance[i];
-    if (!lit.error.empty()) sample.error = outgoing_radiance(appearance, lit.error[i], cosine);
+    if (!lit.error.empty()) sample.error = lit.error[i] * radiance;
     sample.normal = point.normal;
     sample.position = Vec3f(Vec3d(point.position) + input_.world.origin);
     sample.depth = ray.far;
