@@ -2,11 +2,14 @@
 #include "render/near_field_sampler.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
 #include "opaline/core/random.h"
+#include "opaline/irradiance/light_sampling.h"
 
 namespace opaline {
 namespace {
@@ -22,8 +25,9 @@ constexpr std::size_t kMostTogether = 64;  // points that share their places
 
 }  // namespace
 
+// The mean irradiance around each point of a set, per kind of light; NaN where no place was found.
 struct NearFieldSampler::Means {
-  Densities sums{}, weights{};
+  std::vector<std::vector<RgbF>> of;
 };
 
 // Places of all marked points together, on the surface once found.
@@ -61,31 +65,41 @@ NearFieldSampler::NearFieldSampler(const TranslucentGroup& group)
     square += part * r * r;
   }
   root_mean_square_ = std::sqrt(square);
+  for (const Densities& ring : densities_)
+    for (std::size_t c = 0; c < 3; ++c) key_ = hash_bits(key_, std::bit_cast<std::uint32_t>(float(ring[c])));
 }
 
 std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& lighting,
-                                                    std::span<const RgbF> own,
-                                                    std::span<Exitance> exitance) const {
+                                                    std::span<const RgbF> own, std::span<Exitance> exitance,
+                                                    HeldView::NearField* held) const {
   std::vector<std::uint32_t> marked;
   std::vector<float> stakes(exitance.size());
   for (std::uint32_t i = 0; i < exitance.size(); ++i) {
     stakes[i] = at_stake(own[i], exitance[i]);
     if (stakes[i] > kWorth) marked.push_back(i);
   }
-  if (marked.empty()) return marked;
-  const std::vector<std::size_t> ends = split(lighting.points, marked);
+  std::vector<std::uint32_t> open = marked;  // whose near fields are to be found
+  if (held != nullptr && held->kernel == key_) {
+    const auto known = std::ranges::stable_partition(open, [&](std::uint32_t i) { return !held->is_found[i]; });
+    add_held(*held, lighting, own, known, exitance);
+    open.erase(known.begin(), known.end());
+  } else if (held != nullptr) {
+    const std::size_t n = exitance.size();
+    *held = {key_, std::vector<bool>(n), std::vector<RgbF>(n * lighting.lights.size())};
+  }
+  if (open.empty()) return marked;
+  const std::vector<std::size_t> ends = split(lighting.points, open);
   Places places;
   std::vector<int> drawn;
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
     for (std::size_t m = first; m < ends[set]; ++m) {
       // Of what lies beyond an edge in a part p of the near field, about p is at stake, and the deviation of
       // a place is as the root of p.
-      const float wanted =
-          std::sqrt(stakes[marked[m]] / kUsual) *
-          places_of(marked[m], std::span(marked).subspan(first, ends[set] - first), lighting.points);
-      const double rounding = unit_double(hash_bits(3002, lighting.keys[marked[m]]));
+      const float wanted = std::sqrt(stakes[open[m]] / kUsual) *
+                           places_of(open[m], std::span(open).subspan(first, ends[set] - first), lighting.points);
+      const double rounding = unit_double(hash_bits(3002, lighting.keys[open[m]]));
       drawn.push_back(std::max(1, int(wanted + rounding)));
-      draw(lighting, marked[m], drawn[m], places);
+      draw(lighting, open[m], drawn[m], places);
     }
     places.sets.resize(places.rays.size(), std::uint32_t(set));
   }
@@ -95,25 +109,52 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   around.keys = places.keys;
   around.light_samples = std::max(1, lighting.light_samples / kFewerRays);
   around.variance = {};
-  const std::vector<RgbF> entered = irradiance_at(around);
+  // All lights together, and, to be held, each in white.
+  std::vector<PointTransfers> transfers;
+  for (std::size_t l = 0; l < lighting.lights.size(); ++l) transfers.push_back(transfers_at(around, l));
+  std::vector<std::vector<RgbF>> entered{combine_lights(transfers, around)};
+  if (held != nullptr)
+    for (const PointTransfers& light : transfers) entered.emplace_back(light.weights.begin(), light.weights.end());
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
     const auto [begin, end] = std::equal_range(places.sets.begin(), places.sets.end(), std::uint32_t(set));
     const std::size_t skip = std::size_t(begin - places.sets.begin()), count = std::size_t(end - begin);
-    const std::span<const std::uint32_t> own_set = std::span(marked).subspan(first, ends[set] - first);
-    const std::vector<Means> means =
-        means_of(lighting.points, own_set, std::span(drawn).subspan(first),
-                 std::span(places.points).subspan(skip, count), std::span(entered).subspan(skip, count));
+    const std::span<const std::uint32_t> own_set = std::span(open).subspan(first, ends[set] - first);
+    std::vector<std::span<const RgbF>> set_entered;
+    for (const std::vector<RgbF>& values : entered)
+      set_entered.push_back(std::span(values).subspan(skip, count));
+    const Means means = means_of(lighting.points, own_set, std::span(drawn).subspan(first),
+                                 std::span(places.points).subspan(skip, count), set_entered);
     for (std::size_t m = 0; m < own_set.size(); ++m) {
-      Exitance& e = exitance[own_set[m]];
-      for (std::size_t c = 0; c < 3; ++c) {
-        if (!(means[m].weights[c] > 0)) continue;
-        const float share = kernel_.own_irradiance[c],
-                    mixed = share * own[own_set[m]][c] + (1 - share) * e.irradiance[c];
-        e.exitance[c] += e.near[c] * (means[m].sums[c] / means[m].weights[c] - mixed);
-      }
+      const std::uint32_t i = own_set[m];
+      replace_mixed(own[i], means.of[0][m], exitance[i]);
+      if (held == nullptr) continue;
+      held->is_found[i] = true;
+      for (std::size_t l = 0; l < lighting.lights.size(); ++l)
+        held->transfers[l * exitance.size() + i] = means.of[l + 1][m];
     }
   }
   return marked;
+}
+
+// Where the near fields of points were found before.
+void NearFieldSampler::add_held(const HeldView::NearField& held, const PointIrradianceInput& lighting,
+                                std::span<const RgbF> own, std::span<const std::uint32_t> points,
+                                std::span<Exitance> exitance) const {
+  for (const std::uint32_t i : points) {
+    RgbF mean;
+    for (std::size_t l = 0; l < lighting.lights.size(); ++l)
+      mean += RgbF(emission(lighting.lights[l])) * held.transfers[l * exitance.size() + i];
+    replace_mixed(own[i], mean, exitance[i]);
+  }
+}
+
+// Puts the near field's mean irradiance, NaN where it is not known, where `evaluate` took a mixture.
+void NearFieldSampler::replace_mixed(const RgbF& own, const RgbF& mean, Exitance& e) const {
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (std::isnan(mean[c])) continue;
+    const float share = kernel_.own_irradiance[c], mixed = share * own[c] + (1 - share) * e.irradiance[c];
+    e.exitance[c] += e.near[c] * (mean[c] - mixed);
+  }
 }
 
 // The share of the exitance that hangs on which of the two irradiances is right.
@@ -214,12 +255,12 @@ double NearFieldSampler::drawn_distance(double u) const {
   return double(kernel_.radius) * (double(ring) + t) / kRings;
 }
 
-// The mean irradiance of each marked point's near field, whose own irradiances the places have.
-std::vector<NearFieldSampler::Means> NearFieldSampler::means_of(std::span<const SurfacePoint> points,
-                                                                std::span<const std::uint32_t> marked,
-                                                                std::span<const int> drawn,
-                                                                std::span<const SurfacePoint> places,
-                                                                std::span<const RgbF> entered) const {
+// The mean irradiance of each marked point's near field; entered: at the places, per kind of light.
+NearFieldSampler::Means NearFieldSampler::means_of(std::span<const SurfacePoint> points,
+                                                   std::span<const std::uint32_t> marked,
+                                                   std::span<const int> drawn,
+                                                   std::span<const SurfacePoint> places,
+                                                   std::span<const std::span<const RgbF>> entered) const {
   // Points past the last have no normal: they see no place.
   constexpr std::size_t kAtOnce = 4;
   static_assert(kMostTogether % kAtOnce == 0);
@@ -235,7 +276,8 @@ std::vector<NearFieldSampler::Means> NearFieldSampler::means_of(std::span<const 
   const float rings = float(kRings) / kernel_.radius;
   std::array<int, kMostTogether> ring;
   std::array<Densities, kMostTogether> here;
-  std::vector<Means> means(n);
+  std::array<Densities, kMostTogether> weights{};
+  std::vector<std::array<Densities, kMostTogether>> all_sums(entered.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Vec3f &position = places[i].position, &geometric = places[i].geometric;
     const float px = position.x, py = position.y, pz = position.z;
@@ -254,14 +296,22 @@ std::vector<NearFieldSampler::Means> NearFieldSampler::means_of(std::span<const 
       }
     const float expected = (sums[0] + sums[1] + (sums[2] + sums[3]))[3];  // places per mm^2 here
     if (!(expected > 0)) continue;
-    const Densities inverse = Densities{} + 1 / expected,
-                    irradiance{entered[i].x, entered[i].y, entered[i].z, 0};
+    const Densities inverse = Densities{} + 1 / expected;
     for (std::size_t m = 0; m < n; ++m) {
-      const Densities weight = here[m] * inverse;
-      means[m].sums += weight * irradiance;
-      means[m].weights += weight;
+      here[m] *= inverse;
+      weights[m] += here[m];
+    }
+    for (std::size_t l = 0; l < entered.size(); ++l) {
+      const RgbF& e = entered[l][i];
+      const Densities irradiance{e.x, e.y, e.z, 0};
+      for (std::size_t m = 0; m < n; ++m) all_sums[l][m] += here[m] * irradiance;
     }
   }
+  Means means{std::vector(entered.size(), std::vector<RgbF>(n, RgbF(std::numeric_limits<float>::quiet_NaN())))};
+  for (std::size_t l = 0; l < entered.size(); ++l)
+    for (std::size_t m = 0; m < n; ++m)
+      for (std::size_t c = 0; c < 3; ++c)
+        if (weights[m][c] > 0) means.of[l][m][c] = all_sums[l][m][c] / weights[m][c];
   return means;
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "opaline/render/held_view.h"
 #include "opaline/render/precompute.h"
 
 namespace opaline {
@@ -24,9 +25,10 @@ class NearFieldSampler {
 
   /// Corrects the exitance of the points beside shadow edges.
   /// in    lighting: of the points; own: their irradiance
+  /// held: found earlier at the same points beside lights in the same places, and added to; or null
   /// out   exitance: as evaluated with it, one a point; returns which points these were
   std::vector<std::uint32_t> refine(const PointIrradianceInput& lighting, std::span<const RgbF> own,
-                                    std::span<Exitance> exitance) const;
+                                    std::span<Exitance> exitance, HeldView::NearField* held = nullptr) const;
 
  private:
   static constexpr std::size_t kRings = 1024;  // of equal width, out to h
@@ -42,11 +44,16 @@ class NearFieldSampler {
   void draw(const PointIrradianceInput& lighting, std::uint32_t number, int count, Places& places) const;
   void find(const RayScene& rays, Places& places) const;
   double drawn_distance(double u) const;
-  std::vector<Means> means_of(std::span<const SurfacePoint> points, std::span<const std::uint32_t> marked,
-                              std::span<const int> drawn, std::span<const SurfacePoint> places,
-                              std::span<const RgbF> entered) const;
+  void add_held(const HeldView::NearField& held, const PointIrradianceInput& lighting,
+                std::span<const RgbF> own, std::span<const std::uint32_t> points,
+                std::span<Exitance> exitance) const;
+  void replace_mixed(const RgbF& own, const RgbF& mean, Exitance& e) const;
+  Means means_of(std::span<const SurfacePoint> points, std::span<const std::uint32_t> marked,
+                 std::span<const int> drawn, std::span<const SurfacePoint> places,
+                 std::span<const std::span<const RgbF>> entered) const;
 
   const SplitKernel& kernel_;
+  std::uint64_t key_ = 0;  // of the near kernel
   std::vector<bool> is_own_mesh_;
   std::array<Densities, kRings + 1> densities_{};  // ring by ring; 0 beyond h
   std::array<double, kRings + 1> within_{};  // the part of the channels' mean within a ring's inner edge

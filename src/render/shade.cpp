@@ -111,7 +111,7 @@ std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
                                               std::span<const std::uint64_t> keys,
                                               std::span<PixelSample> out, HeldView::Batch* held) const {
   std::vector<Surfaces> surfaces(kinds_.size());
-  const bool holds_points = held != nullptr && input_.view->has_room_for_points;
+  const bool holds_points = held != nullptr && input_.view->has_room;
   if (holds_points && held->points.empty()) held->points = points_of(rays, input_.rays);
   std::size_t hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -173,7 +173,9 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces, std::s
                                        ? interpolated(*group.surface_cache, surfaces, lit, rays)
                                        : summed(group, surfaces, lit, held != nullptr ? &held->packets : nullptr);
   const auto& near_field = near_fields_[std::size_t(&group - input_.groups.data())];
-  if (near_field) near_field->refine(lighting, lit.irradiance, exitance);
+  const bool keeps = held != nullptr && input_.view->keeps_near_field && input_.view->has_room;
+  if (near_field)
+    near_field->refine(lighting, lit.irradiance, exitance, keeps ? &held->near_field : nullptr);
   const bool traced = !lit.irradiance.empty();
   for (std::vector<RgbF>* values : {&lit.exitance, &lit.error, &lit.irradiance})
     values->reserve(exitance.size());

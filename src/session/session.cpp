@@ -270,6 +270,7 @@ HeldView* Session::held_view() {
     }
     view_.set_lights(before);
   }
+  view_.keeps_near_field = mixes_lights_;
   view_key_ = key;
   view_surfaces_key_ = surfaces_key;
   view_light_keys_ = std::move(light_keys);

@@ -122,6 +122,50 @@ TEST(Reuse, LightColour) {
       {"sun", [](Scene& s) { std::get<DirectionalLight>(s.lights[2].source).irradiance = {}; }, 0, true});
 }
 
+// Relative differences of the diffuse light, in ascending order.
+std::vector<double> sorted_errors(const Image& image, const Image& reference) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < reference.pixels.size(); ++i)
+    if (reference.channels[i % reference.channels.size()].starts_with("diffuse."))
+      errors.push_back(std::abs(double(image.pixels[i]) - double(reference.pixels[i])) /
+                       (double(reference.pixels[i]) + 1e-3));
+  std::ranges::sort(errors);
+  return errors;
+}
+
+// Claim: where lights may be mixed, pictures in other colours take the near field beside shadow edges from the
+// first, light by light: they differ from the cold one as two do that have other places there. Source:
+// held_view.h. Tolerance: measured .0105 at most in 999 of 1000, .056 in all. Fails if: one light's part is
+// scaled by another's colour, or a light that was black at first stays so.
+TEST(Reuse, NearFieldInOtherColours) {
+  const struct {
+    const char* name;
+    Rgb before, after;
+  } lines[] = {{"tinted", {3e4, 2e4, 1e4}, {2e4, 2e4, 3e4}},
+               {"lit", {0, 0, 0}, {3e4, 2e4, 1e4}},
+               {"brightened", {1.2e3, 8e2, 4e2}, {3e5, 2e5, 1e5}}};
+  for (const auto& [name, before, after] : lines) {
+    SCOPED_TRACE(name);
+    Scene scene = two_balls();
+    scene.film.resolution = {192, 128};
+    scene.lights.erase(scene.lights.begin() + 1);  // the panel: its picture has noise of its own
+    Shape sheet;
+    sheet.name = "sheet";
+    sheet.source = QuadShape{{-20, 40, 20}, {10, 0, 0}, {0, 0, -30}};
+    scene.shapes.push_back(sheet);
+    auto& intensity = std::get<PointLight>(scene.lights[0].source).intensity;
+    intensity = before;
+    Session session;
+    session.hold_view(true, true);
+    EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+    intensity = after;
+    const std::vector<double> errors = sorted_errors(picture_of(session, scene), cold_picture(scene));
+    EXPECT_LE(errors[errors.size() * 99 / 100], scene.settings.tolerance);
+    EXPECT_LE(errors[errors.size() * 999 / 1000], .015);
+    EXPECT_LE(errors.back(), .1);
+  }
+}
+
 // Claim: with the view held, the third edit of colours in a row is a sum of pictures: no point is looked up;
 // its diffuse light is the cold picture's to within the tolerance, in 99 of 100 pixels, and 2 %, which is
 // what shadow rays beside edges are worth (near_field_sampler.h); what is not light has the same bits; a
@@ -143,18 +187,13 @@ TEST(Reuse, LightColoursAgainAndAgain) {
   const Image mixed = recolour({3e4, 2e4, 0}, {50, 50, 50});
   EXPECT_EQ(session.work().queries, 0u);
   const Image cold = cold_picture(scene);
-  std::vector<double> errors;
   for (std::size_t i = 0; i < cold.pixels.size(); ++i) {
     const std::string& channel = cold.channels[i % cold.channels.size()];
-    if (channel.starts_with("diffuse.")) {
-      errors.push_back(std::abs(double(mixed.pixels[i]) - double(cold.pixels[i])) /
-                       (double(cold.pixels[i]) + 1e-3));
-    } else if (channel == "A" || channel == "Z" || channel.starts_with("N.") ||
-               channel.starts_with("albedo.")) {
+    if (channel == "A" || channel == "Z" || channel.starts_with("N.") || channel.starts_with("albedo.")) {
       EXPECT_EQ(mixed.pixels[i], cold.pixels[i]) << channel;
     }
   }
-  std::ranges::sort(errors);
+  const std::vector<double> errors = sorted_errors(mixed, cold);
   EXPECT_LE(errors[errors.size() * 99 / 100], scene.settings.tolerance);
   EXPECT_LE(errors.back(), .02);
   recolour({3e4, 2e4, 0}, {9, 50, 50});
