@@ -68,7 +68,11 @@ void print_edits(const Scene& base) {
       {"light colour", [](Scene& s) { tint(s.lights.at(0)); }},
       {"light colour, each light ready", [](Scene& s) { tint(s.lights.at(0)); }, 1, 1, true},
       {"light colour, third in a row", [](Scene& s) { tint(s.lights.at(0)); }, 1, 3},
-      {"medium", [](Scene& s) { s.media.at(0).profile = ProfileKind::normalized_diffusion; }},
+      {"medium's scattering",
+       [](Scene& s) {
+         if (auto* medium = std::get_if<PhysicalMedium>(&s.media.at(0).coefficients)) medium->sigma_s_prime *= 1.1;
+       }},
+      {"medium's profile", [](Scene& s) { s.media.at(0).profile = ProfileKind::normalized_diffusion; }},
       {"eta", [](Scene& s) { s.media.at(0).eta += .1; }},
       {"light moved",
        [](Scene& s) {
