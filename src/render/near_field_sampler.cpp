@@ -80,9 +80,10 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   }
   std::vector<std::uint32_t> open = marked;  // whose near fields are to be found
   if (held != nullptr && held->kernel == key_) {
-    const auto known = std::ranges::stable_partition(open, [&](std::uint32_t i) { return !held->is_found[i]; });
-    add_held(*held, lighting, own, known, exitance);
-    open.erase(known.begin(), known.end());
+    const auto known = std::stable_partition(open.begin(), open.end(),
+                                             [&](std::uint32_t i) { return !held->is_found[i]; });
+    add_held(*held, lighting, own, {known, open.end()}, exitance);
+    open.erase(known, open.end());
   } else if (held != nullptr) {
     const std::size_t n = exitance.size();
     *held = {key_, std::vector<bool>(n), std::vector<RgbF>(n * lighting.lights.size())};
