@@ -51,30 +51,24 @@ using Guesses = std::array<RgbF, PacketCut::kMost>;  // of the exitance of a chu
 // Up to kChunk queries that lie near each other.
 class Chunk {
  public:
-  Chunk(const EvaluateInput& input, const LaneKernels& kernels)
+  Chunk(const EvaluateInput& input, const LaneKernels& kernels, std::span<const std::uint32_t> order,
+        const PacketCut& cut)
       : input_(input),
         kernels_(kernels),
+        order_(order),
+        cut_(cut),
         nodes_(input.octree.nodes),
         lane_input_{*input.kernel.lanes, input.octree.nodes.data(), input.octree.samples.data(),
                     input.octree.normals.data(), input.kernel.radius * input.kernel.radius} {
-    constexpr std::size_t kUsual = 256;  // nodes that a list comes to, or less
-    for (PacketLists& lists : lists_)
-      for (auto* list : {&lists.expanded, &lists.far, &lists.near}) list->reserve(kUsual);
-    for (auto* list : {&rest_, &queue_}) list->reserve(4 * kUsual);
-    takers_.reserve(4 * kUsual);
-  }
-
-  void fill(std::span<const std::uint32_t> order, const PacketCut& cut) {
-    chunk_.fill(input_.queries, order, cut);
+    chunk_.fill(input.queries, order, cut);
   }
 
   // A coarse exitance of each packet.
   void guess(Guesses& guesses) const { guess_exitance(input_, lane_input_, kernels_, chunk_, guesses); }
 
-  // order, cut: as filled; dark: exitance below which errors are absolute
-  void evaluate(std::span<const std::uint32_t> order, const PacketCut& cut, const Guesses& guesses,
-                const RgbF& dark, std::span<Exitance> result) {
-    for (const std::uint32_t query : order) __builtin_prefetch(&result[query], 1);  // to be written
+  // dark: exitance below which errors are absolute
+  void evaluate(const Guesses& guesses, const RgbF& dark, std::span<Exitance> result) {
+    for (const std::uint32_t query : order_) __builtin_prefetch(&result[query], 1);  // to be written
     for (std::size_t p = 0; p < chunk_.count; ++p) {
       sums_[p] = {};
       guess_[p] = component_max(guesses[p], dark);
@@ -82,8 +76,8 @@ class Chunk {
     gather(nodes_.data(), std::array{std::uint32_t(0)}, block_);
     const SourceBlock root = block_;
     refine(0, 0, chunk_.count, {&root, 1}, 1, {}, {});
-    for (std::size_t p = 0, first = 0; p < chunk_.count; first += cut.counts[p++])
-      set_exitance(input_, sums_[p], order.subspan(first, cut.counts[p]), result);
+    for (std::size_t p = 0, first = 0; p < chunk_.count; first += cut_.counts[p++])
+      set_exitance(input_, sums_[p], order_.subspan(first, cut_.counts[p]), result);
   }
 
  private:
@@ -248,6 +242,8 @@ class Chunk {
 
   const EvaluateInput& input_;
   const LaneKernels& kernels_;
+  std::span<const std::uint32_t> order_;  // its queries, packet by packet
+  const PacketCut& cut_;
   const std::vector<OctreeNode>& nodes_;
   LaneInput lane_input_;
   ChunkPackets chunk_;
@@ -289,25 +285,23 @@ void evaluate_dual_tree(const EvaluateInput& input, std::span<Exitance> result) 
   if (order.empty()) return;
   std::vector<Guesses> guesses(chunk_count(order.size(), kChunk));
   packets.cuts.resize(guesses.size());
-  std::optional<Chunk> only;  // of few queries, such as a tile's
-  const auto filled = [&](std::optional<Chunk>& room, std::span<const std::uint32_t> own,
-                          const PacketCut& cut) -> Chunk& {
-    room.emplace(input, kernels).fill(own, cut);
-    return *room;
-  };
-  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t number) {
+  std::optional<Chunk> only;  // of few queries, such as a tile's; not filled twice
+  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     const std::span<std::uint32_t> own = std::span(order).subspan(begin, end - begin);
-    PacketCut& cut = packets.cuts[number];
+    PacketCut& cut = packets.cuts[chunk];
     if (!is_cut) cut = sort_into_packets(own, input.queries, input.kernel.radius);
-    std::optional<Chunk> room;
-    filled(guesses.size() == 1 ? only : room, own, cut).guess(guesses[number]);
+    if (guesses.size() == 1)
+      only.emplace(input, kernels, own, cut).guess(guesses[chunk]);
+    else
+      Chunk(input, kernels, own, cut).guess(guesses[chunk]);
   });
   const RgbF dark = darkest(input, packets.cuts, guesses);
-  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t number) {
+  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     const std::span<const std::uint32_t> own = std::span(order).subspan(begin, end - begin);
-    const PacketCut& cut = packets.cuts[number];
-    std::optional<Chunk> room;
-    (only ? *only : filled(room, own, cut)).evaluate(own, cut, guesses[number], dark, result);
+    if (only)
+      only->evaluate(guesses[chunk], dark, result);
+    else
+      Chunk(input, kernels, own, packets.cuts[chunk]).evaluate(guesses[chunk], dark, result);
     advance(input.monitor, end - begin);
   });
   if (!is_cut && input.packets != nullptr) *input.packets = std::move(cut_now);

@@ -142,6 +142,12 @@ PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light
   return transfers;
 }
 
+std::vector<PointTransfers> transfers_at(const PointIrradianceInput& input) {
+  std::vector<PointTransfers> transfers;
+  for (std::size_t l = 0; l < input.lights.size(); ++l) transfers.push_back(transfers_at(input, l));
+  return transfers;
+}
+
 std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers,
                                  const PointIrradianceInput& input) {
   std::vector<RgbF> irradiance(input.points.size());
@@ -157,9 +163,7 @@ std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers,
 }
 
 std::vector<RgbF> irradiance_at(const PointIrradianceInput& input) {
-  std::vector<PointTransfers> transfers;
-  for (std::size_t l = 0; l < input.lights.size(); ++l) transfers.push_back(transfers_at(input, l));
-  return combine_lights(transfers, input);
+  return combine_lights(transfers_at(input), input);
 }
 
 }  // namespace opaline

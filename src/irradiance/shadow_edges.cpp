@@ -121,9 +121,9 @@ class EdgeFinder {
   std::span<const LightTransfer> transfers_;
   float reach_;
   NeighbourGrid grid_;
-  std::vector<Span> spans_;    // cells x lights
+  std::vector<Span> spans_;          // cells x lights
   std::vector<bool> has_edge_near_;  // one a cell; true at times where there is none
-  std::vector<float> floors_;  // one a light
+  std::vector<float> floors_;        // one a light
 };
 
 // Mean weight of one light over the points of each marked sample's cell. An area light's own samples are
@@ -134,7 +134,8 @@ void average(const IrradianceInput& input, std::uint32_t light, std::span<const 
   const std::uint32_t most =
       delta ? CellPoints::kMost : std::min(CellPoints::kMost, 2 * std::uint32_t(input.light_samples));
   const int each = delta ? 1 : 2 * input.light_samples / int(most);
-  ShadowBatch batch(input.rays, input.lights[light], input.eta, each, light_seed(input.seed, input.lights[light]));
+  ShadowBatch batch(input.rays, input.lights[light], input.eta, each,
+                    light_seed(input.seed, input.lights[light]));
   const std::size_t batch_size = batch_points(int(most) * each);
   for (std::size_t begin = 0; begin < marks.size(); begin += batch_size) {
     const std::span<const Mark> part = marks.subspan(begin, std::min(batch_size, marks.size() - begin));

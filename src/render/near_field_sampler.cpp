@@ -80,8 +80,8 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   }
   std::vector<std::uint32_t> open = marked;  // whose near fields are to be found
   if (held != nullptr && held->kernel == key_) {
-    const auto known = std::stable_partition(open.begin(), open.end(),
-                                             [&](std::uint32_t i) { return !held->is_found[i]; });
+    const auto known =
+        std::stable_partition(open.begin(), open.end(), [&](std::uint32_t i) { return !held->is_found[i]; });
     add_held(*held, lighting, own, {known, open.end()}, exitance);
     open.erase(known, open.end());
   } else if (held != nullptr) {
@@ -96,8 +96,9 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
     for (std::size_t m = first; m < ends[set]; ++m) {
       // Of what lies beyond an edge in a part p of the near field, about p is at stake, and the deviation of
       // a place is as the root of p.
-      const float wanted = std::sqrt(stakes[open[m]] / kUsual) *
-                           places_of(open[m], std::span(open).subspan(first, ends[set] - first), lighting.points);
+      const float wanted =
+          std::sqrt(stakes[open[m]] / kUsual) *
+          places_of(open[m], std::span(open).subspan(first, ends[set] - first), lighting.points);
       const double rounding = unit_double(hash_bits(3002, lighting.keys[open[m]]));
       drawn.push_back(std::max(1, int(wanted + rounding)));
       draw(lighting, open[m], drawn[m], places);
@@ -111,11 +112,11 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   around.light_samples = std::max(1, lighting.light_samples / kFewerRays);
   around.variance = {};
   // All lights together, and, to be held, each in white.
-  std::vector<PointTransfers> transfers;
-  for (std::size_t l = 0; l < lighting.lights.size(); ++l) transfers.push_back(transfers_at(around, l));
+  const std::vector<PointTransfers> transfers = transfers_at(around);
   std::vector<std::vector<RgbF>> entered{combine_lights(transfers, around)};
   if (held != nullptr)
-    for (const PointTransfers& light : transfers) entered.emplace_back(light.weights.begin(), light.weights.end());
+    for (const PointTransfers& light : transfers)
+      entered.emplace_back(light.weights.begin(), light.weights.end());
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
     const auto [begin, end] = std::equal_range(places.sets.begin(), places.sets.end(), std::uint32_t(set));
     const std::size_t skip = std::size_t(begin - places.sets.begin()), count = std::size_t(end - begin);
@@ -308,7 +309,8 @@ NearFieldSampler::Means NearFieldSampler::means_of(std::span<const SurfacePoint>
       for (std::size_t m = 0; m < n; ++m) all_sums[l][m] += here[m] * irradiance;
     }
   }
-  Means means{std::vector(entered.size(), std::vector<RgbF>(n, RgbF(std::numeric_limits<float>::quiet_NaN())))};
+  Means means{
+      std::vector(entered.size(), std::vector<RgbF>(n, RgbF(std::numeric_limits<float>::quiet_NaN())))};
   for (std::size_t l = 0; l < entered.size(); ++l)
     for (std::size_t m = 0; m < n; ++m)
       for (std::size_t c = 0; c < 3; ++c)

@@ -99,7 +99,8 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
     if (surfaces[k].points.empty()) continue;
     write(surfaces[k],
-          light(kinds_[k], surfaces[k], rays, pass, held != nullptr ? &held->surfaces[k] : nullptr), rays, out);
+          light(kinds_[k], surfaces[k], rays, pass, held != nullptr ? &held->surfaces[k] : nullptr), rays,
+          out);
     if (kinds_[k].eta > 0 && has_visible_lights()) add_mirrored_lights(surfaces[k], rays, out);
     if (kinds_[k].group != nullptr) queries += surfaces[k].points.size();
   }
@@ -108,8 +109,8 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
 
 // Sorts the hits by kind; rays that meet a light or nothing are done.
 std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
-                                              std::span<const std::uint64_t> keys,
-                                              std::span<PixelSample> out, HeldView::Batch* held) const {
+                                              std::span<const std::uint64_t> keys, std::span<PixelSample> out,
+                                              HeldView::Batch* held) const {
   std::vector<Surfaces> surfaces(kinds_.size());
   const bool holds_points = held != nullptr && input_.view->has_room;
   if (holds_points && held->points.empty()) held->points = points_of(rays, input_.rays);
@@ -169,13 +170,12 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces, std::s
   const TranslucentGroup& group = *kind.group;
   const PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
   if (needs_irradiance(group)) lit.irradiance = irradiance(lighting, held);
-  std::vector<Exitance> exitance = group.surface_cache
-                                       ? interpolated(*group.surface_cache, surfaces, lit, rays)
-                                       : summed(group, surfaces, lit, held != nullptr ? &held->packets : nullptr);
+  std::vector<Exitance> exitance =
+      group.surface_cache ? interpolated(*group.surface_cache, surfaces, lit, rays)
+                          : summed(group, surfaces, lit, held != nullptr ? &held->packets : nullptr);
   const auto& near_field = near_fields_[std::size_t(&group - input_.groups.data())];
   const bool keeps = held != nullptr && input_.view->keeps_near_field && input_.view->has_room;
-  if (near_field)
-    near_field->refine(lighting, lit.irradiance, exitance, keeps ? &held->near_field : nullptr);
+  if (near_field) near_field->refine(lighting, lit.irradiance, exitance, keeps ? &held->near_field : nullptr);
   const bool traced = !lit.irradiance.empty();
   for (std::vector<RgbF>* values : {&lit.exitance, &lit.error, &lit.irradiance})
     values->reserve(exitance.size());

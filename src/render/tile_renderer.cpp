@@ -85,7 +85,8 @@ TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass,
   for (std::uint64_t s = 0; s < samples; ++s) {
     HeldView::Batch* const batch = held != nullptr ? &(*held)[s] : nullptr;
     advance(input_.monitor, 1);
-    if (batch != nullptr && batch->is_traced && batch->hits.empty() && !shader_.has_visible_lights()) continue;
+    if (batch != nullptr && batch->is_traced && batch->hits.empty() && !shader_.has_visible_lights())
+      continue;
     std::size_t i = 0;
     for (int y = tile.y0; y < tile.y1; ++y)
       for (int x = tile.x0; x < tile.x1; ++x, ++i) {

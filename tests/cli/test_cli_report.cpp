@@ -211,7 +211,6 @@ TEST(LongCliReport, SpoiltPartShows) {
   }
 }
 
-#ifndef __SANITIZE_ADDRESS__  // whose checks cost each stage another factor
 // Claim: translucency stays cheap beside plain paint: of a marble ball of 20k samples at 192 x 192 pixels the
 // shading costs at most 5 times lambert's by the dual tree and 2.5 times by the surface cache, the whole job
 // at most 2.5 times. Source: measured with this test's command, three times: 2.5 to 2.7, 1.2 to 1.3, 1.53
@@ -229,9 +228,10 @@ TEST(CliReport, RatiosStaySmall) {
   ASSERT_EQ(cell(table, 3, "evaluator"), "surface_cache");
   EXPECT_LT(std::stod(cell(table, 1, "shading_ratio_min")), 5);
   EXPECT_LT(std::stod(cell(table, 3, "shading_ratio_min")), 2.5);
+#ifndef __SANITIZE_ADDRESS__  // whose checks make sampling dearer than loading: 2.6
   EXPECT_LT(std::stod(cell(table, 1, "job_ratio_min")), 2.5);
-}
 #endif
+}
 
 }  // namespace
 }  // namespace opaline

@@ -97,7 +97,8 @@ TEST(NearFieldPlaces, AreFewerWhereLessIsAtStake) {
 /// whose view and near field are held.
 double rays_when_dimmed(double fill, double after) {
   Scene scene = single_shape(TorusShape{{}, 20, 8}, marble(), 8000);
-  scene.lights = {point_light({30, 60, 40}, {9000, 8000, 7000}), point_light({0, 50, 90}, {fill, fill, fill})};
+  scene.lights = {point_light({30, 60, 40}, {9000, 8000, 7000}),
+                  point_light({0, 50, 90}, {fill, fill, fill})};
   scene.camera.position = {0, 50, 90};
   scene.film.resolution = {128, 128};
   scene.settings.evaluator = EvaluatorKind::dual_tree;
@@ -113,7 +114,7 @@ double rays_when_dimmed(double fill, double after) {
 }
 
 // Claim: in other colours a picture traces rays to places of points that had none before, and no other ray.
-// Source: held_view.h. Tolerance: measured 9598 of 21 thousand. Fails if: what was held is not used, or is
+// Source: held_view.h. Tolerance: measured 9598. Fails if: what was held is not used, or is
 // used where nothing was found.
 TEST(NearFieldPlaces, AreHeldForOtherColours) {
   EXPECT_EQ(rays_when_dimmed(1e4, 1), 0);

@@ -64,6 +64,8 @@ struct PointTransfers {
 
 /// Shadow rays from each point to one of input.lights; variances where input.variance is not empty.
 PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light);
+/// To each of them.
+std::vector<PointTransfers> transfers_at(const PointIrradianceInput& input);
 
 /// E per point, W/mm^2: the sum over lights of emission x weight; adds to input.variance if it is not empty.
 /// in    transfers: one a light
