@@ -3,6 +3,7 @@
 
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 #include "opaline/core/error.h"
 
@@ -21,10 +22,13 @@ const char* name_of(ErrorKind kind) {
   return "run_failed";
 }
 
-/// A size that no memory holds is reported by containers as length_error.
+/// A size that no memory holds is reported by containers as length_error, a thread without room for its stack
+/// as EAGAIN.
 bool is_out_of_memory(const std::exception& failure) {
+  const auto* system = dynamic_cast<const std::system_error*>(&failure);
   return dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ||
-         dynamic_cast<const std::length_error*>(&failure) != nullptr;
+         dynamic_cast<const std::length_error*>(&failure) != nullptr ||
+         (system != nullptr && system->code() == std::errc::resource_unavailable_try_again);
 }
 
 }  // namespace

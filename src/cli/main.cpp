@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "cli/commands.h"
+#include "cli/process_start.h"
 
 namespace {
 
@@ -34,6 +35,7 @@ opaline::Log log_of(const opaline::Command& command) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  opaline::prepare_process();
   opaline::Log log;
   try {
     const opaline::Command command = opaline::parse_arguments(argc, argv);

@@ -33,12 +33,17 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : ".";
 }
 
-/// A link stays a link: its target is replaced.
+/// A link stays a link: its target is replaced, or made where there is none yet.
 std::string resolve_link(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as the kernel's own limit
   std::error_code failure;
-  if (!fs::is_symlink(path, failure)) return path;
-  const fs::path target = fs::weakly_canonical(path, failure);
-  if (failure) throw run_failed(path, "cannot write: " + failure.message());
+  fs::path target = path;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(target, failure)); ++links) {
+    if (links == kMostLinks) throw run_failed(path, std::string("cannot write: ") + std::strerror(ELOOP));
+    const fs::path next = fs::read_symlink(target, failure);
+    if (failure) throw run_failed(path, "cannot write: " + failure.message());
+    target = folder_of(target) / next;  // which is `next` alone where that is absolute
+  }
   return target.string();
 }
 
@@ -53,7 +58,8 @@ void require_replaceable(const std::string& path) {
   if (fs::is_directory(status)) throw run_failed(path, "cannot write: it is a folder");
   if (!fs::is_regular_file(status)) throw run_failed(path, "cannot write: it is not a regular file");
   // Another process may have removed it since.
-  if (::access(path.c_str(), W_OK) != 0 && errno != ENOENT) throw run_failed(path, "cannot write: " + reason());
+  if (::access(path.c_str(), W_OK) != 0 && errno != ENOENT)
+    throw run_failed(path, "cannot write: " + reason());
 }
 
 /// Creates an empty file beside `path` under a name that nobody had, also where hosts share the folder.

@@ -36,6 +36,8 @@ struct RayScene::Handles {
   std::atomic<std::ptrdiff_t> bytes{0};
   RayCounter intersected, occluded;
 
+  /// Throws as check_device.
+  void check();
   ~Handles() {
     if (scene != nullptr) rtcReleaseScene(scene);
     if (device != nullptr) rtcReleaseDevice(device);

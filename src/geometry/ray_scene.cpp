@@ -70,15 +70,19 @@ RTCIntersectContext coherent_context() {
 
 }  // namespace
 
+// Where memory or threads run out, Embree reports some failures as unknown ones: its allocators and the
+// system's calls differ in what they throw.
 void check_device(RTCDevice device) {
   const RTCError error = rtcGetDeviceError(device);
-  if (error == RTC_ERROR_OUT_OF_MEMORY)
+  if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN)
     throw run_failed({}, "out of memory while building the ray structure");
+  if (error == RTC_ERROR_UNSUPPORTED_CPU) throw run_failed({}, "Embree does not know this processor");
   require(error == RTC_ERROR_NONE, "Embree reports an error");
 }
 
 RayScene::RayScene(const World& world, RayBuild build) : handles_(std::make_unique<Handles>()) {
   handles_->device = rtcNewDevice(nullptr);
+  if (handles_->device == nullptr) check_device(nullptr);
   require(handles_->device != nullptr, "Embree has no device");
   rtcSetDeviceMemoryMonitorFunction(handles_->device, count_memory, &handles_->bytes);
   handles_->scene = rtcNewScene(handles_->device);
@@ -86,7 +90,18 @@ RayScene::RayScene(const World& world, RayBuild build) : handles_(std::make_uniq
   rtcSetSceneBuildQuality(handles_->scene, quality_of(build));
   for (const Mesh& mesh : world.meshes) attach(mesh, build);
   rtcCommitScene(handles_->scene);
-  check_device(handles_->device);
+  handles_->check();
+}
+
+// Embree ends the process when it releases a device whose threads could not all be started: such a one is
+// left.
+void RayScene::Handles::check() {
+  try {
+    check_device(device);
+  } catch (const Error&) {
+    scene = nullptr, device = nullptr;
+    throw;
+  }
 }
 
 void RayScene::attach(const Mesh& mesh, RayBuild build) {
@@ -100,7 +115,7 @@ void RayScene::attach(const Mesh& mesh, RayBuild build) {
   auto* indices = static_cast<std::array<std::uint32_t, 3>*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               sizeof(std::array<std::uint32_t, 3>), mesh.triangles.size()));
-  check_device(handles_->device);
+  handles_->check();
   std::ranges::copy(mesh.triangles, indices);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(handles_->scene, geometry, unsigned(meshes_.size()));

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -188,6 +189,8 @@ WriteReport write_exr(const std::string& path, const Image& image, bool half) {
       output.setFrameBuffer(strip.frame_buffer());
       output.writePixels(count);
     }
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     complaint = error.what();
   }

@@ -32,6 +32,7 @@ struct Outcome {
 /// Bounds on a child; none by default.
 struct Limits {
   std::optional<rlim_t> file_size, address_space;  ///< bytes
+  std::vector<int> closed = {};                    ///< descriptors that it is started without
 };
 
 class Child {
@@ -49,9 +50,10 @@ class Child {
     if (pid_ > 0) return;
     limit(RLIMIT_FSIZE, limits.file_size);
     limit(RLIMIT_AS, limits.address_space);
-    std::signal(SIGXFSZ, SIG_IGN);  // EFBIG in its place, as a full disk would give ENOSPC
+    std::signal(SIGXFSZ, SIG_DFL);
     ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
     ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+    for (const int descriptor : limits.closed) ::close(descriptor);
     if (::chdir(folder.c_str()) == 0) ::execv(argv[0], argv.data());
     ::_exit(127);
   }

@@ -142,5 +142,23 @@ TEST(AtomicFile, LinkIsFollowed) {
   EXPECT_EQ(bytes_of(elsewhere.file("target")), "new");
 }
 
+// Claim: links to what is not there yet, one behind the other and relative to their own folders, are
+// followed: the file is made at their end and they stay links; one that leads back to itself is refused.
+// Source: what any other program's open() does. Fails if: a link whose end does not exist is renamed over.
+TEST(AtomicFile, DanglingLinkIsFollowed) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder.file("below"));
+  std::filesystem::create_symlink("below/second", folder.file("first"));
+  std::filesystem::create_symlink("../file", folder.file("below/second"));
+  std::filesystem::create_symlink("ring", folder.file("ring"));
+  write_file(folder.file("first"), "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("first")));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("below/second")));
+  EXPECT_EQ(bytes_of(folder.file("file")), "new");
+  const std::string failure = failure_of([&] { write_file(folder.file("ring"), "new"); });
+  EXPECT_TRUE(contains(failure, "symbolic links")) << failure;
+  EXPECT_EQ(folder.entries(), 4u);
+}
+
 }  // namespace
 }  // namespace opaline

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a process is given by whoever starts it, made safe before anything else happens.
+#pragma once
+
+namespace opaline {
+
+/// Call first in main. Gives descriptors 0 to 2 that came closed to /dev/null, so that no output file is
+/// opened as one of them and written to by messages; writing to them still fails, as it does to a closed one.
+/// A write beyond the file size limit then fails, too, in place of ending the process with its temporary file
+/// left behind.
+void prepare_process();
+
+}  // namespace opaline
