@@ -4,28 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "opaline/core/random.h"
 
 namespace opaline {
 namespace {
-
-// A bisector between a sample and a neighbour: a point at d from the sample is the neighbour's if d . away >
-// half2.
-struct Bisector {
-  Vec3f away;
-  float half2;
-};
-
-std::vector<Bisector> bisectors(const Vec3f& p, std::span<const SurfaceSample> samples,
-                                std::span<const std::uint32_t> neighbours) {
-  std::vector<Bisector> all;
-  for (const std::uint32_t j : neighbours) {
-    const Vec3f away = samples[j].position - p;
-    all.push_back({away, dot(away, away) / 2});
-  }
-  return all;
-}
 
 // A sample's triangle, and places on it from places in its plane.
 class OwnTriangle {
@@ -72,60 +56,89 @@ CellPoints::CellPoints(const RayScene& rays, std::span<const SurfaceSample> samp
                        const std::vector<bool>& surface, float spacing)
     : rays_(rays), samples_(samples), surface_(surface), radius_(0.85f * spacing) {}
 
-CellPoints::Range CellPoints::add(std::uint32_t index, std::span<const std::uint32_t> neighbours) {
-  // About one candidate in three lies in the cell; a sliver's cell makes do with fewer points.
+std::uint32_t CellPoints::add(std::uint32_t index, std::span<const std::uint32_t> neighbours) {
+  // About one candidate in three lies in the cell; a sliver's cell makes do with fewer lines.
   constexpr std::uint64_t kCandidates = 8 * kMost;
   const SurfaceSample& s = samples_[index];
   const Vec3f normal = rays_.surface_point(s.mesh, s.triangle, s.u, s.v).geometric;
   Vec3f x, y;
   tangent_frame(normal, x, y);
-  const std::vector<Bisector> sides = bisectors(s.position, samples_, neighbours);
   const OwnTriangle own(rays_, s);
+  const std::size_t first_bisector = bisectors_.size();
+  for (const std::uint32_t j : neighbours) {
+    const Vec3f away = samples_[j].position - s.position;
+    bisectors_.push_back({away, dot(away, away) / 2});
+  }
+  cells_.push_back({s.position, normal, s.mesh, s.triangle, first_bisector, bisectors_.size()});
   const std::array<double, 2> shift = {unit_double(hash_bits(0, 2 * std::uint64_t(index))),
                                        unit_double(hash_bits(0, 2 * std::uint64_t(index) + 1))};
-  Range range{std::uint32_t(traced_.size()), 0};
-  for (std::uint64_t k = 0; k < kCandidates && range.count < kMost; ++k) {
+  const auto number = std::uint32_t(cells_.size() - 1);
+  std::uint32_t count = 0;
+  for (std::uint64_t k = 0; k < kCandidates && count < kMost; ++k) {
     const auto [u, v] = r2_point(k, shift);
     const Vec3f d = x * (radius_ * float(2 * u - 1)) + y * (radius_ * float(2 * v - 1));
-    const float distance2 = dot(d, d);
-    if (distance2 > radius_ * radius_) continue;
-    if (std::ranges::any_of(sides, [&](const Bisector& b) { return dot(d, b.away) > b.half2; })) continue;
-    const Hit on_own = own.at(d);
-    // No ray finds the own triangle more surely; Embree leaves rays that end before they begin alone.
-    const float distance = std::sqrt(distance2), end = on_own.mesh == Hit::kMiss ? 2 * distance : -1;
-    traced_.push_back({Ray(s.position + d + normal * distance, -normal, end), on_own});
-    lengths_.push_back(end);
-    ++range.count;
+    const float height2 = radius_ * radius_ - dot(d, d);
+    if (!(height2 > 0) || !is_within(cells_.back(), d)) continue;
+    const float height = std::sqrt(height2);
+    lines_.push_back({number, count++, Ray(s.position + d + normal * height, -normal, 2 * height)});
+    // No ray finds the sample's triangle as surely: something that stands on it lies in the same plane.
+    const Hit hit = own.at(d);
+    if (hit.mesh != Hit::kMiss)
+      add_crossing(lines_.back(), rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v));
   }
-  return range;
+  return number;
+}
+
+bool CellPoints::is_within(const Cell& cell, const Vec3f& from_sample) const {
+  for (std::size_t b = cell.first_bisector; b < cell.end_bisector; ++b)
+    if (dot(from_sample, bisectors_[b].away) > bisectors_[b].half2) return false;
+  return true;
 }
 
 void CellPoints::project() {
-  rays_.intersect(traced_);
-  look_behind_other_meshes();
-  points_.resize(traced_.size());
-  found_.resize(traced_.size());
-  for (std::size_t i = 0; i < traced_.size(); ++i) {
-    const auto& [ray, hit] = traced_[i];
-    if (!is_own_mesh(hit.mesh)) continue;
-    points_[i] = rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
-    found_[i] = dot(points_[i].geometric, ray.direction) < 0;
+  constexpr int kSheets = 16;  // that one line is followed through
+  std::vector<TracedRay> traced;
+  for (const Line& line : lines_) traced.push_back({line.ray, {}});
+  std::vector<std::uint32_t> open(lines_.size());
+  std::iota(open.begin(), open.end(), 0u);
+  for (int sheet = 0; sheet < kSheets && !open.empty(); ++sheet) {
+    rays_.intersect(traced);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < traced.size(); ++i) {
+      const auto& [ray, hit] = traced[i];
+      if (hit.mesh == Hit::kMiss) continue;
+      const Line& line = lines_[open[i]];
+      const SurfacePoint point = rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
+      const Cell& cell = cells_[line.cell];
+      const bool is_known = hit.mesh == cell.mesh && hit.triangle == cell.triangle;
+      if (is_own_mesh(hit.mesh) && !is_known) add_crossing(line, point);
+      TracedRay next{line.ray, {}};
+      next.ray.near = ray.far + rays_.offset(point);
+      open[kept] = open[i];
+      traced[kept++] = next;
+    }
+    open.resize(kept);
+    traced.resize(kept);
   }
+  sort_by_cell();
 }
 
-// Something that stands on the surface hides it from above: rays that met it go on once more.
-void CellPoints::look_behind_other_meshes() {
-  std::vector<std::size_t> again;
-  std::vector<TracedRay> rays;
-  for (std::size_t i = 0; i < traced_.size(); ++i) {
-    const auto& [ray, hit] = traced_[i];
-    if (hit.mesh == Hit::kMiss || is_own_mesh(hit.mesh)) continue;
-    again.push_back(i);
-    rays.push_back({Ray(ray.origin, ray.direction, lengths_[i]), {}});
-    rays.back().ray.near = ray.far * 1.0001f;
-  }
-  rays_.intersect(rays);
-  for (std::size_t i = 0; i < again.size(); ++i) traced_[again[i]] = rays[i];
+void CellPoints::add_crossing(const Line& line, const SurfacePoint& point) {
+  constexpr float kSteepest = 0.1f;
+  const Cell& cell = cells_[line.cell];
+  const float cosine = dot(point.geometric, cell.normal);
+  if (!(cosine > 0) || !is_within(cell, point.position - cell.sample)) return;
+  // The steeper the surface stands to the lines, the fewer of them meet its area.
+  crossings_.push_back({line.cell, {point, 1 / std::max(cosine, kSteepest), line.number}});
+}
+
+void CellPoints::sort_by_cell() {
+  first_.assign(cells_.size() + 1, 0);
+  for (const auto& [cell, point] : crossings_) ++first_[cell + 1];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  std::ranges::stable_sort(crossings_, {}, [](const auto& c) { return std::pair(c.first, c.second.line); });
+  points_.clear();
+  for (const auto& [cell, point] : crossings_) points_.push_back(point);
 }
 
 }  // namespace opaline

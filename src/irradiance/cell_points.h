@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "opaline/geometry/world.h"
@@ -15,41 +16,70 @@ namespace opaline {
 std::vector<bool> meshes_of(std::span<const SurfaceSample> samples);
 
 /// Points of the cells of a batch of samples, found together: add the samples, project, read the points.
+/// A cell is all of the surface that is nearer to its sample than to any other on surfaces that do not face
+/// away, as sampling measures its area. Where two sheets lie closer together than the samples, it has parts
+/// of both.
 class CellPoints {
  public:
-  static constexpr std::uint32_t kMost = 24;  ///< points of one cell
-  struct Range {
-    std::uint32_t first = 0, count = 0;  ///< of point()
+  static constexpr std::uint32_t kMost = 24;  ///< lines through one cell
+
+  /// weight: the area that the point stands for, relative to the cell's other points.
+  struct Point {
+    SurfacePoint at;
+    float weight = 0;
+    std::uint32_t line = 0;  ///< of its cell, below kMost
   };
 
   /// surface: whether a mesh of the world has samples; spacing: sqrt(area / samples), mm.
   CellPoints(const RayScene& rays, std::span<const SurfaceSample> samples, const std::vector<bool>& surface,
              float spacing);
 
-  /// Chooses points around a sample that are nearer to it than to any of the neighbours, low-discrepancy ones
-  /// in its tangent plane; the index, and no seed, chooses their rotation.
-  Range add(std::uint32_t index, std::span<const std::uint32_t> neighbours);
+  /// Chooses lines through the cell of a sample, along its geometric normal, at low-discrepancy places of its
+  /// tangent plane nearer to it than to any of the neighbours; the index, and no seed, chooses their
+  /// rotation. Returns the cell's number in the batch.
+  std::uint32_t add(std::uint32_t index, std::span<const std::uint32_t> neighbours);
 
-  /// Brings all points to the surface along their samples' geometric normals. Some find none: the surface
-  /// ends there, turns away by more than a right angle, or is farther off the tangent plane than the point
-  /// from its sample.
+  /// Finds where the lines of all cells cross the outside of the surface within their cell. Some cross
+  /// nothing: the surface ends there or turns away by more than a right angle. Others cross several sheets.
   void project();
 
-  /// Null where the surface was not found.
-  const SurfacePoint* point(std::uint32_t i) const { return found_[i] ? &points_[i] : nullptr; }
+  /// Line by line.
+  std::span<const Point> points(std::uint32_t cell) const {
+    return std::span(points_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+  }
 
  private:
+  // A bisector between a sample and a neighbour: a point at d from the sample is the neighbour's if d . away
+  // > half2.
+  struct Bisector {
+    Vec3f away;
+    float half2;
+  };
+  struct Cell {
+    Vec3f sample, normal;
+    std::uint32_t mesh, triangle;  // of the sample
+    std::size_t first_bisector, end_bisector;
+  };
+  struct Line {
+    std::uint32_t cell, number;  // among the cell's
+    Ray ray;
+  };
+
   bool is_own_mesh(std::uint32_t mesh) const { return mesh < surface_.size() && surface_[mesh]; }
-  void look_behind_other_meshes();
+  bool is_within(const Cell& cell, const Vec3f& from_sample) const;
+  void add_crossing(const Line& line, const SurfacePoint& point);
+  void sort_by_cell();
 
   const RayScene& rays_;
   std::span<const SurfaceSample> samples_;
   const std::vector<bool>& surface_;
   float radius_;  // no cell reaches farther
-  std::vector<TracedRay> traced_;
-  std::vector<float> lengths_;  // of the rays before they were traced
-  std::vector<SurfacePoint> points_;
-  std::vector<bool> found_;
+  std::vector<Cell> cells_;
+  std::vector<Bisector> bisectors_;
+  std::vector<Line> lines_;
+  std::vector<std::pair<std::uint32_t, Point>> crossings_;  // with their cells, as they were found
+  std::vector<Point> points_;
+  std::vector<std::size_t> first_;  // into points_, of each cell and behind the last one
 };
 
 }  // namespace opaline

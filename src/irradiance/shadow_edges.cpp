@@ -43,10 +43,9 @@ struct Refined {
   float weight;
 };
 
-// A sample beside an edge in one light, and the points of its cell.
+// A sample beside an edge in one light, and the number of its cell.
 struct Mark {
-  std::uint32_t sample;
-  CellPoints::Range points;
+  std::uint32_t sample, cell;
 };
 
 class EdgeFinder {
@@ -140,17 +139,19 @@ void average(const IrradianceInput& input, std::uint32_t light, std::span<const 
   for (std::size_t begin = 0; begin < marks.size(); begin += batch_size) {
     const std::span<const Mark> part = marks.subspan(begin, std::min(batch_size, marks.size() - begin));
     std::vector<std::uint32_t> owners;  // of the points in the batch
-    std::vector<double> sums(part.size()), counts(part.size());
+    std::vector<float> areas;           // of the same
+    std::vector<double> sums(part.size()), whole(part.size());
     for (std::uint32_t m = 0; m < part.size(); ++m)
-      for (std::uint32_t k = 0; k < std::min(part[m].points.count, most); ++k)
-        if (const SurfacePoint* point = points.point(part[m].points.first + k); point != nullptr) {
-          batch.add(*point, part[m].sample, std::uint64_t(k) * std::uint64_t(each));
-          owners.push_back(m);
-          counts[m] += 1;
-        }
-    batch.trace([&](std::size_t p, int, float e, float) { sums[owners[p]] += double(e); });
+      for (const CellPoints::Point& point : points.points(part[m].cell)) {
+        if (point.line >= most) break;
+        batch.add(point.at, part[m].sample, std::uint64_t(point.line) * std::uint64_t(each));
+        owners.push_back(m);
+        areas.push_back(point.weight);
+        whole[m] += double(point.weight);
+      }
+    batch.trace([&](std::size_t p, int, float e, float) { sums[owners[p]] += double(areas[p]) * double(e); });
     for (std::uint32_t m = 0; m < part.size(); ++m)
-      if (counts[m] > 0) refined.push_back({light, part[m].sample, float(sums[m] / counts[m])});
+      if (whole[m] > 0) refined.push_back({light, part[m].sample, float(sums[m] / whole[m])});
   }
 }
 
@@ -172,8 +173,8 @@ void refine_shadow_edges(const IrradianceInput& input, std::span<const std::vect
     for (std::size_t c = begin; c < end; ++c)
       finder.for_edges(c, [&](std::uint32_t i, std::span<const std::uint32_t> neighbours,
                               std::span<const std::uint32_t> lights) {
-        const CellPoints::Range range = points.add(i, neighbours);
-        for (const std::uint32_t l : lights) marks[l].push_back({i, range});
+        const std::uint32_t cell = points.add(i, neighbours);
+        for (const std::uint32_t l : lights) marks[l].push_back({i, cell});
       });
     points.project();
     for (std::uint32_t l = 0; l < transfers.size(); ++l) average(input, l, marks[l], points, refined[chunk]);
