@@ -9,7 +9,7 @@ namespace opaline {
 namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
-constexpr std::uint64_t kSamplesVersion = 1, kCarriedVersion = 2, kTransferVersion = 2, kOctreeVersion = 1,
+constexpr std::uint64_t kSamplesVersion = 2, kCarriedVersion = 3, kTransferVersion = 2, kOctreeVersion = 1,
                         kExitanceVersion = 5;
 
 const char* widest_instructions() {

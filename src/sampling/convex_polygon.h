@@ -4,6 +4,7 @@
 
 #include <emmintrin.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -14,16 +15,16 @@ struct alignas(16) Point2 {
   double x = 0, y = 0;
 };
 
-/// Starts as a triangle; each clip adds at most one corner.
+/// Starts with three or four corners; each clip adds at most one corner.
 class ConvexPolygon {
  public:
   static constexpr std::size_t kMostClips = 60;
 
-  void assign(const Point2& a, const Point2& b, const Point2& c) {
-    corners_[now_][0] = a;
-    corners_[now_][1] = b;
-    corners_[now_][2] = c;
-    size_ = 3;
+  template <std::size_t kCorners>
+  void assign(const std::array<Point2, kCorners>& outline) {
+    static_assert(kCorners <= kBlock);
+    std::ranges::copy(outline, corners_[now_].begin());
+    size_ = kCorners;
   }
 
   /// Keeps the part where nx x + ny y <= limit.

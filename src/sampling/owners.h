@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "sampling/flat_piece.h"
+
 namespace opaline {
 
 /// A sample that may own part of a piece.
@@ -21,35 +23,45 @@ struct Owner {
   __m128 squared = _mm_set1_ps(INFINITY);  // distances from the piece's corners
 
   Owner() = default;
-  Owner(std::uint32_t sample_, __m128 squared_) : sample(sample_), squared(squared_) {
-    alignas(16) std::array<float, 4> s;
-    _mm_store_ps(s.data(), squared);
-    sum = s[0] + s[1] + s[2];
-  }
+  Owner(std::uint32_t sample_, float sum_, __m128 squared_) : sample(sample_), sum(sum_), squared(squared_) {}
   bool is_none() const { return sample == kNone; }
 };
 
+template <std::size_t kCorners>
+Owner make_owner(const FlatPiece<kCorners>& piece, std::uint32_t sample, const Vec3f& position) {
+  const __m128 squared = piece.squared_distances(position);
+  alignas(16) std::array<float, 4> s;
+  _mm_store_ps(s.data(), squared);
+  float sum = s[0] + s[1] + s[2];
+  if constexpr (kCorners == 4) sum += s[3];
+  return {sample, sum, squared};
+}
+
 /// Nearer to all corners, and with that to all that lies between them.
-inline bool dominates(__m128 a, __m128 b) {
-  return (_mm_movemask_ps(_mm_cmplt_ps(a, b)) & 7) == 7;
+template <std::size_t kCorners>
+bool dominates(__m128 a, __m128 b) {
+  constexpr int all = (1 << kCorners) - 1;
+  return (_mm_movemask_ps(_mm_cmplt_ps(a, b)) & all) == all;
 }
 
 /// Removes those owners, from `first` on, that another one dominates; it is sought among the nearest to each
 /// corner and to the centre.
-inline void remove_dominated(std::vector<Owner>& owners, std::size_t first) {
+template <std::size_t kCorners>
+void remove_dominated(std::vector<Owner>& owners, std::size_t first) {
   __m128 least = owners[first].squared;
-  std::array<std::size_t, 4> best;
+  std::array<std::size_t, kCorners + 1> best;
   best.fill(first);
   for (std::size_t i = first + 1; i < owners.size(); ++i) {
     const auto less = unsigned(_mm_movemask_ps(_mm_cmplt_ps(owners[i].squared, least)));
     least = _mm_min_ps(least, owners[i].squared);
-    for (std::size_t k = 0; k < 3; ++k) best[k] = less >> k & 1 ? i : best[k];
-    best[3] = owners[i].sum < owners[best[3]].sum ? i : best[3];
+    for (std::size_t k = 0; k < kCorners; ++k) best[k] = less >> k & 1 ? i : best[k];
+    best[kCorners] = owners[i].sum < owners[best[kCorners]].sum ? i : best[kCorners];
   }
-  const std::array<Owner, 4> nearest{owners[best[0]], owners[best[1]], owners[best[2]], owners[best[3]]};
+  std::array<Owner, kCorners + 1> nearest;
+  for (std::size_t k = 0; k <= kCorners; ++k) nearest[k] = owners[best[k]];
   const auto is_dominated = [&nearest](const Owner& o) {
     bool dominated = false;
-    for (const Owner& n : nearest) dominated |= dominates(n.squared, o.squared);
+    for (const Owner& n : nearest) dominated |= dominates<kCorners>(n.squared, o.squared);
     return dominated;
   };
   owners.erase(std::remove_if(owners.begin() + std::ptrdiff_t(first), owners.end(), is_dominated),

@@ -22,8 +22,8 @@ namespace opaline {
 /// accepted that no sample of their sheet is nearer to than the radius, the same ones whatever the threads.
 class PoissonDisk {
  public:
-  PoissonDisk(const TriangleList& triangles, const Vec3f& low, float radius)
-      : triangles_(triangles), radius_(radius), grid_(low, 2 * radius) {}
+  PoissonDisk(const TriangleList& triangles, const Bounds& box, float radius)
+      : triangles_(triangles), radius_(radius), grid_(Vec3f(box.low), Vec3f(box.high), 2 * radius) {}
 
   /// One round: about `count` candidates, stratified over the area; those far from all samples are tried for
   /// real. A round of many is thrown in several, for memory's sake.

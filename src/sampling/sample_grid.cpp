@@ -17,6 +17,13 @@ void SampleGrid::reserve_cell(std::uint64_t key) {
   cells_.emplace_back();
 }
 
+void SampleGrid::finish() {
+  curve_.clear();
+  curve_.reserve(blocks_.size());
+  for (const Block& block : blocks_) curve_.push_back({block.key, std::uint32_t(curve_.size())});
+  std::ranges::sort(curve_, {}, &BlockOnCurve::key);
+}
+
 void SampleGrid::grow() {
   slots_.assign(slots_.size() * 2, kNone);
   --shift_;

@@ -15,8 +15,8 @@
 
 namespace opaline {
 
-/// Cells are twice the Poisson radius wide: a ball of one radius meets at most eight. Blocks of 4 x 4 x 4
-/// cells are found by a hash and hold a bit for each cell that exists: space around a surface is mostly
+/// Cells are at least twice the Poisson radius wide: a ball of one radius meets at most eight. Blocks of 4 x
+/// 4 x 4 cells are found by a hash and hold a bit for each cell that exists: space around a surface is mostly
 /// empty. Samples lie cell by cell, along the Morton curve as far as cells were made together.
 class SampleGrid {
  public:
@@ -36,8 +36,13 @@ class SampleGrid {
     std::uint32_t x, y, z;
   };
 
-  SampleGrid(const Vec3f& low, float cell_size)
-      : low_(low), cell_size_(cell_size), inverse_cell_(1 / cell_size), slots_(1024, kNone) {}
+  /// Over the box from `low` to `high`. Cells are wider than asked for where they would be more than a
+  /// coordinate can count.
+  SampleGrid(const Vec3f& low, const Vec3f& high, float cell_size)
+      : low_(low),
+        cell_size_(std::max(cell_size, 1.001f * max_component(high - low) / float(kLast))),
+        inverse_cell_(1 / cell_size_),
+        slots_(1024, kNone) {}
 
   Coordinates coordinates(const Vec3f& p) const {
     const Vec3f c = (p - low_) * inverse_cell_;
@@ -71,6 +76,9 @@ class SampleGrid {
       cells_[c] = {firsts[c], cells_[c].count + cells_[c].round_count, 0, 0};
   }
 
+  /// To be called when all cells are there and before a wide box is looked at.
+  void finish();
+
   std::size_t size() const { return positions_.size(); }
   const Vec3f& position(std::size_t sample) const { return positions_[sample]; }
   const Place& place(std::size_t sample) const { return places_[sample]; }
@@ -102,12 +110,9 @@ class SampleGrid {
     const Coordinates a = coordinates(low), b = coordinates(high);
     const std::uint64_t boxes = std::uint64_t((b.x >> 2) - (a.x >> 2) + 1) * ((b.y >> 2) - (a.y >> 2) + 1) *
                                 ((b.z >> 2) - (a.z >> 2) + 1);
-    if (boxes > blocks_.size()) {  // a wide box over a sparse cloud: fewer blocks exist than it meets
-      for (const Block& block : blocks_) {
-        const Coordinates at{gather_bits(block.key), gather_bits(block.key >> 1),
-                             gather_bits(block.key >> 2)};
-        if (visit_block(block, at, a, b, visit)) return;
-      }
+    if (!curve_.empty() &&
+        boxes > std::min(blocks_.size(), kManyBoxes)) {  // fewer blocks exist than the box meets
+      visit_existing(0, curve_.size(), 3 * kBlockBits, a, b, visit);
       return;
     }
     for (std::uint32_t bz = a.z >> 2; bz <= b.z >> 2; ++bz)
@@ -141,6 +146,47 @@ class SampleGrid {
     std::uint64_t key, occupied;
     std::array<std::uint32_t, 64> cells;
   };
+
+  static constexpr std::size_t kManyBoxes = 512;
+  static constexpr int kBlockBits = 18;  // of a block's coordinate
+
+  struct BlockOnCurve {
+    std::uint64_t key;
+    std::uint32_t block;
+  };
+
+  // visit_block for the blocks in this part of the curve whose cells can lie in [a, b]; true if a visit
+  // returned true. Their keys differ in the lowest `bits` bits alone.
+  template <class Visit>
+  bool visit_existing(std::size_t begin, std::size_t end, int bits, const Coordinates& a,
+                      const Coordinates& b, const Visit& visit) const {
+    constexpr std::size_t kFew = 8;
+    if (begin == end) return false;
+    const auto coordinates_of = [](std::uint64_t key) {
+      return Coordinates{gather_bits(key), gather_bits(key >> 1), gather_bits(key >> 2)};
+    };
+    if (end - begin <= kFew || bits == 0) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (visit_block(blocks_[curve_[i].block], coordinates_of(curve_[i].key), a, b, visit)) return true;
+      return false;
+    }
+    const Coordinates low = coordinates_of(curve_[begin].key >> bits << bits);
+    const std::uint32_t last = (1u << bits / 3) - 1;
+    const auto is_beside = [last](std::uint32_t from, std::uint32_t to, std::uint32_t at) {
+      return to >> 2 < at || from >> 2 > at + last;
+    };
+    if (is_beside(a.x, b.x, low.x) || is_beside(a.y, b.y, low.y) || is_beside(a.z, b.z, low.z)) return false;
+    for (std::size_t first = begin; first < end;) {
+      const std::uint64_t octant = curve_[first].key >> (bits - 3);
+      const auto next =
+          std::partition_point(curve_.begin() + std::ptrdiff_t(first), curve_.begin() + std::ptrdiff_t(end),
+                               [&](const BlockOnCurve& block) { return block.key >> (bits - 3) == octant; });
+      const auto past = std::size_t(next - curve_.begin());
+      if (visit_existing(first, past, bits - 3, a, b, visit)) return true;
+      first = past;
+    }
+    return false;
+  }
 
   // Visits the block's cells whose coordinates lie in [a, b]; true if a visit returned true. at: the block's
   // own coordinates, a fourth of its cells'.
@@ -206,6 +252,7 @@ class SampleGrid {
   int shift_ = 64 - 10;               // 64 - log2(size of slots_)
   std::vector<std::uint32_t> slots_;  // hash table of indices into blocks_, a power of two of them
   std::vector<Block> blocks_;
+  std::vector<BlockOnCurve> curve_;  // the blocks along the Morton curve; empty before finish()
   std::vector<Cell> cells_;
   std::vector<Vec3f> positions_;
   std::vector<Place> places_;

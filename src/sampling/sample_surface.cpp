@@ -17,10 +17,18 @@ namespace {
 // Radius over sqrt(area / count) for a sampling of 6 rounds; measured (test_density checks the count).
 constexpr double kRadiusPerSpacing = 0.7195;
 
-Vec3f lowest_corner(const World& world, std::span<const std::uint32_t> meshes) {
-  Vec3d low{1e300, 1e300, 1e300};
-  for (const std::uint32_t m : meshes) low = component_min(low, bounds(world.meshes[m]).low);
-  return Vec3f(low);
+// Samples over those asked for at which no further round is thrown; six rounds on an even surface end within
+// 3 % of what is asked for.
+constexpr double kEnough = 1.1;
+
+Bounds bounds_of(const World& world, std::span<const std::uint32_t> meshes) {
+  Bounds box;
+  for (const std::uint32_t m : meshes) {
+    const Bounds other = bounds(world.meshes[m]);
+    box.low = component_min(box.low, other.low);
+    box.high = component_max(box.high, other.high);
+  }
+  return box;
 }
 
 // The samples before they are put in order.
@@ -32,10 +40,13 @@ struct PlacedSamples {
 
 PlacedSamples place_samples(const SamplingInput& input, const TriangleList& triangles, float radius,
                             bool want_pieces) {
-  PoissonDisk poisson(triangles, lowest_corner(input.world, input.meshes), radius);
-  for (int round = 0; round < input.candidate_rounds; ++round)
+  PoissonDisk poisson(triangles, bounds_of(input.world, input.meshes), radius);
+  // Where the surface is thinner than the radius no dart meets another one, and each round adds as many.
+  const auto enough = std::size_t(kEnough * double(input.count));
+  for (int round = 0; round < input.candidate_rounds && poisson.grid().size() <= enough; ++round)
     poisson.throw_darts(input.count, hash_bits(input.seed, std::uint64_t(round)), input.monitor);
   poisson.cover_centroids(input.monitor);
+  poisson.grid().finish();
   std::vector<SurfacePiece> pieces;
   std::vector<SurfaceShare> shares =
       surface_shares(triangles, poisson.grid(), radius, input.monitor, want_pieces ? &pieces : nullptr);

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "sampling/needle_piece.h"
 #include "sampling/triangle_list.h"
-#include "sampling/triangle_piece.h"
 
 namespace opaline {
 
@@ -18,19 +18,27 @@ inline TrianglePiece whole_piece(const TriangleList& triangles, std::size_t tria
 /// Some triangles, or a part of one: about as much work as any other task.
 struct Task {
   std::size_t first, last;
-  std::optional<TrianglePiece> part;  ///< of the triangle `first`
+  std::optional<TrianglePiece> part = {};  ///< of the triangle `first`
+  std::optional<NeedlePiece> slice = {};   ///< of the same, if it is a needle
+
+  bool is_whole() const { return !part && !slice; }
 };
 
 /// Cuts the surface into tasks, by area in units of a mean share and by triangles.
 class Tasks {
  public:
-  Tasks(const TriangleList& triangles, double mean_share) : mean_share_(mean_share) {
+  Tasks(const TriangleList& triangles, double mean_share, float radius) : mean_share_(mean_share) {
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       const double work = work_on(triangles.area(t));
-      if (work > kWork)
-        add_parts(t, whole_piece(triangles, t));
-      else
+      if (work <= kWork) {
         add_triangle(t, work);
+        continue;
+      }
+      const TrianglePiece piece = whole_piece(triangles, t);
+      if (const std::optional<NeedlePiece> needle = needle_of(piece, radius))
+        add_slices(t, *needle);
+      else
+        add_parts(t, piece);
     }
   }
   const std::vector<Task>& all() const { return tasks_; }
@@ -41,8 +49,8 @@ class Tasks {
   double work_on(double area) const { return 1 + area / mean_share_; }
 
   void add_triangle(std::size_t triangle, double work) {
-    if (tasks_.empty() || tasks_.back().part || filled_ + work > kWork) {
-      tasks_.push_back({triangle, triangle, {}});
+    if (tasks_.empty() || !tasks_.back().is_whole() || filled_ + work > kWork) {
+      tasks_.push_back({triangle, triangle});
       filled_ = 0;
     }
     tasks_.back().last = triangle + 1;
@@ -51,9 +59,16 @@ class Tasks {
 
   void add_parts(std::size_t triangle, const TrianglePiece& piece) {
     if (work_on(piece.area()) <= kWork)
-      tasks_.push_back({triangle, triangle + 1, piece});
+      tasks_.push_back({triangle, triangle + 1, piece, {}});
     else
       for (const TrianglePiece& half : piece.halves()) add_parts(triangle, half);
+  }
+
+  void add_slices(std::size_t triangle, const NeedlePiece& piece) {
+    if (work_on(piece.area()) <= kWork)
+      tasks_.push_back({triangle, triangle + 1, {}, piece});
+    else
+      for (const NeedlePiece& half : piece.halves()) add_slices(triangle, half);
   }
 
   double mean_share_, filled_ = 0;

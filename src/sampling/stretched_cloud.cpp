@@ -27,13 +27,18 @@ std::vector<Standing> standing_on(const TriangleList& triangles,
   return all;
 }
 
-Vec3f lowest(const TriangleList& triangles) {
-  Vec3f low(INFINITY);
+struct Box {
+  Vec3f low, high;
+};
+
+Box box_of(const TriangleList& triangles) {
+  Box box{Vec3f(INFINITY), Vec3f(-INFINITY)};
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const TriangleList::Corners c = triangles.corners(triangles.id(t));
-    low = component_min(low, Vec3f(component_min(c.a, component_min(c.b, c.c))));
+    box.low = component_min(box.low, Vec3f(component_min(c.a, component_min(c.b, c.c))));
+    box.high = component_max(box.high, Vec3f(component_max(c.a, component_max(c.b, c.c))));
   }
-  return low;
+  return box;
 }
 
 /// Samples one after the other, found by cells as wide as the distance asked for.
@@ -169,7 +174,7 @@ std::size_t StretchedCloud::remove_crowded(float radii) {
         i};
   }
   std::ranges::sort(lots);
-  GrowingCloud cloud(lowest(after_), radii * radius_);
+  GrowingCloud cloud(box_of(after_).low, radii * radius_);
   std::vector<std::uint32_t> kept;
   for (const auto& [lot, i] : lots) {
     if (!cloud.is_clear(standing[i])) continue;
@@ -191,7 +196,7 @@ std::size_t StretchedCloud::fill_gaps(float radii) {
   for (std::size_t t = 0; t < after_.size(); ++t)
     if (after_.area(t) > kGrown * before_.area(t)) grown.push_back(t);
   if (grown.empty()) return 0;
-  GrowingCloud cloud(lowest(after_), clearance);
+  GrowingCloud cloud(box_of(after_).low, clearance);
   for (const Standing& s : standing_on(after_, places_)) cloud.add(s);
   std::size_t added = 0;
   for (const std::size_t t : grown) {
@@ -213,7 +218,8 @@ std::size_t StretchedCloud::fill_gaps(float radii) {
 
 SampleGrid StretchedCloud::grid() const {
   const std::vector<Standing> standing = standing_on(after_, places_);
-  SampleGrid grid(lowest(after_), 2 * radius_);
+  const auto [low, high] = box_of(after_);
+  SampleGrid grid(low, high, 2 * radius_);
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // by cell
   for (std::uint32_t i = 0; i < standing.size(); ++i) order.emplace_back(grid.key(standing[i].position), i);
   std::ranges::sort(order);
@@ -227,6 +233,7 @@ SampleGrid StretchedCloud::grid() const {
     const std::uint32_t s = order[i].second;
     return SampleGrid::Sample{standing[s].position, places_[s]};
   });
+  grid.finish();
   return grid;
 }
 
