@@ -37,8 +37,13 @@ float radiance_of_exitance(const Appearance& a, float cos_view) {
   return kInversePi * fresnel_transmittance(cos_view, a.eta) / (1 - a.average_reflectance);
 }
 
-float cos_view(const Vec3f& normal, const Vec3f& direction) {
-  return std::min(1.0f, std::abs(dot(normal, direction)) / length(direction));
+// By the shading normal. On coarse meshes it can be at right angles to the view, or turned away from it,
+// where the triangle is seen well: a boundary that lets nothing through. So at least half of the triangle's
+// cosine.
+float cos_view(const SurfacePoint& point, const Vec3f& direction) {
+  const float side = dot(point.geometric, direction), shading = dot(point.normal, direction);
+  const float towards = side > 0 ? shading : -shading;
+  return std::min(1.0f, std::max(towards, 0.5f * std::abs(side)) / length(direction));
 }
 
 SurfacePoint point_of(const Hit& hit, const RayScene& rays) {
@@ -217,7 +222,7 @@ void Shader::write(const Surfaces& surfaces, const Lit& lit, std::span<const Tra
     const SurfacePoint& point = surfaces.points[i];
     PixelSample& sample = out[surfaces.rays[i]];
     const RgbF exitance = lit.exitance.empty() ? appearance.albedo * lit.irradiance[i] : lit.exitance[i];
-    const float radiance = radiance_of_exitance(appearance, cos_view(point.normal, ray.direction));
+    const float radiance = radiance_of_exitance(appearance, cos_view(point, ray.direction));
     sample.diffuse = exitance * radiance;
     sample.coverage = 1;
     sample.albedo = appearance.albedo;
@@ -246,7 +251,7 @@ void Shader::add_mirrored_lights(const Surfaces& surfaces, std::span<const Trace
     const EmitterHit emitter = nearest_emitter(ray.origin, ray.direction, ray.far);
     const RgbF seen = emitter.hit ? emitter.radiance : hit.mesh != Hit::kMiss ? RgbF{} : surroundings_;
     const TracedRay& camera = rays[surfaces.rays[i]];
-    const float cosine = cos_view(surfaces.points[i].normal, camera.ray.direction);
+    const float cosine = cos_view(surfaces.points[i], camera.ray.direction);
     out[surfaces.rays[i]].specular = seen * fresnel_reflectance(cosine, appearances_[camera.hit.mesh].eta);
   }
 }
