@@ -10,6 +10,7 @@
 
 #include "cli/names.h"
 #include "cli/report.h"
+#include "geometry/read_mesh.h"
 #include "opaline/core/error.h"
 
 namespace opaline {
@@ -23,6 +24,14 @@ std::string read_again(const std::string& path) {
   file.seekg(0).read(bytes.data(), std::streamsize(bytes.size()));
   if (!file) throw bad_file(path, "cannot be read again");
   return bytes;
+}
+
+std::string mesh_bytes(const Shape& shape, const std::string& path) {
+  try {
+    return read_mesh_bytes(path);
+  } catch (const Error& failure) {
+    throw told_at(shape.place, failure);
+  }
 }
 
 Json settings_json(const Scene& scene, std::span<const TranslucentGroup> translucent) {
@@ -51,8 +60,14 @@ Json settings_json(const Scene& scene, std::span<const TranslucentGroup> translu
   return json;
 }
 
-std::string command_line(const std::string& scene, const std::vector<std::string>& overrides) {
-  std::string line = "opaline render " + shell_quoted(scene);
+/// A name that begins like an option would be taken for one.
+std::string quoted_path(const std::string& path) {
+  return shell_quoted(path.starts_with('-') ? "./" + path : path);
+}
+
+std::string command_line(const std::string& program, const std::string& scene,
+                         const std::vector<std::string>& overrides) {
+  std::string line = shell_quoted(program) + " render " + quoted_path(scene);
   for (const std::string& text : overrides) line += " --set " + shell_quoted(text);
   return line;
 }
@@ -68,8 +83,16 @@ std::string shell_quoted(const std::string& argument) {
 }
 
 std::string command_of(const RenderArguments& arguments) {
-  std::string command = command_line(arguments.scene, arguments.overrides);
-  if (arguments.target_error) command += fmt::format(" --target-error {}", *arguments.target_error);
+  std::string command = command_line("opaline", arguments.scene, arguments.overrides);
+  if (arguments.target_error)
+    command += *arguments.target_error < 1 ? fmt::format(" --target-error {}", *arguments.target_error)
+                                           : " --target-error 100%";
+  return command;
+}
+
+std::string command_again(const RenderArguments& arguments) {
+  std::string command = command_line(arguments.program, arguments.scene, arguments.overrides);
+  for (const std::string& output : arguments.outputs) command += " -o " + quoted_path(output);
   return command;
 }
 
@@ -89,7 +112,7 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
   std::set<std::string> seen;
   for (const Shape& shape : scene.shapes)
     if (const auto* mesh = std::get_if<MeshFile>(&shape.source))
-      if (seen.insert(mesh->path).second) add(read_again(mesh->path));
+      if (seen.insert(mesh->path).second) add(mesh_bytes(shape, mesh->path));
   return hash.digest();
 }
 
@@ -111,7 +134,7 @@ Metadata frame_metadata(const RenderArguments& arguments, const std::string& has
   const std::string name = fs::path(arguments.scene).filename().string();
   return {{"opaline:version", OPALINE_VERSION},
           {"opaline:scene_hash", hash},
-          {"opaline:command", command_line(name, arguments.overrides)},
+          {"opaline:command", command_line("opaline", name, arguments.overrides)},
           {"opaline:frame", std::to_string(frame)}};
 }
 

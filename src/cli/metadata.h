@@ -22,6 +22,10 @@ std::string shell_quoted(const std::string& argument);
 /// The command line that makes the same picture; outputs, threads and log are not in it.
 std::string command_of(const RenderArguments& arguments);
 
+/// The same for a shell in the folder where this program was called: it calls the same program, and writes
+/// the same outputs.
+std::string command_again(const RenderArguments& arguments);
+
 /// SHA-1 of the scene file's bytes, the overrides, and the bytes of each mesh file in use, once; empty where
 /// the scene came through a pipe. Taken while loading: files may change during a long render. error
 /// Error{bad_input}: a file that cannot be read a second time

@@ -15,10 +15,13 @@
 #include <streambuf>
 
 #include "mesh_scan.h"
+#include "scene/schema.h"
 #include "soup_importer.h"
 
 namespace opaline {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Format {
   const char* extension;
@@ -29,7 +32,7 @@ constexpr std::array<Format, 4> formats{
     {{"obj", scan_obj}, {"ply", scan_ply}, {"stl", scan_stl}, {"off", scan_off}}};
 
 const Format& format_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
+  std::string extension = fs::path(path).extension().string();
   for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
   for (const Format& format : formats)
     if (extension == std::string(".") + format.extension) return format;
@@ -37,22 +40,16 @@ const Format& format_of(const std::string& path) {
                  extension.empty() ? "no extension" : "'" + extension + "'");
 }
 
-std::string read_bytes(const std::string& path) {
-  namespace fs = std::filesystem;
+/// The mesh file beside the missing one that is called almost the same.
+std::string nearest_mesh(const fs::path& missing) {
+  constexpr std::size_t most = 10000;  // of a folder's files are looked at
+  std::vector<std::string> names;
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throw bad_file(path, "no such mesh file");
-  if (!fs::is_regular_file(status))
-    throw bad_file(path, "cannot read the mesh", "a file",
-                   fs::is_directory(status) ? "a directory" : "something else");
-  std::ifstream file(path, std::ios::binary);
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (!file || error) throw bad_file(path, "cannot open the mesh file");
-  if (size == 0) throw bad_file(path, "the mesh file is empty");
-  std::string bytes(size, '\0');
-  file.read(bytes.data(), std::streamsize(size));
-  if (std::uintmax_t(file.gcount()) != size) throw run_failed(path, "reading the mesh file failed");
-  return bytes;
+  for (fs::directory_iterator it(missing.parent_path().empty() ? "." : missing.parent_path(), error), end;
+       !error && it != end && names.size() < most; it.increment(error))
+    names.push_back(it->path().filename().string());
+  std::ranges::sort(names);
+  return did_you_mean(missing.filename().string(), std::vector<std::string_view>(names.begin(), names.end()));
 }
 
 /// A stream buffer over bytes in memory that can seek, as OpenMesh's readers need.
@@ -134,9 +131,27 @@ SourceMesh with_faces_of(MeshScan scan, const SourceMesh& before) {
 
 }  // namespace
 
+std::string read_mesh_bytes(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found)
+    throw bad_file(path, "no such mesh file" + nearest_mesh(path));
+  if (!fs::is_regular_file(status))
+    throw bad_file(path, "cannot read the mesh", "a file",
+                   fs::is_directory(status) ? "a directory" : "something else");
+  std::ifstream file(path, std::ios::binary);
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (!file || error) throw bad_file(path, "cannot open the mesh file");
+  if (size == 0) throw bad_file(path, "the mesh file is empty");
+  std::string bytes(size, '\0');
+  file.read(bytes.data(), std::streamsize(size));
+  if (std::uintmax_t(file.gcount()) != size) throw run_failed(path, "reading the mesh file failed");
+  return bytes;
+}
+
 SourceMesh read_mesh(const std::string& path, const SourceMesh* before) {
   const Format& format = format_of(path);
-  std::string bytes = read_bytes(path);
+  std::string bytes = read_mesh_bytes(path);
   MeshScan scan = format.scan(path, bytes);
   constexpr std::size_t limit = std::size_t(1)
                                 << 30;  // indices of edges must fit 32 bits, OpenMesh's are signed

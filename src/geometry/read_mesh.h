@@ -20,4 +20,8 @@ namespace opaline {
 ///       that one's, OpenMesh need not read them again
 SourceMesh read_mesh(const std::string& path, const SourceMesh* before = nullptr);
 
+/// The bytes of a mesh file as they are.
+/// error Error naming the file: missing, with the nearest name in its folder; not a file, empty, not readable
+std::string read_mesh_bytes(const std::string& path);
+
 }  // namespace opaline

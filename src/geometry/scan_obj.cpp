@@ -56,6 +56,8 @@ class ObjScanner {
       first_unread_ = quoted(keyword);
       first_unread_line_ = line(at);
     }
+    if (first_material_line_ == 0 && (keyword == "mtllib" || keyword == "usemtl"))
+      first_material_line_ = line(at);
     hide(first);
   }
 
@@ -159,6 +161,10 @@ class ObjScanner {
       scan_.warnings.push_back(
           path_ + ":" + std::to_string(first_unread_line_) + ": " + std::to_string(unread_) +
           " statements that are no part of a polygon mesh are" + " left out, the first is " + first_unread_);
+    if (first_material_line_ > 0)
+      scan_.warnings.push_back(path_ + ":" + std::to_string(first_material_line_) +
+                               ": materials and textures (mtllib, usemtl) are not read: the scene file says "
+                               "what a shape is made of");
     scan_.vertex_normals = scan_.corner_normals = highest_normal_.index >= 0;
     scan_.corners = hash_.value();
     scan_.faces = hash_.faces();
@@ -180,7 +186,7 @@ class ObjScanner {
   std::size_t normals_ = 0, unread_ = 0;
   Highest highest_vertex_, highest_normal_;
   std::string first_unread_;
-  int first_unread_line_ = 0;
+  int first_unread_line_ = 0, first_material_line_ = 0;
 };
 
 }  // namespace

@@ -17,6 +17,15 @@ Vec3d stable_middle(const Bounds& all, double diagonal) {
           step * std::round(middle.z / step)};
 }
 
+/// What is wrong with a shape is said where the scene has it.
+CheckedMesh load_mesh(const Shape& shape, MeshMemory* memory) {
+  try {
+    return memory == nullptr ? make_mesh(shape) : make_mesh(shape, *memory);
+  } catch (const Error& failure) {
+    throw told_at(shape.place, failure);
+  }
+}
+
 }  // namespace
 
 World make_world(const Scene& scene) {
@@ -28,8 +37,7 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
                    std::size_t& loaded, std::span<MeshMemory* const> memories) {
   World world;
   const auto load = [&](std::size_t shape) {
-    CheckedMesh checked =
-        memories.empty() ? make_mesh(scene.shapes[shape]) : make_mesh(scene.shapes[shape], *memories[shape]);
+    CheckedMesh checked = load_mesh(scene.shapes[shape], memories.empty() ? nullptr : memories[shape]);
     world.meshes[shape] = std::move(checked.mesh);
     world.reports[shape] = std::move(checked.report);
     world.boxes[shape] = bounds(world.meshes[shape]);

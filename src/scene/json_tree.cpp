@@ -206,18 +206,28 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
 
 }  // namespace
 
+std::vector<std::size_t> line_starts_of(std::string_view text) {
+  std::vector<std::size_t> starts{0};
+  for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1))
+    starts.push_back(at + 1);
+  return starts;
+}
+
+SourcePlace place_at(const Document& document, std::size_t offset, int override_index) {
+  if (override_index >= 0)
+    return {"--set " + printable(document.overrides[static_cast<std::size_t>(override_index)])};
+  offset = std::min(offset, document.text.size());
+  const std::vector<std::size_t>& starts = document.line_starts;
+  const auto next = std::upper_bound(starts.begin(), starts.end(), offset);
+  require(next != starts.begin(), "a document knows where its lines start");
+  return {document.file, static_cast<int>(next - starts.begin()), static_cast<int>(offset - *(next - 1)) + 1};
+}
+
 Error error_at(const Document& document, std::size_t offset, int override_index, std::string message,
                std::string expected, std::string got) {
-  if (override_index >= 0) {
-    const std::string& text = document.overrides[static_cast<std::size_t>(override_index)];
-    return bad_file("--set " + printable(text), std::move(message), std::move(expected), std::move(got));
-  }
-  const std::string_view before = document.text.substr(0, std::min(offset, document.text.size()));
-  const std::size_t line = 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
-  const std::size_t newline = before.rfind('\n');
-  const std::size_t column = newline == std::string_view::npos ? before.size() + 1 : before.size() - newline;
-  return Error(ErrorKind::bad_input, document.file, static_cast<int>(line), static_cast<int>(column),
-               std::move(message), std::move(expected), std::move(got));
+  const SourcePlace place = place_at(document, offset, override_index);
+  return Error(ErrorKind::bad_input, place.file, place.line, place.column, std::move(message),
+               std::move(expected), std::move(got));
 }
 
 const Node* find_member(const Node& object, std::string_view key) {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "opaline/core/error.h"
+#include "opaline/scene/source_place.h"
 
 namespace opaline {
 
@@ -35,7 +35,14 @@ struct Document {
   std::vector<std::string> overrides;
   Node root;
   int frame = 1;
+  std::vector<std::size_t> line_starts = {};  ///< of the text, see line_starts_of
 };
+
+/// Offset of each line's first byte.
+std::vector<std::size_t> line_starts_of(std::string_view text);
+
+/// Where a byte of the document's text stands, or which override it came from.
+SourcePlace place_at(const Document& document, std::size_t offset, int override_index);
 
 /// An error at a byte of the document's text, or about the override that put the value there.
 Error error_at(const Document& document, std::size_t offset, int override_index, std::string message,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/scene/load_scene.h"
 
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -33,6 +34,18 @@ std::string read_text(const std::string& path) {
   return text;
 }
 
+/// A mesh needs a light and a camera to be seen.
+void check_is_no_mesh(const std::string& path) {
+  const std::filesystem::path file(path);
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  for (const char* mesh : {".obj", ".ply", ".stl", ".off"})
+    if (extension == mesh)
+      throw bad_file(path, "is a mesh, not a scene",
+                     "a scene file (JSON) with \"shapes\": [{\"file\": \"" +
+                         printable(file.filename().string()) + "\"}], as scenes/bunny-marble.json");
+}
+
 /// Reads the elements of a list, and rejects a name used twice.
 template <class T, class Read>
 std::vector<T> read_named(const std::optional<Value>& list, const std::string& default_name, Read read) {
@@ -52,7 +65,7 @@ std::vector<T> read_named(const std::optional<Value>& list, const std::string& d
 
 void read_surroundings(const Value& value, std::vector<Light>& lights) {
   const Rgb radiance = value.color(non_negative);
-  if (radiance != Rgb{}) lights.push_back({"surroundings", Surroundings{radiance}});
+  if (radiance != Rgb{}) lights.push_back({"surroundings", Surroundings{radiance}, value.place()});
 }
 
 Scene read_scene(const Document& document) {
@@ -84,6 +97,7 @@ Scene read_scene(const Document& document) {
 }  // namespace
 
 Scene load_scene(const std::string& path, std::span<const std::string> overrides, int frame) {
+  check_is_no_mesh(path);
   return parse_scene(read_text(path), path, overrides, frame);
 }
 
@@ -100,7 +114,7 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
                   int frame) {
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
     throw bad_file(file, "the scene file is empty", "a JSON object {...}");
-  Document document{file, text, {overrides.begin(), overrides.end()}, {}, frame};
+  Document document{file, text, {overrides.begin(), overrides.end()}, {}, frame, line_starts_of(text)};
   document.root = parse_tree(document, text);
   std::size_t camera_frames = 1;
   if (document.root.kind == Node::Kind::object) {

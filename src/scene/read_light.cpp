@@ -45,7 +45,7 @@ Light read_light(const Value& value, const std::string& name, double mm_per_unit
   const std::string_view type = type_of(value);
   const ObjectReader reader(value, "light." + std::string(type));
   const auto own_name = reader.find("name");
-  Light light{own_name ? own_name->string() : name, read_source(reader, type, mm_per_unit)};
+  Light light{own_name ? own_name->string() : name, read_source(reader, type, mm_per_unit), value.place()};
   if (light.name == "surroundings") own_name->fail("is taken by the scene's surroundings", "another name");
   return light;
 }

@@ -85,6 +85,7 @@ Medium read_medium(const Value& value) {
   const ObjectReader reader(value, "medium");
   Medium medium;
   medium.name = value.node().key;
+  medium.place = value.place();
   if (medium.name.empty()) value.fail_key("has no name", "a name that is not empty");
   const std::string_view form = form_of(reader);
   if (form == "preset") {

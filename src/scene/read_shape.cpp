@@ -58,8 +58,10 @@ TorusShape read_torus(const ObjectReader& reader, double mm_per_unit) {
   return {read_center(reader, mm_per_unit), major, minor};
 }
 
-ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context) {
+/// place: set to that of the source.
+ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context, SourcePlace& place) {
   const std::string_view kind = shape.exactly_one_of(source_names);
+  place = shape.need(kind).place();
   if (kind == "file") return read_mesh_file(shape, context);
   for (const std::string_view option : {"fill_holes", "fit_size"})
     if (const auto value = shape.find(option)) value->fail_key("has no meaning without 'file'");
@@ -117,7 +119,7 @@ Shape read_shape(const Value& value, const std::string& name, ShapeContext& cont
   const auto own_name = reader.find("name"), transform = reader.find("transform"),
              normals = reader.find("normals");
   shape.name = own_name ? own_name->string() : name;
-  shape.source = read_source(reader, context);
+  shape.source = read_source(reader, context, shape.place);
   if (transform) shape.to_world = read_transform(*transform, context.mm_per_unit);
   // A mesh file that is not fitted to a size in mm is still in scene units.
   const auto* mesh = std::get_if<MeshFile>(&shape.source);

@@ -33,6 +33,7 @@ class Value {
 
   const Node& node() const { return *node_; }
   const std::string& path() const { return path_; }
+  SourcePlace place() const { return place_at(*document_, node_->offset, node_->override_index); }
 
   double number(const Range& range) const;
   /// A whole number from low to high.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/shape_key.h"
 
-#include <fstream>
-#include <iterator>
+#include "geometry/read_mesh.h"
 
 namespace opaline {
 namespace {
@@ -10,10 +9,7 @@ namespace {
 struct AddSource {
   KeyBuilder& key;
   void operator()(const MeshFile& mesh) const {
-    std::ifstream file(mesh.path, std::ios::binary | std::ios::ate);
-    std::string bytes(file ? std::size_t(file.tellg()) : 0, '\0');
-    file.seekg(0).read(bytes.data(), std::streamsize(bytes.size()));
-    key.add(mesh.path).add(bytes).add(mesh.fill_holes).add(mesh.fit_size.value_or(0));
+    key.add(mesh.path).add(read_mesh_bytes(mesh.path)).add(mesh.fill_holes).add(mesh.fit_size.value_or(0));
   }
   void operator()(const SphereShape& s) const { key.add(s.center).add(s.radius); }
   void operator()(const BoxShape& s) const { key.add(s.low).add(s.high); }
@@ -27,7 +23,11 @@ struct AddSource {
 StageKey source_key(const Shape& shape) {
   KeyBuilder key("source", 1);
   key.add(std::uint64_t(shape.source.index()));
-  std::visit(AddSource{key}, shape.source);
+  try {
+    std::visit(AddSource{key}, shape.source);
+  } catch (const Error& failure) {
+    throw told_at(shape.place, failure);
+  }
   return key.key();
 }
 

@@ -27,7 +27,7 @@ struct World {
   double diagonal = 0;  ///< of the bounding box of everything, mm; 0 for an empty scene
 };
 
-/// Meshes of all shapes; error as make_mesh.
+/// Meshes of all shapes; error as make_mesh, told at the shape's place in the scene.
 World make_world(const Scene& scene);
 
 /// The same world as make_world's, bit for bit, after an edit that left some shapes as they were.

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "opaline/core/vec3.h"
+#include "opaline/scene/source_place.h"
 
 namespace opaline {
 
@@ -55,6 +56,7 @@ struct Medium {
   std::variant<PhysicalMedium, ArtistMedium> coefficients;
   double eta = 1.3;
   ProfileKind profile = ProfileKind::dipole;
+  SourcePlace place{};
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
@@ -112,6 +114,7 @@ struct Shape {
   /// Translucent shapes with the same non-empty group blend as one object; others never bleed into each
   /// other.
   std::string group;
+  SourcePlace place{};  ///< of its source
   friend bool operator==(const Shape&, const Shape&) = default;
 };
 
@@ -148,6 +151,7 @@ using LightSource = std::variant<PointLight, DirectionalLight, SphereLight, Quad
 struct Light {
   std::string name;
   LightSource source;
+  SourcePlace place{};
   friend bool operator==(const Light&, const Light&) = default;
 };
 
