@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/irradiance/light_sampling.h"
+#include "opaline/render/picture_warnings.h"
+#include "opaline/render/render.h"
 #include "opaline/sampling/sample_surface.h"
 #include "render/light_distance.h"
 
@@ -100,9 +103,12 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
     if (!shape.medium) continue;
     const DiffuseProfile profile = make_diffuse_profile(scene.media[*shape.medium]);
     if (!profile.translucent) {
+      const Medium& medium = scene.media[*shape.medium];
       warnings.push_back(
-          fmt::format("{}: medium {} does not scatter and is not translucent; its diffuse part is black",
-                      shape.name, scene.media[*shape.medium].name));
+          text_at(medium.place,
+                  fmt::format("{}: medium {} does not scatter and is not translucent; its diffuse part is "
+                              "black",
+                              shape.name, medium.name)));
       continue;
     }
     const std::string& name = shape.group.empty() ? shape.name : shape.group;
@@ -184,12 +190,16 @@ RayBuild cheaper_build(const Scene& scene, const Plan& plan) {
 Plan make_plan(const Scene& scene, const World& world) {
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
+  std::set<std::string> said;  // by the first of several shapes from one file
   for (const MeshReport& report : world.reports)
-    plan.warnings.insert(plan.warnings.end(), report.warnings.begin(), report.warnings.end());
+    for (const std::string& warning : report.warnings)
+      if (said.insert(warning).second) plan.warnings.push_back(warning);
   if (scene.shapes.empty())
     plan.warnings.push_back("the scene has no shapes: the picture shows its surroundings");
   if (scene.lights.empty()) plan.warnings.push_back("the scene has no lights: the picture is black");
-  const std::size_t pixels = std::size_t(scene.film.resolution[0]) * std::size_t(scene.film.resolution[1]);
+  for (std::string& text : lamps_turned_away(scene, world)) plan.warnings.push_back(std::move(text));
+  const Rectangle part = rendered_part(scene.film);
+  const std::size_t pixels = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0);
   plan.bytes = 135'000'000 + pixels * 26 * sizeof(float);  // the libraries (measured); all layers
   for (const Mesh& mesh : world.meshes) {
     plan.triangles += mesh.triangles.size();

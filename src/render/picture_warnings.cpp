@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/render/picture_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "opaline/irradiance/light_sampling.h"
+
+namespace opaline {
+namespace {
+
+// In units of white, after the exposure. Darker than the first is below 16 of a PNG's 255 levels.
+constexpr float kAlmostBlack = 0.005f, kWhite = 1;
+constexpr double kWellExposed = 0.5;  // what the brightest of a picture may be
+constexpr double kFarAway = 30;       // diagonals of all shapes
+
+Bounds box_of(const World& world) {
+  Bounds all;
+  for (const Bounds& box : world.boxes) {
+    all.low = component_min(all.low, box.low);
+    all.high = component_max(all.high, box.high);
+  }
+  return all;
+}
+
+std::string point_text(const Vec3d& mm, double mm_per_unit) {
+  const Vec3d p = mm / mm_per_unit;
+  return fmt::format("[{:.4g},{:.4g},{:.4g}]", p.x, p.y, p.z);
+}
+
+std::size_t channel(const Image& image, const char* name) {
+  return std::size_t(std::ranges::find(image.channels, name) - image.channels.begin());
+}
+
+/// The largest channel of each pixel that shows an object, of every step-th pixel.
+std::vector<float> brightness(const Image& image, std::size_t step) {
+  const std::size_t stride = image.channels.size(), count = image.pixels.size() / stride;
+  const std::size_t r = channel(image, "R"), g = channel(image, "G"), b = channel(image, "B"),
+                    coverage = channel(image, "A");
+  std::vector<float> values;
+  for (std::size_t p = 0; p < count; p += step) {
+    const float* pixel = image.pixels.data() + p * stride;
+    if (pixel[coverage] > 0) values.push_back(std::max({pixel[r], pixel[g], pixel[b]}) / pixel[coverage]);
+  }
+  return values;
+}
+
+/// Some 65,000 pixels tell the brightness; all of them are asked whether there is an object at all.
+std::vector<float> sampled_brightness(const Image& image) {
+  constexpr std::size_t enough = 65536;
+  const std::size_t step = (image.pixels.size() / image.channels.size() / enough) | 1;
+  std::vector<float> values = brightness(image, step);
+  return values.empty() && step > 1 ? brightness(image, 1) : values;
+}
+
+std::string nothing_in_view(const Scene& scene, const World& world) {
+  const Bounds box = box_of(world);
+  const Camera& camera = scene.camera;
+  const Vec3d middle = .5 * (box.low + box.high), towards = middle - camera.position;
+  const double distance = length(towards), radius = world.diagonal / 2;
+  const double cosine = dot(normalized(towards), normalized(camera.look_at - camera.position));
+  const double pixels =
+      radius / distance / std::tan(camera.field_of_view * std::numbers::pi / 360) * scene.film.resolution[1];
+  std::string where;
+  if (distance <= radius)
+    where = "around the camera";
+  else if (cosine < 0)
+    where = "behind the camera";
+  else if (pixels < 2)
+    where = fmt::format("so far away that all of them are {:.2g} pixels wide", pixels);
+  else
+    where = fmt::format("{:.0f} degrees beside the middle of the view",
+                        std::acos(std::min(1.0, cosine)) * 180 / std::numbers::pi);
+  const std::string advice =
+      scene.film.crop
+          ? "a small --resolution without a crop shows where they are"
+          : "--set camera.look_at=" + point_text(middle, scene.mm_per_unit) + " looks at their middle";
+  return fmt::format("nothing is in view{}: the shapes lie between {} and {} (scene units), {}; {}",
+                     scene.film.crop ? " of the crop" : "", point_text(box.low, scene.mm_per_unit),
+                     point_text(box.high, scene.mm_per_unit), where, advice);
+}
+
+/// Middle of a light that has a place, world space.
+std::optional<Vec3d> place_of(const Light& light) {
+  if (const auto* point = std::get_if<PointLight>(&light.source)) return point->position;
+  if (const auto* sphere = std::get_if<SphereLight>(&light.source)) return sphere->center;
+  if (const auto* quad = std::get_if<QuadLight>(&light.source))
+    return quad->corner + .5 * (quad->u + quad->v);
+  return {};
+}
+
+/// What is wrong with single lights, where a picture is too dark.
+std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
+  const Bounds box = box_of(world);
+  const Vec3d middle = .5 * (box.low + box.high);
+  std::vector<std::string> texts;
+  for (const Light& light : scene.lights) {
+    const std::optional<Vec3d> place = place_of(light);
+    const double distance = place ? length(*place - middle) : 0;
+    if (emission(light) == Rgb{})
+      texts.push_back(fmt::format("the light {} has no brightness", light.name));
+    else if (distance > kFarAway * world.diagonal)
+      texts.push_back(
+          fmt::format("the light {} is {:.3g} scene units away from shapes that measure {:.3g} together",
+                      light.name, distance / scene.mm_per_unit, world.diagonal / scene.mm_per_unit));
+  }
+  return texts;
+}
+
+/// Lights at a point get weaker with the square of millimetres, whatever the scene's unit is: the usual cause
+/// of a brightness that is off by the square of the unit.
+std::string unit_text(const Scene& scene, double brightest) {
+  const double factor = scene.mm_per_unit * scene.mm_per_unit, meant = brightest * factor;
+  const bool has_points = std::ranges::any_of(scene.lights, [](const Light& light) {
+    return std::holds_alternative<PointLight>(light.source) && emission(light) != Rgb{};
+  });
+  if (!has_points || factor == 1 || meant < double(kAlmostBlack) || meant > 100) return {};
+  return fmt::format(
+      "; mm_per_unit is {:g}, and intensity / distance^2 is in W/mm^2 all the same: an intensity meant for "
+      "scene units has to be {:g} times as high",
+      scene.mm_per_unit, factor);
+}
+
+/// "; --exposure 7 shows it"
+std::string exposure_text(const Scene& scene, double brightest) {
+  const double stops =
+      std::clamp(scene.film.exposure + std::round(std::log2(kWellExposed / brightest)), -100.0, 100.0);
+  return fmt::format("; --exposure {:g} shows it in a PNG", stops);
+}
+
+std::string too_dark(const Scene& scene, const World& world, double brightest) {
+  std::string text;
+  if (brightest > 0)
+    text = fmt::format("almost black: what is seen is {:.2g} of white{}{}", brightest,
+                       exposure_text(scene, brightest), unit_text(scene, brightest));
+  else
+    text = "black: no light reaches what is seen; is every light behind it, inside a shape or in its shadow?";
+  for (const std::string& cause : weak_lights(scene, world)) text += "; " + cause;
+  return "the picture is " + text;
+}
+
+}  // namespace
+
+std::vector<std::string> picture_warnings(const Scene& scene, const World& world, const Image& image) {
+  if (world.meshes.empty() || scene.lights.empty()) return {};  // the plan has said so
+  std::vector<float> values = sampled_brightness(image);
+  if (values.empty()) return {nothing_in_view(scene, world)};
+  const double gain = std::exp2(scene.film.exposure);
+  const auto quantile = [&](double share) {
+    const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
+    std::ranges::nth_element(values, at);
+    return double(*at) * gain;
+  };
+  const double brightest = quantile(.99), usual = quantile(.5);
+  if (brightest < double(kAlmostBlack)) return {too_dark(scene, world, brightest)};
+  if (usual > double(kWhite))
+    return {fmt::format("the picture is too bright: half of what is seen is {:.2g} of white or more{}{}",
+                        usual, exposure_text(scene, usual), unit_text(scene, usual))};
+  return {};
+}
+
+std::vector<std::string> lamps_turned_away(const Scene& scene, const World& world) {
+  std::vector<std::string> texts;
+  for (const Light& light : scene.lights) {
+    const auto* lamp = std::get_if<QuadLight>(&light.source);
+    if (lamp == nullptr || world.boxes.empty()) continue;
+    const Vec3d normal = normalized(cross(normalized(lamp->u), normalized(lamp->v)));
+    const bool is_behind = std::ranges::all_of(world.boxes, [&](const Bounds& box) {
+      const Vec3d farthest{normal.x > 0 ? box.high.x : box.low.x, normal.y > 0 ? box.high.y : box.low.y,
+                           normal.z > 0 ? box.high.z : box.low.z};
+      return dot(normal, farthest - lamp->corner) <= 0;
+    });
+    if (is_behind)
+      texts.push_back(
+          text_at(light.place,
+                  fmt::format("the light {} turns its back to every shape: it shines where u x v points, "
+                              "so exchange u and v",
+                              light.name)));
+  }
+  return texts;
+}
+
+}  // namespace opaline

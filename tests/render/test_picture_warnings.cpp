@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A picture that shows nothing says what it is likely to lack.
+#include <gtest/gtest.h>
+
+#include "opaline/render/picture_warnings.h"
+#include "opaline/scene/load_scene.h"
+#include "support/scenes.h"
+
+namespace opaline::test {
+namespace {
+
+/// A marble ball of 10 mm, well lit, in the middle of the picture.
+Scene lit_ball() {
+  Scene scene = single_shape(SphereShape{{}, 10}, marble(), 300);
+  scene.lights = {point_light({30, 40, 80}, Rgb(2e4))};
+  return scene;
+}
+
+/// The plan's warnings, then the picture's.
+std::vector<std::string> warnings_of(const Scene& scene) {
+  const Prepared prepared(scene);
+  std::vector<std::string> all = prepared.plan.warnings;
+  const std::vector<std::string> more = picture_warnings(prepared.scene, prepared.world, prepared.picture());
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+/// One warning, which has all of these in it.
+void expect_warning(const Scene& scene, const std::vector<std::string>& parts) {
+  const std::vector<std::string> warnings = warnings_of(scene);
+  ASSERT_EQ(warnings.size(), 1u) << (warnings.empty() ? "no warning of " + parts[0] : warnings[1]);
+  for (const std::string& part : parts)
+    EXPECT_NE(warnings[0].find(part), std::string::npos) << "no \"" << part << "\" in: " << warnings[0];
+}
+
+// Claim: the scenes of the repository, and a ball lit well, call for no words about their pictures. Source:
+// picture_warnings.h. Fails if: a threshold is drawn too near to what usual pictures have.
+TEST(PictureWarnings, GoodScenesHaveNone) {
+  EXPECT_TRUE(warnings_of(lit_ball()).empty());
+  for (const char* name : {"bunny-marble", "bunny-skin1", "sphere", "backlit-slab"}) {
+    const std::vector<std::string> small{"film.resolution=[64,64]", "settings.samples=3000",
+                                         "settings.light_samples=8"};
+    const Prepared prepared(load_scene(std::string(OPALINE_SCENES_DIR) + "/" + name + ".json", small));
+    for (const std::string& text : picture_warnings(prepared.scene, prepared.world, prepared.picture()))
+      ADD_FAILURE() << name << ": " << text;
+    EXPECT_TRUE(lamps_turned_away(prepared.scene, prepared.world).empty()) << name;
+  }
+}
+
+// Claim: where no shape is seen, the words say where the shapes are, in scene units, and how to look at them:
+// behind, beside, too small for a pixel, or outside of the crop. By hand: the ball is 100 mm along -z from
+// the camera; seen at 90 degrees from its side; 20 mm at 1e7 mm are 2e-4 pixels of 32 under 40 degrees. Fails
+// if: lengths are printed in mm, or a crop beside the ball is taken for a bad camera.
+TEST(PictureWarnings, NothingInView) {
+  Scene scene = lit_ball();
+  scene.camera.look_at = {0, 0, 200};
+  expect_warning(scene, {"nothing is in view", "behind the camera", "camera.look_at=[0,0,0]"});
+  scene.mm_per_unit = 10;
+  expect_warning(scene, {"between [-1,-1,-1] and [1,1,1] (scene units)"});
+  scene = lit_ball();
+  scene.camera.look_at = {100, 0, 100};
+  expect_warning(scene, {"90 degrees beside the middle of the view"});
+  scene = lit_ball();
+  scene.camera.position = {0, 0, 1e7};
+  expect_warning(scene, {"nothing is in view", "pixels wide"});
+  scene = lit_ball();
+  scene.film.crop = {{0, 0, 4, 4}};
+  expect_warning(scene, {"nothing is in view of the crop"});
+}
+
+// Claim: lights that light nothing are named with the cause: a lamp's back, no brightness at all, far away.
+// Source: picture_warnings.h. Fails if: a lamp that shines past a shape is taken for one that is turned away
+// (u x v along +z from behind the ball lights it).
+TEST(PictureWarnings, LightsThatLightNothing) {
+  Scene scene = lit_ball();
+  const QuadLight lamp{{-20, -20, 60}, {40, 0, 0}, {0, 40, 0}, Rgb(50)};
+  scene.lights.push_back({"lamp", lamp});
+  expect_warning(scene, {"the light lamp turns its back to every shape", "exchange u and v"});
+  scene.lights.back().source = QuadLight{lamp.corner, lamp.v, lamp.u, lamp.radiance};
+  scene.lights.erase(scene.lights.begin());
+  EXPECT_TRUE(warnings_of(scene).empty());
+
+  scene.lights = {point_light({30, 40, 80}, Rgb(0))};
+  expect_warning(scene, {"the picture is black", "the light point has no brightness"});
+  scene.lights = {point_light({0, 0, 0}, Rgb(1e4))};
+  expect_warning(scene, {"the picture is black", "inside a shape"});
+  scene.lights = {point_light({0, 0, 1e6}, Rgb(2e4))};
+  expect_warning(scene,
+                 {"almost black", "the light point is 1e+06 scene units away from shapes that measure 34.6"});
+}
+
+// Claim: what is too dark or too bright for the exposure is told with the exposure that shows it; an
+// intensity meant for metres is told as such. By hand: 2^-12 of the brightness wants some 12 stops more.
+// Tolerance: one stop. Fails if: the scene's own exposure is left out, or the hint at the unit stands under a
+// sun, which has no distance.
+TEST(PictureWarnings, TooDarkOrTooBrightForTheExposure) {
+  Scene scene = lit_ball();
+  scene.lights = {point_light({30, 40, 80}, Rgb(2e4 / 4096))};
+  expect_warning(scene, {"almost black", "--exposure 1"});
+  scene.film.exposure = 12;
+  EXPECT_TRUE(warnings_of(scene).empty());
+  scene.lights = {point_light({30, 40, 80}, Rgb(2e4 * 16))};
+  scene.film.exposure = 0;
+  expect_warning(scene, {"too bright", "--exposure -"});
+
+  scene = lit_ball();
+  scene.mm_per_unit = 1000;
+  scene.lights = {point_light({30, 40, 80}, Rgb(2e-2))};
+  expect_warning(scene, {"almost black", "mm_per_unit is 1000", "1e+06 times as high"});
+  scene.lights = {{"sun", DirectionalLight{{0, 0, -1}, Rgb(1e-6)}}};
+  const std::vector<std::string> sun = warnings_of(scene);
+  ASSERT_EQ(sun.size(), 1u);
+  EXPECT_EQ(sun[0].find("mm_per_unit"), std::string::npos) << sun[0];
+}
+
+}  // namespace
+}  // namespace opaline::test
