@@ -2,17 +2,32 @@
 #include "opaline/report/csv.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include "opaline/core/error.h"
 
 namespace opaline {
 namespace {
 
-std::string quoted(const std::string& cell) {
+/// Whether a spreadsheet would take the cell for a formula. Figures are none, whatever their sign.
+bool is_formula(std::string_view cell) {
+  if (cell.empty() || std::string_view("=+-@\t\r").find(cell[0]) == std::string_view::npos) return false;
+  double number = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
+  return error != std::errc{} || end != cell.data() + cell.size();
+}
+
+/// Such a cell stands behind an apostrophe, and so does one that looks like that already.
+bool needs_apostrophe(std::string_view cell) {
+  return is_formula(cell.substr(std::min(cell.find_first_not_of('\''), cell.size())));
+}
+
+std::string quoted(const std::string& text) {
+  const std::string cell = needs_apostrophe(text) ? '\'' + text : text;
   if (cell.find_first_of(",\"\r\n#") == std::string::npos) return cell;
-  std::string text = "\"";
-  for (const char c : cell) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return text + '"';
+  std::string between;
+  for (const char c : cell) between += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return '"' + between + '"';
 }
 
 std::string line_of(const std::vector<std::string>& cells) {
@@ -58,6 +73,12 @@ class CsvReader {
 
  private:
   std::string cell() {
+    std::string text = written_cell();
+    if (text.starts_with('\'') && needs_apostrophe(text)) text.erase(0, 1);
+    return text;
+  }
+
+  std::string written_cell() {
     if (at_end() || text_[at_] != '"') {
       const std::size_t end = std::min(text_.find_first_of(",\n", at_), text_.size());
       std::string plain(text_.substr(at_, end - at_));

@@ -31,6 +31,15 @@ std::string escaped(const std::string& text) {
   return html;
 }
 
+std::string url_of(const std::string& path) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~/";
+  std::string url;
+  for (const char c : path)
+    url += plain.find(c) != plain.npos ? std::string(1, c)
+                                       : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  return url;
+}
+
 std::vector<std::size_t> rows_of(const PageScene& scene) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < scene.report->rows.size(); ++i)

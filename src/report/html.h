@@ -14,6 +14,9 @@ namespace opaline {
 /// Text as HTML shows it, also in an attribute.
 std::string escaped(const std::string& text);
 
+/// A path as the address of a file: the bytes that an address gives a meaning, such as # ? %, as %xx.
+std::string url_of(const std::string& path);
+
 /// The style sheet, the script and the frame of the page, from the files of those names.
 extern const char* const kPageStyle;
 extern const char* const kPageScript;

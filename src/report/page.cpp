@@ -116,7 +116,7 @@ std::string viewer_html(const PageScene& scene) {
   for (const std::size_t row : rows) {
     const BenchRow& r = scene.report->rows[row];
     options += fmt::format("<option value=\"{}\" data-picture=\"{}\" data-error=\"{}\"{}>{}</option>\n", row,
-                           escaped(shown_picture(r.picture)), escaped(error_picture_of(r.picture)),
+                           url_of(shown_picture(r.picture)), url_of(error_picture_of(r.picture)),
                            row == first ? " selected" : "", escaped(name_of(r.rung)));
   }
   const std::size_t n = scene.number;
@@ -134,7 +134,7 @@ std::string viewer_html(const PageScene& scene) {
 </div></div>
 )",
       scene.subject->resolution[0], scene.subject->resolution[1], n, options, n, n,
-      escaped(scene.subject->picture), escaped(shown_picture(picture)), escaped(error_picture_of(picture)),
+      url_of(scene.subject->picture), url_of(shown_picture(picture)), url_of(error_picture_of(picture)),
       error_gradient());
 }
 

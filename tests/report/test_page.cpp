@@ -40,6 +40,18 @@ TEST(Page, NumbersAreTheCsvs) {
   EXPECT_EQ(count_of(page, "data-column="), cells);
 }
 
+// Claim: pictures are found whatever is in the names of scenes: # ? % and quotes are no part of an address.
+// Source: RFC 3986. Fails if: the path is put into the page as it is.
+TEST(Page, PicturesOfOddNamesAreFound) {
+  BenchReport report = small_report();
+  report.subjects[0].picture = "pictures/50%?#\"&a b.png";
+  for (BenchRow& row : report.rows) row.picture = "pictures/#1.exr";
+  const std::string page = to_page(report);
+  EXPECT_NE(page.find("src=\"pictures/50%25%3F%23%22%26a%20b.png\""), std::string::npos);
+  EXPECT_NE(page.find("src=\"pictures/%231.png\""), std::string::npos);
+  EXPECT_NE(page.find("data-error=\"pictures/%231-error.png\""), std::string::npos);
+}
+
 // Claim: the chart as a file of its own has the page's marks, its own style and a legend, and is well-formed
 // enough to be counted: as many groups opened as closed. A scene of which nothing is known has none. Source:
 // page.h. Fails if: the style or the series' names are left to the page.
