@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ostream>
 
 #include "support/shadow_edge_line.h"
 
@@ -15,6 +16,11 @@ struct EdgeBound {
   ProfileKind profile;
   double mean, max;  ///< of the error, over the brightest pixel of the line
 };
+
+/// In the test's name; without it the bytes of the struct would be.
+void PrintTo(const EdgeBound& bound, std::ostream* out) {
+  *out << bound.name;
+}
 
 class ShadowEdge : public testing::TestWithParam<EdgeBound> {};
 
