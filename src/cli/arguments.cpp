@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -114,21 +113,66 @@ ShowText shown_text(CLI::App& app, const CLI::ParseError& request) {
   return {text};
 }
 
-std::string hint(const CLI::App& app) {
-  const auto chosen = app.get_subcommands();
-  return fmt::format("; see opaline {}--help", chosen.empty() ? "" : chosen.front()->get_name() + " ");
+/// The command that was called, of a command where it has some: "cache ls".
+const CLI::App& called(const CLI::App& app) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  return chosen.empty() ? app : called(*chosen.front());
 }
 
-/// What CLI11 calls an argument too many is a mistyped command if it stands where the command belongs.
+std::string hint(const CLI::App& command) {
+  std::string names;
+  for (const CLI::App* at = &command; at->get_parent() != nullptr; at = at->get_parent())
+    names = at->get_name() + ' ' + names;
+  return fmt::format("; see opaline {}--help", names);
+}
+
+Error unknown_command(const CLI::App& parent, const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : parent.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  const std::string near = did_you_mean(name, names);
+  return usage_error("unknown command '" + printable(name) + "'" + near,
+                     near.empty() ? "one of " + join(names) : "");
+}
+
+Error unknown_option(const CLI::App& command, const std::string& text) {
+  const std::string name = text.substr(0, text.find('='));
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& word : option->get_lnames()) names.push_back("--" + word);
+    for (const std::string& letter : option->get_snames()) names.push_back("-" + letter);
+  }
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return usage_error("unknown option '" + printable(name) + "'" + did_you_mean(name, views) + hint(command));
+}
+
+/// CLI11 tells of what is missing before it tells of what it does not know, which may be the same misspelt.
 Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
-  const std::vector<std::string> extras = app.remaining();
-  if (!app.get_subcommands().empty() || extras.empty() || extras.front().starts_with('-'))
-    return usage_error(failure.what() + hint(app));
-  constexpr std::array<std::string_view, 6> commands{"render", "info",  "compare",
-                                                     "bench",  "cache", "precompute"};
-  const std::string near = did_you_mean(extras.front(), commands);
-  return usage_error("unknown command '" + printable(extras.front()) + "'" + near,
-                     near.empty() ? "one of " + join(commands) : "");
+  const CLI::App& command = called(app);
+  const std::vector<std::string> extras = command.remaining();
+  const bool is_unknown = dynamic_cast<const CLI::ExtrasError*>(&failure) != nullptr ||
+                          dynamic_cast<const CLI::RequiredError*>(&failure) != nullptr;
+  if (!is_unknown || extras.empty()) return usage_error(failure.what() + hint(command));
+  const auto option = std::ranges::find_if(extras, [](const std::string& e) { return e.starts_with('-'); });
+  if (option != extras.end()) return unknown_option(command, *option);
+  if (!command.get_subcommands([](const CLI::App*) { return true; }).empty())
+    return unknown_command(command, extras.front());
+  return usage_error("unexpected argument '" + printable(extras.front()) + "'" + hint(command));
+}
+
+/// The words behind the program's name; "help render" is "render --help".
+std::vector<std::string> words_of(const CLI::App& app, int argc, const char* const* argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.empty() || words.front() != "help") return words;
+  words.erase(words.begin());
+  const CLI::App* command = &app;
+  for (const std::string& word : words) {
+    const auto commands = command->get_subcommands([&](const CLI::App* c) { return c->get_name() == word; });
+    if (commands.empty()) throw unknown_command(*command, word);
+    command = commands.front();
+  }
+  words.push_back("--help");
+  return words;
 }
 
 }  // namespace
@@ -173,7 +217,9 @@ Command parse_arguments(int argc, const char* const* argv) {
   add_bench_options(bench_command, bench, options);
   add_cache_commands(cache_command, cache, options);
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = words_of(app, argc, argv);
+    std::ranges::reverse(words);  // as CLI11 takes them
+    app.parse(std::move(words));
   } catch (const CLI::ParseError& failure) {
     if (failure.get_exit_code() == 0) return shown_text(app, failure);
     throw parse_error(app, failure);
@@ -190,6 +236,9 @@ Command parse_arguments(int argc, const char* const* argv) {
     return checked(std::move(bench), options);
   }
   const LogFormat format = options.log == "json" ? LogFormat::json : LogFormat::text;
+  render.program = argv[0];
+  render.command_line = shell_quoted(render.program);
+  for (int i = 1; i < argc; ++i) render.command_line += ' ' + shell_quoted(argv[i]);
   info.log.format = render.log.format = precompute.log.format = format;
   info.overrides = render.overrides = precompute.overrides = overrides_of(options);
   if (!options.frames.empty()) render.frames = precompute.frames = *parse_frames(options.frames);

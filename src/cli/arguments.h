@@ -15,6 +15,8 @@
 namespace opaline {
 
 struct RenderArguments {
+  std::string program;       ///< as it was called
+  std::string command_line;  ///< all of it, for a shell
   std::string scene;
   /// For load_scene: what the short options mean, in a fixed order, then every --set in the order given.
   std::vector<std::string> overrides;

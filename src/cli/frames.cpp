@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <filesystem>
 #include <set>
 
 #include "cli/metadata.h"
+#include "cli/units.h"
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
 #include "opaline/scene/load_scene.h"
@@ -53,19 +55,38 @@ std::optional<std::vector<int>> parse_frames(const std::string& text) {
   return std::vector<int>(frames.begin(), frames.end());
 }
 
-void for_frames(const Log& log, const std::vector<int>& frames, const std::function<void(int)>& work) {
+void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_far,
+                const std::function<bool(int)>& work) {
+  using Clock = std::chrono::steady_clock;
+  const auto seconds_since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const auto begin = Clock::now();
+  so_far = {frames.size()};
   std::vector<int> failed;
   for (const int frame : frames) {
     if (!log.quiet && log.format == LogFormat::text) write_line(stdout, fmt::format("\nframe {}", frame));
     if (!log.quiet) print_event(log, "frame", {{"frame", frame}});
+    const auto start = Clock::now();
     try {
-      work(frame);
+      if (work(frame)) {
+        ++so_far.rendered;
+        so_far.seconds += seconds_since(start);
+      }
     } catch (const std::exception& failure) {
       const auto* error = dynamic_cast<const Error*>(&failure);
       if (error != nullptr && error->kind == ErrorKind::interrupted) throw;
       print_warning(log, fmt::format("frame {} failed: {}", frame, failure.what()));
       failed.push_back(frame);
     }
+    ++so_far.finished;
+  }
+  if (!log.quiet && log.format == LogFormat::text) {
+    const std::size_t found = frames.size() - so_far.rendered - failed.size();
+    write_line(stdout, fmt::format("\n{} of {} frames made{}{} in {}", so_far.rendered, frames.size(),
+                                   found > 0 ? fmt::format(", {} there already", found) : "",
+                                   failed.empty() ? "" : fmt::format(", {} failed", failed.size()),
+                                   short_time(seconds_since(begin))));
   }
   if (failed.empty()) return;
   throw run_failed(

@@ -15,9 +15,19 @@ namespace opaline {
 
 enum class LogFormat { text, json };
 
+/// How far a range of frames is.
+struct FramesSoFar {
+  std::size_t count = 0, finished = 0;  ///< all; rendered, there already or failed
+  std::size_t rendered = 0;
+  double seconds = 0;  ///< that rendering them took
+
+  double fraction() const { return double(finished) / double(count); }
+};
+
 struct Log {
   LogFormat format = LogFormat::text;
-  bool quiet = false;  ///< warnings and errors only
+  bool quiet = false;                   ///< warnings and errors only
+  const FramesSoFar* frames = nullptr;  ///< set while a range is rendered
 };
 
 using Json = nlohmann::ordered_json;

@@ -100,10 +100,17 @@ CLI::Validator share_check() {
 }
 
 CLI::Validator positive_share_check() {
-  return check("a share such as 2% or .02", [](const std::string& text) {
-    const std::optional<double> share = share_of(text);
-    return share && *share > 0 && *share <= 1;
-  });
+  return CLI::Validator(
+      [](std::string& text) {
+        const std::optional<double> share = share_of(text);
+        const bool percent = text.ends_with('%');
+        if (share && *share > 0 && (percent ? *share <= 1 : *share < 1)) return std::string();
+        std::string failure = "expected a share such as 2% or .02, got " + text;
+        if (share && *share >= 1 && *share <= 100 && !percent)
+          failure += fmt::format(", which is {:.4g} %; did you mean {}%?", 100 * *share, text);
+        return failure;
+      },
+      {});
 }
 
 CLI::Validator seconds_of() {

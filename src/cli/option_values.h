@@ -30,7 +30,7 @@ CLI::Validator crop_check();
 /// CLI11 would let a number beyond 64 bits wrap or stop at the end, and take 010 for 8.
 CLI::Validator whole_number(WholeRange range);
 CLI::Validator share_check();
-/// Of (0, 1].
+/// Of (0, 1]. A number without % is below 1: who writes 1 means 1 %.
 CLI::Validator positive_share_check();
 /// "2s", "500ms", "1.5min", "1h" or seconds alone, to seconds.
 CLI::Validator seconds_of();

@@ -37,8 +37,13 @@ void precompute_command(const PrecomputeArguments& arguments) {
   session.expect_edits(!arguments.frames.empty());
   if (arguments.frames.empty()) return precompute_frame(arguments, session, cache, {});
   anchor_session(session, arguments.scene, arguments.overrides);
-  for_frames(arguments.log, arguments.frames,
-             [&](int frame) { precompute_frame(arguments, session, cache, frame); });
+  FramesSoFar so_far;
+  PrecomputeArguments range = arguments;
+  range.log.frames = &so_far;
+  for_frames(range.log, range.frames, so_far, [&](int frame) {
+    precompute_frame(range, session, cache, frame);
+    return true;
+  });
 }
 
 }  // namespace opaline

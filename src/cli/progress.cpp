@@ -2,6 +2,7 @@
 #include "cli/progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::duration;
 
 constexpr std::chrono::milliseconds kPoll{100};
-constexpr double kSecondsBeforeEstimate = 0.5;
+constexpr double kSecondsBeforeEstimate = 0.5, kSecondsBeforeElapsed = 2;
 constexpr std::string_view kClearLine = "\r\x1b[K";
 
 bool on_terminal() {
@@ -34,27 +35,70 @@ void write_terminal(std::string_view text) {
   std::fflush(stderr);
 }
 
-std::string bar(double fraction) {
-  constexpr int width = 24;
-  const int full = std::clamp(int(fraction * width), 0, width);
-  return std::string(std::size_t(full), '#') + std::string(std::size_t(width - full), '.');
+std::size_t terminal_columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-std::string time_left(const ProgressEstimate& estimate) {
-  return estimate.seconds_left() < 0 ? std::string() : short_time(estimate.seconds_left()) + " left";
+std::string bar(double fraction, std::size_t width) {
+  const std::size_t full = std::min(width, std::size_t(std::max(0.0, fraction) * double(width)));
+  return '[' + std::string(full, '#') + std::string(width - full, '.') + "] ";
+}
+
+std::string percent(double fraction) {
+  return fmt::format("{:.0f} %", std::floor(100 * fraction));
+}
+
+std::string left_text(double seconds) {
+  return seconds < 1 ? "less than 1 s left" : short_time(seconds) + " left";
+}
+
+/// "12 %, 3.0 s left", as far as it is known.
+std::string stage_text(const ProgressState& state) {
+  std::string text;
+  if (state.fraction >= 0) text += percent(state.fraction);
+  if (state.seconds_left >= 0) text += ", " + left_text(state.seconds_left);
+  if (text.empty() && state.seconds >= kSecondsBeforeElapsed) text = short_time(state.seconds) + " so far";
+  return text;
+}
+
+std::string frames_text(const FramesSoFar& frames) {
+  std::string text = percent(frames.fraction());
+  if (frames.rendered > 0)
+    text +=
+        ", " + left_text(frames.seconds * double(frames.count - frames.finished) / double(frames.rendered));
+  return text;
 }
 
 }  // namespace
 
-void ProgressEstimate::update(std::size_t done, std::size_t total, Time now) {
-  if (total != last_total_ || done < last_done_) start_ = now;
-  last_total_ = total;
-  last_done_ = done;
+void ProgressEstimate::update(const Monitor& monitor, Time now) {
+  const unsigned rounds = monitor.rounds;
+  if (rounds != rounds_) start_ = now;
+  rounds_ = rounds;
+  const double done = double(monitor.done), total = double(monitor.total);
+  seconds_ = duration<double>(now - start_).count();
   fraction_ = seconds_left_ = -1;
   if (total == 0) return;
-  fraction_ = std::min(1.0, double(done) / double(total));
-  const double elapsed = duration<double>(now - start_).count();
-  if (done > 0 && elapsed >= kSecondsBeforeEstimate) seconds_left_ = elapsed * (1 - fraction_) / fraction_;
+  constexpr double kMost = 0.99;
+  fraction_ = std::min(kMost, done / total);
+  if (done > 0 && seconds_ >= kSecondsBeforeEstimate) seconds_left_ = seconds_ * (1 - fraction_) / fraction_;
+}
+
+std::string progress_line(const ProgressState& state, std::size_t columns) {
+  const std::size_t room = std::max<std::size_t>(columns, 1) - 1;
+  const bool range = state.frames.has_value();
+  std::string label = range ? fmt::format("frame {} of {}  ", state.frames->finished + 1, state.frames->count)
+                            : fmt::format("{:<12}", state.stage);
+  std::string text = stage_text(state);
+  if (range)
+    text = frames_text(*state.frames) + "  (" + state.stage +
+           (state.fraction >= 0 ? " " + percent(state.fraction) : "") + ")";
+  const double fraction = range ? state.frames->fraction() : state.fraction;
+  constexpr std::size_t kWidest = 24, kNarrowest = 6, kBrackets = 3;
+  const std::size_t used = label.size() + text.size() + kBrackets;
+  if (fraction >= 0 && room >= used + kNarrowest) label += bar(fraction, std::min(kWidest, room - used));
+  return (label + text).substr(0, room);
 }
 
 Progress::Progress(const Log& log, const Monitor& monitor, std::string stage)
@@ -68,44 +112,53 @@ Progress::Progress(const Log& log, const Monitor& monitor, std::string stage)
   if (style_ != Style::none) thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
 }
 
-void Progress::watch(const std::stop_token& stop) const {
-  const duration<double> interval(style_ == Style::lines ? 10.0 : style_ == Style::json ? 0.5 : 0.0);
+void Progress::watch(const std::stop_token& stop) {
+  constexpr double kJsonSeconds = 0.5, kLineSeconds = 10, kLineGrowth = 0.1;
   std::mutex mutex;
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
-  auto shown = Clock::now();
-  ProgressEstimate estimate(shown);
-  show(estimate);
+  const auto start = Clock::now();
+  auto shown = start;
+  ProgressEstimate estimate(start);
+  if (style_ != Style::lines) show(state_of(estimate));
   while (!wake.wait_for(lock, stop, kPoll, [&] { return stop.stop_requested(); })) {
     const auto now = Clock::now();
-    estimate.update(monitor_.done, monitor_.total, now);
-    if (now - shown < interval) continue;
-    show(estimate);
+    estimate.update(monitor_, now);
+    const double since = duration<double>(now - shown).count();
+    if (style_ == Style::json && since < kJsonSeconds) continue;
+    if (style_ == Style::lines &&
+        since < std::max(kLineSeconds, kLineGrowth * duration<double>(now - start).count()))
+      continue;
+    show(state_of(estimate));
     shown = now;
   }
   if (style_ == Style::terminal) write_terminal(kClearLine);
 }
 
-void Progress::show(const ProgressEstimate& estimate) const {
-  const double fraction = estimate.fraction();
-  const std::string left = time_left(estimate);
+ProgressState Progress::state_of(const ProgressEstimate& estimate) const {
   const char* part = monitor_.stage;
-  const std::string stage = part != nullptr ? part : stage_;
+  ProgressState state{
+      part != nullptr ? part : stage_, estimate.fraction(), estimate.seconds_left(), estimate.seconds(), {}};
+  if (log_.frames != nullptr) state.frames = *log_.frames;
+  return state;
+}
+
+void Progress::show(const ProgressState& state) {
   if (style_ == Style::json) {
-    Json members{{"stage", stage}};
-    if (fraction >= 0) members["fraction"] = fraction;
-    if (!left.empty()) members["seconds_left"] = estimate.seconds_left();
+    Json members{{"stage", state.stage}};
+    if (state.fraction >= 0) members["fraction"] = state.fraction;
+    if (state.seconds_left >= 0) members["seconds_left"] = state.seconds_left;
+    if (state.frames)
+      members["frames_finished"] = state.frames->finished, members["frames"] = state.frames->count;
     print_event(log_, "progress", members);
   } else if (style_ == Style::terminal) {
-    std::string line = fmt::format("{}{:<12}", kClearLine, stage);
-    if (fraction >= 0)
-      line += fmt::format("[{}] {:3.0f} %  {}", bar(fraction), std::floor(100 * fraction), left);
-    write_terminal(line);
+    const std::string line = progress_line(state, terminal_columns());
+    if (line == shown_) return;
+    write_terminal(std::string(kClearLine) + line);
+    shown_ = line;
   } else {
-    std::string line = stage;
-    if (fraction >= 0) line += fmt::format(": {:.0f} %", std::floor(100 * fraction));
-    if (!left.empty()) line += ", " + left;
-    write_line(stderr, line);
+    const std::string text = stage_text(state);
+    write_line(stderr, state.stage + (text.empty() ? "" : ": " + text));
   }
 }
 

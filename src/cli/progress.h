@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -18,19 +19,31 @@ class ProgressEstimate {
   using Time = std::chrono::steady_clock::time_point;
 
   explicit ProgressEstimate(Time now) : start_(now) {}
-  void update(std::size_t done, std::size_t total, Time now);
+  void update(const Monitor& monitor, Time now);
 
-  double fraction() const { return fraction_; }          ///< of the work, 0 to 1; below 0: not known
+  /// Of the work, 0 to .99: a stage that is done shows nothing any more; below 0: not known.
+  double fraction() const { return fraction_; }
   double seconds_left() const { return seconds_left_; }  ///< below 0: not known yet
+  double seconds() const { return seconds_; }            ///< since the counters were set to 0
 
  private:
-  std::size_t last_total_ = 0, last_done_ = 0;
-  Time start_;  ///< of the counters: a stage may count several rounds of work
-  double fraction_ = -1, seconds_left_ = -1;
+  unsigned rounds_ = 0;
+  Time start_;
+  double fraction_ = -1, seconds_left_ = -1, seconds_ = 0;
 };
 
+/// What the line of a terminal tells.
+struct ProgressState {
+  std::string stage;
+  double fraction = -1, seconds_left = -1, seconds = 0;  ///< of the stage, as ProgressEstimate has them
+  std::optional<FramesSoFar> frames;                     ///< of a range: the line is about the whole of it
+};
+
+/// The line, shorter than `columns` so that no terminal wraps it: the bar goes first, then the end is cut.
+std::string progress_line(const ProgressState& state, std::size_t columns);
+
 /// While it lives, a thread polls the monitor ten times a second and shows the stage on stderr: on a terminal
-/// as one line that updates and goes away, otherwise as a line at the start and every ten seconds. With a
+/// as one line that updates and goes away, otherwise as a line after ten seconds and ever more rarely. With a
 /// JSON log: an event at the start and at most two a second. Nothing with --quiet.
 class Progress {
  public:
@@ -41,13 +54,15 @@ class Progress {
 
  private:
   enum class Style { none, terminal, lines, json };
-  void watch(const std::stop_token& stop) const;
-  void show(const ProgressEstimate& estimate) const;
+  void watch(const std::stop_token& stop);
+  ProgressState state_of(const ProgressEstimate& estimate) const;
+  void show(const ProgressState& state);
 
   const Log& log_;
   const Monitor& monitor_;
   std::string stage_;
   Style style_;
+  std::string shown_;    // the terminal's line
   std::jthread thread_;  // last: it uses the others, and its destructor stops and joins it
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <csignal>
@@ -6,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/frames.h"
+#include "cli/memory_check.h"
 #include "cli/metadata.h"
 #include "cli/partial_picture.h"
 #include "cli/quality.h"
@@ -13,8 +15,10 @@
 #include "cli/report.h"
 #include "cli/resumable_state.h"
 #include "cli/stages.h"
+#include "cli/units.h"
 #include "opaline/core/error.h"
 #include "opaline/render/direct.h"
+#include "opaline/render/picture_warnings.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 
@@ -35,6 +39,15 @@ struct Shading {
   double cpu_seconds = 0, embree_seconds = 0;
 };
 
+/// What Ctrl-C has not lost.
+std::string how_to_go_on(const RenderArguments& arguments, const Session& session,
+                         const ResumableState& resumable) {
+  if (arguments.resume.empty()) return "nothing was kept: --resume FILE keeps the sums of a direct rendering";
+  const std::size_t samples = resumable.state.passes * entry_samples_per_pass(session.scene().film);
+  return fmt::format("the sums of {} entry samples a pixel are in {}; go on by {}", grouped(samples),
+                     arguments.resume, arguments.command_line);
+}
+
 DirectResult shade_direct(const RenderArguments& arguments, const Session& session, Monitor& monitor) {
   if (arguments.time_budget)
     return direct_within({session.scene(), session.world(), session.rays(), session.plan(), &monitor},
@@ -47,8 +60,10 @@ DirectResult shade_direct(const RenderArguments& arguments, const Session& sessi
     resumable.keep();
     return result;
   } catch (const Error& stopped) {
-    if (stopped.kind == ErrorKind::interrupted) resumable.keep();
-    throw;
+    if (stopped.kind != ErrorKind::interrupted) throw;
+    resumable.keep();
+    throw Error(ErrorKind::interrupted, {}, 0, 0,
+                "interrupted; " + how_to_go_on(arguments, session, resumable));
   }
 }
 
@@ -133,8 +148,9 @@ struct Shared {
   DisplayServer* viewer = nullptr;
 };
 
-/// One picture; `frame`: of a range, whose session is anchored.
-void render_scene(const RenderArguments& arguments, Session& session, const Shared& shared,
+/// One picture; `frame`: of a range, whose session is anchored; whether it was rendered, and not there
+/// already.
+bool render_scene(const RenderArguments& arguments, Session& session, const Shared& shared,
                   std::optional<int> frame) {
   StageRunner stages(arguments.log);
   if (arguments.time_budget) stages.note({"start", 0, process_cpu_seconds(), 0, peak_memory()});
@@ -149,13 +165,18 @@ void render_scene(const RenderArguments& arguments, Session& session, const Shar
     if (!is_there) session.edit(std::move(scene));
     return bytes_hash;
   });
-  if (is_there) return print_skipped(arguments.log, arguments.outputs);
+  if (is_there) {
+    print_skipped(arguments.log, arguments.outputs);
+    return false;
+  }
   const Scene& scene = session.scene();
   if (!arguments.resume.empty() && scene.settings.method != Method::direct)
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct");
   check_precompute(arguments, scene, session.plan());
+  check_memory(scene, session.plan());
   KnownErrors errors = choose_settings(stages, arguments, session);
   print_plan(arguments.log, scene, announced_plan(arguments, session));
+  check_memory(scene, session.plan());  // of the settings that were chosen
 
   std::optional<PartialPicture> partial;
   if (arguments.write_partial || shared.viewer != nullptr)
@@ -173,6 +194,8 @@ void render_scene(const RenderArguments& arguments, Session& session, const Shar
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
   Image& image = shading.picture.image;
+  for (const std::string& text : picture_warnings(scene, session.world(), image))
+    print_warning(arguments.log, text);
   errors.measured = verify_picture(stages, arguments, session, errors, image);
   const RenderArguments repeated = repeating(arguments, session, shading);
   if (arguments.time_budget) hash = scene_hash(repeated.scene, repeated.overrides, scene);
@@ -186,13 +209,14 @@ void render_scene(const RenderArguments& arguments, Session& session, const Shar
   if (arguments.time_budget) {
     double spent = 0;
     for (const StageCost& cost : stages.costs()) spent += cost.stage == "verifying" ? 0 : cost.cpu_seconds;
-    summary.budget = {*arguments.time_budget, spent, command_of(repeated)};
+    summary.budget = {*arguments.time_budget, spent, command_again(repeated)};
     warn_of_little_time(arguments, scene.film, spent, shading.direct);
   }
   summary.costs = stages.costs();
   summary.errors = errors;
   summary.outputs = std::move(outputs);
   print_summary(arguments.log, summary);
+  return true;
 }
 
 }  // namespace
@@ -213,15 +237,18 @@ void render_command(const RenderArguments& arguments) {
   std::optional<DisplayServer> viewer;
   if (arguments.display_server) viewer.emplace(*arguments.display_server, arguments.log);
   const Shared shared{cache ? &*cache : nullptr, viewer ? &*viewer : nullptr};
-  const auto render_one = [&](const RenderArguments& own, std::optional<int> frame) {
-    render_scene(own, session, shared, frame);
-  };
-  if (arguments.frames.empty()) return render_one(arguments, {});
-  const RenderArguments settled =
+  if (arguments.frames.empty()) {
+    render_scene(arguments, session, shared, {});
+    return;
+  }
+  RenderArguments settled =
       arguments.target_error ? settled_for_frames(arguments, cache ? &*cache : nullptr) : arguments;
   anchor_session(session, settled.scene, settled.overrides);
-  for_frames(settled.log, settled.frames,
-             [&](int frame) { render_one(arguments_of_frame(settled, frame), frame); });
+  FramesSoFar so_far;
+  settled.log.frames = &so_far;
+  for_frames(settled.log, settled.frames, so_far, [&](int frame) {
+    return render_scene(arguments_of_frame(settled, frame), session, shared, frame);
+  });
 }
 
 }  // namespace opaline

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -163,25 +162,26 @@ DirectResult render_direct(const DirectInput& input, DirectState& state) {
   const Settings& settings = input.scene.settings;
   state.sums.resize(renderer.pixels() * DirectState::kSums);
   const std::size_t passes = most_passes(settings, input.scene.film);
-  const auto good_enough = [&] {
-    return settings.until_error && state.passes >= kFewestPasses &&
-           relative_noise(state) <= *settings.until_error;
-  };
   const std::size_t first = state.passes;
   // The picture of the other layers is one pass more.
   const auto expect = [&](std::size_t all) {
     if (input.monitor != nullptr)
       input.monitor->total = (std::max(all, state.passes) - first + 1) * renderer.work_per_pass();
   };
+  // Noise falls with the root of the passes; how many it takes is not known of the first few.
+  bool good_enough = false;
+  const auto look = [&] {
+    if (!settings.until_error) return expect(passes);
+    if (state.passes < kFewestPasses) return;
+    const double noise = relative_noise(state), ratio = noise / *settings.until_error;
+    good_enough = noise <= *settings.until_error;
+    expect(std::size_t(std::ceil(std::min(double(passes), double(state.passes) * ratio * ratio))));
+  };
   if (input.monitor != nullptr) input.monitor->begin("shading", 0);
-  expect(settings.until_error ? 0 : passes);
-  while (state.passes < passes && !good_enough()) {
+  look();
+  while (state.passes < passes && !good_enough) {
     renderer.add_pass(state);
-    // How many it takes is guessed anew each time that the passes have doubled: noise falls with their root.
-    if (settings.until_error && state.passes >= kFewestPasses && std::has_single_bit(state.passes)) {
-      const double ratio = relative_noise(state) / *settings.until_error;
-      expect(std::size_t(std::min(double(passes), double(state.passes) * ratio * ratio)));
-    }
+    look();
     if (input.after_pass) input.after_pass(state);
   }
   DirectResult result;

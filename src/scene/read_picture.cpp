@@ -22,8 +22,6 @@ constexpr std::uint64_t most_frame = 1000000000;
 std::array<int, 2> read_resolution(const Value& value) {
   const std::vector<Value> sides = value.list(2, "[width, height]");
   const std::uint64_t width = sides[0].integer(1, largest_side), height = sides[1].integer(1, largest_side);
-  if (width * height > most_pixels)
-    value.fail("has too many pixels", "at most 2^28 = " + std::to_string(most_pixels) + " in all");
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 
@@ -34,6 +32,15 @@ std::array<int, 4> read_crop(const Value& value, const std::array<int, 2>& resol
     crop[i] = static_cast<int>(ends[i].integer(0, static_cast<std::uint64_t>(resolution[i % 2])));
   if (crop[0] >= crop[2] || crop[1] >= crop[3]) value.fail("holds no pixel", "x0 < x1 and y0 < y1");
   return crop;
+}
+
+/// A cropped picture may be as large as it likes.
+void check_pixels(const Film& film, const Value& value) {
+  const std::array<int, 4> part =
+      film.crop.value_or(std::array<int, 4>{0, 0, film.resolution[0], film.resolution[1]});
+  if (std::uint64_t(part[2] - part[0]) * std::uint64_t(part[3] - part[1]) > most_pixels)
+    value.fail("has too many pixels",
+               "at most 2^28 = " + std::to_string(most_pixels) + " in all, or a 'crop' of so many");
 }
 
 }  // namespace
@@ -66,8 +73,11 @@ Camera read_camera(const std::optional<Value>& value, double mm_per_unit) {
 Film read_film(const Value& value) {
   const ObjectReader reader(value, "film");
   Film film;
-  if (const auto resolution = reader.find("resolution")) film.resolution = read_resolution(*resolution);
-  if (const auto crop = reader.find("crop")) film.crop = read_crop(*crop, film.resolution);
+  const auto resolution = reader.find("resolution");
+  if (resolution) film.resolution = read_resolution(*resolution);
+  const auto crop = reader.find("crop");
+  if (crop) film.crop = read_crop(*crop, film.resolution);
+  if (resolution) check_pixels(film, crop ? *crop : *resolution);
   if (const auto samples = reader.find("samples_per_pixel"))
     film.samples_per_pixel = static_cast<int>(samples->integer(1, 65536));
   if (const auto filter = reader.find("filter"))

@@ -2,6 +2,7 @@
 #include "schema.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -38,9 +39,9 @@ const std::vector<Section>& sections() {
       {"camera", {"position", "look_at", "up", "field_of_view"}},
       {"film", {"resolution", "crop", "samples_per_pixel", "filter", "pixel_type", "exposure"}},
       {"settings",
-       {"method", "evaluator", "tolerance", "instruction_set", "max_solid_angle", "near_field", "near_irradiance",
-        "sample_spacing", "samples", "max_samples", "light_samples", "entry_strategy", "entry_samples",
-        "until_error", "seed", "reference_frame"}},
+       {"method", "evaluator", "tolerance", "instruction_set", "max_solid_angle", "near_field",
+        "near_irradiance", "sample_spacing", "samples", "max_samples", "light_samples", "entry_strategy",
+        "entry_samples", "until_error", "seed", "reference_frame"}},
   };
   return table;
 }
@@ -79,7 +80,14 @@ std::vector<std::string> all_known_keys() {
   return keys;
 }
 
-std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates) {
+namespace {
+
+std::string suggestion(std::string_view name) {
+  return name.empty() ? "" : " (did you mean '" + printable(name) + "'?)";
+}
+
+/// The candidate that is spelt almost alike, or empty.
+std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
   constexpr std::size_t longest = 64;  // a name may be megabytes long; then nothing is near it
   std::string_view nearest;
   std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
@@ -91,7 +99,39 @@ std::string did_you_mean(std::string_view name, std::span<const std::string_view
       nearest = candidate;
     }
   }
-  return nearest.empty() ? "" : " (did you mean '" + printable(nearest) + "'?)";
+  return nearest;
+}
+
+/// The sections that stand once in a scene, so that their keys have one path.
+constexpr std::array<std::string_view, 3> kSingleSections{"camera", "film", "settings"};
+
+/// Path of a key in one of them that is called like this, or, if `almost`, spelt almost alike; or empty.
+std::string path_elsewhere(std::string_view key, bool almost) {
+  for (const std::string_view section : kSingleSections) {
+    const std::span<const std::string_view> keys = section_keys(section);
+    const bool is_there = std::ranges::find(keys, key) != keys.end();
+    const std::string_view found = is_there ? key : almost ? nearest_name(key, keys) : std::string_view();
+    if (!found.empty()) return std::string(section) + '.' + std::string(found);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates) {
+  return suggestion(nearest_name(name, candidates));
+}
+
+std::string did_you_mean_key(std::string_view name, std::string_view section) {
+  const std::span<const std::string_view> keys = section_keys(section);
+  // Keys of a shape, a light or a medium are not mixed up with the others: only their names are alike.
+  const bool may_be_elsewhere =
+      section == "scene" || std::ranges::find(kSingleSections, section) != kSingleSections.end();
+  if (!may_be_elsewhere) return did_you_mean(name, keys);
+  const std::string exact = path_elsewhere(name, false);
+  if (!exact.empty()) return suggestion(exact);
+  const std::string_view near = nearest_name(name, keys);
+  return near.empty() ? suggestion(path_elsewhere(name, true)) : suggestion(near);
 }
 
 std::string join(std::span<const std::string_view> names) {

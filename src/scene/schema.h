@@ -18,6 +18,10 @@ std::vector<std::string> all_known_keys();
 /// " (did you mean 'x'?)" for the candidate with the smallest edit distance if it is close, else nothing.
 std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates);
 
+/// The same for a key that is none of the section's: in the scene, camera, film and settings also the path of
+/// a key of the others.
+std::string did_you_mean_key(std::string_view name, std::string_view section);
+
 /// "a, b, c".
 std::string join(std::span<const std::string_view> names);
 

@@ -190,7 +190,7 @@ ObjectReader::ObjectReader(const Value& value, std::string_view section)
   require(!keys_.empty(), "a section of the scene's schema");
   for (const Node& child : require_kind(Node::Kind::object, "an object {...}").children) {
     if (std::find(keys_.begin(), keys_.end(), child.key) != keys_.end()) continue;
-    const std::string hint = did_you_mean(child.key, keys_);
+    const std::string hint = did_you_mean_key(child.key, section);
     throw error_at(*document_, child.key_offset, child.override_index,
                    "unknown key '" + printable(child.key) + "' in " + name() + hint,
                    hint.empty() ? "one of " + join(keys_) : "");

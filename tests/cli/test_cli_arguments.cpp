@@ -12,13 +12,19 @@ namespace {
 // Claim: help and version are asked for, so they are no failure; help shows commands to copy.
 // Source: arguments.h. Fails if: CLI11's exception for --help is taken for an error.
 TEST(CliArguments, HelpAndVersion) {
-  for (const std::vector<std::string>& line : std::vector<std::vector<std::string>>{
-           {"--help"}, {"render", "--help"}, {"info", "-h"}, {"--version"}}) {
+  for (const std::vector<std::string>& line :
+       std::vector<std::vector<std::string>>{{"--help"},
+                                             {"render", "--help"},
+                                             {"info", "-h"},
+                                             {"--version"},
+                                             {"help"},
+                                             {"help", "cache", "ls"}}) {
     const Outcome outcome = run_program(line);
     EXPECT_EQ(outcome.exit_code, 0) << line[0];
     EXPECT_TRUE(outcome.err.empty()) << outcome.err;
     EXPECT_FALSE(outcome.out.empty());
   }
+  EXPECT_EQ(run_program({"help", "render"}).out, run_program({"render", "--help"}).out);
   EXPECT_TRUE(contains(run_program({"--help"}).out, "opaline render bunny.json -o bunny.exr"));
   EXPECT_TRUE(run_program({"--version"}).out.starts_with("opaline "));
 }
@@ -37,7 +43,21 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{}, "no command"},
       {{"rendr", scene}, "unknown command 'rendr' (did you mean 'render'?)"},
       {{"ifno", scene, "--spp", "4"}, "unknown command 'ifno' (did you mean 'info'?)"},
-      {{"draw", scene}, "unknown command 'draw' (expected one of render, info, compare, bench, cache, precompute)"},
+      {{"draw", scene},
+       "unknown command 'draw' (expected one of render, precompute, info, compare, bench, cache)"},
+      {{"cache", "lss", out}, "unknown command 'lss' (did you mean 'ls'?)"},
+      {{"help", "rendr"}, "unknown command 'rendr' (did you mean 'render'?)"},
+      {{"render", scene, "--outpt", out}, "unknown option '--outpt' (did you mean '--output'?)"},
+      {{"render", scene, "-o", out, "--spps=4"}, "unknown option '--spps' (did you mean '--spp'?)"},
+      {{"cache", "ls", out, "--jsn"}, "(did you mean '--json'?); see opaline cache ls --help"},
+      {{"info", scene, "more"}, "unexpected argument 'more'"},
+      {{"info", scene, "--set", "samples=4"},
+       "unknown key 'samples' in the scene (did you mean 'settings.samples'?)"},
+      {{"info", scene, "--set", "resolutoin=[4,4]"}, "(did you mean 'film.resolution'?)"},
+      {{"info", scene, "--set", "settings.sampels=4"}, "(did you mean 'samples'?)"},
+      {{"info", "bunny.obj"}, "bunny.obj: is a mesh, not a scene"},
+      {{"render", scene, "-o", out, "--target-error", "1"}, "got 1, which is 100 %; did you mean 1%?"},
+      {{"render", scene, "-o", out, "--until-error", "2"}, "did you mean 2%?"},
       {{scene}, "unknown command '"},
       {{"--quiet", "rendr"}, "--quiet"},
       {{"render"}, "required"},

@@ -21,9 +21,10 @@ std::size_t passes_in(const std::string& path) {
   return 0;
 }
 
-// Claim: stopped by Ctrl-C, a rendering keeps its sums, leaves the old picture, and goes on to the bytes of
-// one in one go; a finished one goes on to more samples. Source: the design. Tolerance: none. Fails if: the
-// sums are not written on the way out, cannot be read back, or passes begin again at 0.
+// Claim: stopped by Ctrl-C, a rendering keeps its sums, says where and by which command to go on, leaves the
+// old picture, and goes on to the bytes of one in one go; a finished one goes on to more samples. Source: the
+// design. Tolerance: none. Fails if: the sums are not written on the way out, cannot be read back, or passes
+// begin again at 0.
 TEST(CliDirect, InterruptedAndResumedIsTheSameAsInOneGo) {
   const SceneFolder folder;
   const std::string sums = folder.file("sums.exr");
@@ -34,6 +35,9 @@ TEST(CliDirect, InterruptedAndResumedIsTheSameAsInOneGo) {
   child.send(SIGINT);
   const Outcome stopped = child.wait(20);
   EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
+  const std::string said = event_of(events_of(stopped.out), "error")["message"];
+  EXPECT_TRUE(contains(said, "entry samples a pixel are in " + sums + "; go on by ")) << said;
+  EXPECT_TRUE(said.ends_with("--entry-samples 100000000 --resume " + sums + " --log json")) << said;
   EXPECT_EQ(bytes_of(folder.file("a.exr")), "old");
   const std::size_t passes = passes_in(sums);
   ASSERT_GT(passes, 0u);

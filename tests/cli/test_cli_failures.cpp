@@ -17,7 +17,8 @@ TEST(CliFailures, BadScenes) {
   } cases[] = {
       {"", "empty"},
       {"{\n\"film\": {\"resolutoin\": [2, 2]}}", "bad.json:2:10: "},
-      {"{\"shapes\": [{\"file\": \"missing.ply\"}]}", "missing.ply"},
+      {"{\"shapes\": [\n{\"file\": \"missing.ply\"}]}", "missing.ply: no such mesh file"},
+      {"{\"shapes\": [\n{\"file\": \"missing.ply\"}]}", "bad.json:2:10: "},
   };
   for (const auto& c : cases) {
     put_bytes(scene, c.text);
@@ -27,6 +28,27 @@ TEST(CliFailures, BadScenes) {
     EXPECT_EQ(folder.entries(), 2u);
   }
   EXPECT_EQ(run_program({"render", folder.file("none.json"), "-o", out}).exit_code, 2);
+}
+
+// Claim: a picture beyond the memory there is is refused before it is begun, with what would make it fit; a
+// crop of as large a one takes as much as the crop, and is made. By hand: 16384 x 16384 pixels of 26 floats
+// are 28 GB, above the 4 GB that the child may have. Fails if: the plan counts the pixels outside of the
+// crop, or nobody asks how much memory there is.
+TEST(CliFailures, TooLargeForTheMemoryIsSaidBeforeItStarts) {
+  const SceneFolder folder;
+  const Limits limits{{}, rlim_t(4) << 30};
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", folder.scene, "-o", folder.file("a.exr"), "--quiet"});
+    return run_program(more, ".", limits);
+  };
+  const Outcome refused = run({"--resolution", "16384x16384"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_TRUE(contains(refused.err, "of memory, and there are ") &&
+              contains(refused.err, "a lower film.resolution"))
+      << refused.err;
+  EXPECT_EQ(folder.entries(), 1u);
+  const Outcome crop = run({"--resolution", "65536x65536", "--crop", "32768,32768,32784,32784"});
+  EXPECT_EQ(crop.exit_code, 0) << crop.err;
 }
 
 // Claim: with a JSON log an error is an event with its place, and stderr is empty.
@@ -112,15 +134,15 @@ TEST(CliFailures, InterruptKeepsTheOldFile) {
   }
 }
 
-// Claim: a second Ctrl-C kills at once, whatever the stage does: here one tile of 100 million kernels, in which
-// nobody looks at the monitor. Source: interrupt.h. On a loaded machine the first may be heard before the tile
-// begins, which ends in 130: three tries. Fails if: the handler stays after the first.
+// Claim: a second Ctrl-C kills at once, whatever the stage does: here one tile of 100 million kernels, in
+// which nobody looks at the monitor. Source: interrupt.h. On a loaded machine the first may be heard before
+// the tile begins, which ends in 130: three tries. Fails if: the handler stays after the first.
 TEST(CliFailures, SecondInterruptKills) {
   const SceneFolder folder;
   Outcome outcome;
   for (int attempt = 0; attempt < 3 && outcome.signal != SIGINT; ++attempt) {
-    Child child({"render", folder.scene, "-o", folder.file("a.exr"), "--log", "json", "--evaluator", "brute_force",
-                 "--set", "settings.samples=400000", "--resolution", "16x16"});
+    Child child({"render", folder.scene, "-o", folder.file("a.exr"), "--log", "json", "--evaluator",
+                 "brute_force", "--set", "settings.samples=400000", "--resolution", "16x16"});
     ASSERT_TRUE(child.prints(kShading));
     std::this_thread::sleep_for(std::chrono::milliseconds(30));
     child.send(SIGINT);

@@ -130,6 +130,25 @@ TEST(CliQuality, BudgetStatesWhatWasSpentAndHowToRepeatIt) {
   EXPECT_EQ(folder.entries(), 4u);  // nothing of the trials
 }
 
+// Claim: the command behind "again by" runs as it is printed, in the folder where the first one ran, whatever
+// is in the names of scene and output: the same bytes. Source: metadata.h. Fails if: the program's path or an
+// output is left out, or a blank is not quoted.
+TEST(CliQuality, AgainByRunsAsPrinted) {
+  const QualityFolder folder;
+  const std::string output = "it's a $HOME.exr";
+  std::filesystem::rename(folder.scene, folder.file("a ball.json"));
+  const Outcome first = run_program(
+      {"render", "a ball.json", "-o", output, "--time-budget", "1.5", "--set", "lights.key.name=the key"},
+      folder.path.string());
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const std::string line = closing_line(first.out, "again by"), before = bytes_of(folder.file(output));
+  ASSERT_GT(line.size(), 12u) << first.out;
+  std::filesystem::remove(folder.file(output));
+  put_bytes(folder.file("again.sh"), line.substr(12) + " >/dev/null\n");
+  ASSERT_EQ(std::system(("cd '" + folder.path.string() + "' && sh again.sh").c_str()), 0) << line;
+  EXPECT_TRUE(bytes_of(folder.file(output)) == before);
+}
+
 // Claim: spacings are repeated in the scene's own units where several groups have them. Fails if: they are in
 // mm.
 TEST(CliQuality, BudgetOfTwoGroupsIsRepeatedInSceneUnits) {

@@ -11,17 +11,21 @@ namespace opaline {
 struct Monitor {
   std::atomic<const char*> stage{nullptr};  ///< what is under way, a literal; null: the caller knows best
   std::atomic<std::size_t> done{0};
-  std::atomic<std::size_t> total{0};
+  std::atomic<std::size_t> total{
+      0};                           ///< 0: not known; may change while work goes on, where it is an estimate
+  std::atomic<unsigned> rounds{0};  ///< of counting: `done` starts at 0 in each
   std::atomic<bool> cancelled{false};
 
   void begin(const char* name, std::size_t work) {
     stage = name;
     done = 0;
     total = work;
+    ++rounds;
   }
 };
 
-/// Counts work as done and throws Error{interrupted} when the caller asked to stop; a null monitor does nothing.
+/// Counts work as done and throws Error{interrupted} when the caller asked to stop; a null monitor does
+/// nothing.
 void advance(Monitor* monitor, std::size_t work);
 
 }  // namespace opaline

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/memory_check.h"
+
+#include <fmt/format.h>
+
+#include "cli/units.h"
+#include "opaline/core/error.h"
+#include "opaline/core/machine_memory.h"
+
+namespace opaline {
+
+void check_memory(const Scene& scene, const Plan& plan) {
+  const std::size_t taken = resident_memory(), left = available_memory();
+  if (plan.bytes <= taken || plan.bytes - taken <= left) return;
+  std::string advice = "a lower film.resolution, or --crop for one part after the other,";
+  if (scene.settings.method == Method::hierarchical && !plan.groups.empty())
+    advice += " or a lower settings.max_samples";
+  throw run_failed(scene.file,
+                   fmt::format("the picture needs about {} of memory, and there are {}: {} takes less",
+                               short_bytes(plan.bytes), short_bytes(left + taken), advice));
+}
+
+}  // namespace opaline

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether the machine has the memory that a picture needs.
+#pragma once
+
+#include "opaline/render/plan.h"
+
+namespace opaline {
+
+/// error Error{run_failed}: the plan needs more memory than this process can still have; says what takes less
+void check_memory(const Scene& scene, const Plan& plan);
+
+}  // namespace opaline
