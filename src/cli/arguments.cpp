@@ -153,10 +153,10 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
   const bool is_unknown = dynamic_cast<const CLI::ExtrasError*>(&failure) != nullptr ||
                           dynamic_cast<const CLI::RequiredError*>(&failure) != nullptr;
   if (!is_unknown || extras.empty()) return usage_error(failure.what() + hint(command));
+  const bool has_commands = !command.get_subcommands([](const CLI::App*) { return true; }).empty();
+  if (has_commands && !extras.front().starts_with('-')) return unknown_command(command, extras.front());
   const auto option = std::ranges::find_if(extras, [](const std::string& e) { return e.starts_with('-'); });
   if (option != extras.end()) return unknown_option(command, *option);
-  if (!command.get_subcommands([](const CLI::App*) { return true; }).empty())
-    return unknown_command(command, extras.front());
   return usage_error("unexpected argument '" + printable(extras.front()) + "'" + hint(command));
 }
 

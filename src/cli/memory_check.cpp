@@ -15,8 +15,8 @@ void check_memory(const Scene& scene, const Plan& plan) {
   std::string advice = "a lower film.resolution, or --crop for one part after the other,";
   if (scene.settings.method == Method::hierarchical && !plan.groups.empty())
     advice += " or a lower settings.max_samples";
-  throw run_failed(scene.file,
-                   fmt::format("the picture needs about {} of memory, and there are {}: {} takes less",
+  throw run_failed({},
+                   fmt::format("out of memory: the picture needs about {}, and there are {}; {} takes less",
                                short_bytes(plan.bytes), short_bytes(left + taken), advice));
 }
 

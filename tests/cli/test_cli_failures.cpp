@@ -30,27 +30,6 @@ TEST(CliFailures, BadScenes) {
   EXPECT_EQ(run_program({"render", folder.file("none.json"), "-o", out}).exit_code, 2);
 }
 
-// Claim: a picture beyond the memory there is is refused before it is begun, with what would make it fit; a
-// crop of as large a one takes as much as the crop, and is made. By hand: 16384 x 16384 pixels of 26 floats
-// are 28 GB, above the 4 GB that the child may have. Fails if: the plan counts the pixels outside of the
-// crop, or nobody asks how much memory there is.
-TEST(CliFailures, TooLargeForTheMemoryIsSaidBeforeItStarts) {
-  const SceneFolder folder;
-  const Limits limits{{}, rlim_t(4) << 30};
-  const auto run = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"render", folder.scene, "-o", folder.file("a.exr"), "--quiet"});
-    return run_program(more, ".", limits);
-  };
-  const Outcome refused = run({"--resolution", "16384x16384"});
-  EXPECT_EQ(refused.exit_code, 3);
-  EXPECT_TRUE(contains(refused.err, "of memory, and there are ") &&
-              contains(refused.err, "a lower film.resolution"))
-      << refused.err;
-  EXPECT_EQ(folder.entries(), 1u);
-  const Outcome crop = run({"--resolution", "65536x65536", "--crop", "32768,32768,32784,32784"});
-  EXPECT_EQ(crop.exit_code, 0) << crop.err;
-}
-
 // Claim: with a JSON log an error is an event with its place, and stderr is empty.
 // Source: log.h. Fails if: print_failure writes text as well.
 TEST(CliFailures, ErrorsAsEvents) {
@@ -100,15 +79,37 @@ TEST(CliFailures, FullDiskKeepsTheOldFile) {
 
 #ifndef __SANITIZE_ADDRESS__  // which needs more address space than the limit
 // Claim: a picture that memory does not hold is exit 3, "out of memory", with nothing written.
-// Source: the design exit codes. Fails if: std::bad_alloc is not told from other exceptions.
+// Source: the design exit codes. Fails if: the plan is not compared with what there is, and std::bad_alloc is
+// not told from other exceptions.
 TEST(CliFailures, OutOfMemory) {
   const SceneFolder folder;
   const Outcome outcome = run_program({"render", folder.scene, "-o", folder.file("a.exr"), "--quiet",
                                        "--method", "lambert", "--resolution", "16384x16384"},
                                       ".", {.file_size = {}, .address_space = rlim_t(4) << 30});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.signal;
-  EXPECT_EQ(outcome.err, "opaline: error: out of memory\n");
+  EXPECT_TRUE(outcome.err.starts_with("opaline: error: out of memory")) << outcome.err;
   EXPECT_EQ(folder.entries(), 1u);
+}
+
+// Claim: a picture beyond the memory there is is refused before it is begun, with what would make it fit; a
+// crop of as large a one takes as much as the crop, and is made. By hand: 16384 x 16384 pixels of 26 floats
+// are 28 GB, above the 4 GB that the child may have. Fails if: the plan counts the pixels outside of the
+// crop, or nobody asks how much memory there is.
+TEST(CliFailures, TooLargeForTheMemoryIsSaidBeforeItStarts) {
+  const SceneFolder folder;
+  const Limits limits{{}, rlim_t(4) << 30};
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", folder.scene, "-o", folder.file("a.exr"), "--quiet"});
+    return run_program(more, ".", limits);
+  };
+  const Outcome refused = run({"--resolution", "16384x16384"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_TRUE(contains(refused.err, "out of memory: the picture needs about ") &&
+              contains(refused.err, "a lower film.resolution"))
+      << refused.err;
+  EXPECT_EQ(folder.entries(), 1u);
+  const Outcome crop = run({"--resolution", "65536x65536", "--crop", "32768,32768,32784,32784"});
+  EXPECT_EQ(crop.exit_code, 0) << crop.err;
 }
 #endif
 

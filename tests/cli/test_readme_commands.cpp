@@ -29,9 +29,9 @@ std::vector<std::string> readme_commands() {
   return commands;
 }
 
-// Claim: every file that a command of the README reads is in a fresh clone, after ./scenes/demo, or was written
-// by a command above it; what commands write goes to scenes/out, which git ignores. Source: the README. Fails
-// if: a command names a file of the reader's own, such as scene.json.
+// Claim: every file that a command of the README reads is in a fresh clone, after ./scenes/demo, or was
+// written by a command above it; what commands write goes to scenes/out, which git ignores. Source: the
+// README. Fails if: a command names a file of the reader's own, such as scene.json.
 TEST(ReadmeCommands, ReadWhatIsThere) {
   const std::filesystem::path root = std::filesystem::path(OPALINE_README).parent_path();
   const std::set<std::string> writers{"-o", "--error-picture", "--cache", "--resume"};

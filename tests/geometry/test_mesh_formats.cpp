@@ -86,10 +86,12 @@ void expect_cube(const CheckedMesh& cube, const std::string& what) {
   EXPECT_DOUBLE_EQ(surface_area(cube.mesh), 24) << what;
   EXPECT_DOUBLE_EQ(signed_volume(cube.mesh), 8) << what;
   EXPECT_EQ(cube.report.open_edges + cube.report.non_manifold_edges + cube.report.flipped, 0u) << what;
-  EXPECT_TRUE(cube.report.warnings.empty()) << what << ": " << cube.report.warnings[0];
+  for (const std::string& warning : cube.report.warnings)
+    EXPECT_NE(warning.find("materials and textures"), std::string::npos) << what << ": " << warning;
 }
 
-// Claim: every dialect below gives the cube with 8 vertices, closed, area 24, volume 8, without a warning.
+// Claim: every dialect below gives the cube with 8 vertices, closed, area 24, volume 8, without a warning but
+// that the materials of an OBJ are not read.
 // Source: the formats' descriptions; the notes on what OpenMesh 9 gets wrong: continued lines, colours of
 // faces in OFF, lists in PLY, comments at the end of a binary PLY header, "outer" in the name of an STL
 // solid. Tolerance: rounding. Fails if: any of the scans leaves its bytes as they are.
