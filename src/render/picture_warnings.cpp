@@ -65,16 +65,16 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
   const double cosine = dot(normalized(towards), normalized(camera.look_at - camera.position));
   const double pixels =
       radius / distance / std::tan(camera.field_of_view * std::numbers::pi / 360) * scene.film.resolution[1];
-  std::string where;
+  const double degrees = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
+  std::string where = fmt::format("{:.0f} degrees beside the middle of the view", degrees);
   if (distance <= radius)
     where = "around the camera";
-  else if (cosine < 0)
+  else if (degrees > 90)
     where = "behind the camera";
   else if (pixels < 2)
     where = fmt::format("so far away that all of them are {:.2g} pixels wide", pixels);
-  else
-    where = fmt::format("{:.0f} degrees beside the middle of the view",
-                        std::acos(std::min(1.0, cosine)) * 180 / std::numbers::pi);
+  else if (degrees < camera.field_of_view / 2 && !scene.film.crop)
+    where = "in the view: does a lamp stand in front of them?";
   const std::string advice =
       scene.film.crop
           ? "a small --resolution without a crop shows where they are"

@@ -66,6 +66,9 @@ TEST(PictureWarnings, NothingInView) {
   scene = lit_ball();
   scene.film.crop = {{0, 0, 4, 4}};
   expect_warning(scene, {"nothing is in view of the crop"});
+  scene = lit_ball();
+  scene.lights.push_back({"lamp", QuadLight{{-20, -20, 60}, {0, 40, 0}, {40, 0, 0}, Rgb(5)}});
+  expect_warning(scene, {"nothing is in view", "a lamp stand in front"});
 }
 
 // Claim: lights that light nothing are named with the cause: a lamp's back, no brightness at all, far away.
@@ -73,7 +76,7 @@ TEST(PictureWarnings, NothingInView) {
 // (u x v along +z from behind the ball lights it).
 TEST(PictureWarnings, LightsThatLightNothing) {
   Scene scene = lit_ball();
-  const QuadLight lamp{{-20, -20, 60}, {40, 0, 0}, {0, 40, 0}, Rgb(50)};
+  const QuadLight lamp{{-60, -20, 60}, {40, 0, 0}, {0, 40, 0}, Rgb(5)};
   scene.lights.push_back({"lamp", lamp});
   expect_warning(scene, {"the light lamp turns its back to every shape", "exchange u and v"});
   scene.lights.back().source = QuadLight{lamp.corner, lamp.v, lamp.u, lamp.radiance};
