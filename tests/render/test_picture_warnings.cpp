@@ -67,7 +67,7 @@ TEST(PictureWarnings, NothingInView) {
   scene.film.crop = {{0, 0, 4, 4}};
   expect_warning(scene, {"nothing is in view of the crop"});
   scene = lit_ball();
-  scene.lights.push_back({"lamp", QuadLight{{-20, -20, 60}, {0, 40, 0}, {40, 0, 0}, Rgb(5)}});
+  scene.lights.push_back({"lamp", SphereLight{{0, 0, 70}, 15, Rgb(5)}});
   expect_warning(scene, {"nothing is in view", "a lamp stand in front"});
 }
 
