@@ -3,12 +3,14 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <thread>
 #include <tuple>
 
 #include "cache/entry_file.h"
@@ -22,17 +24,33 @@ namespace fs = std::filesystem;
 /// Held by who removes entries; the system lets go of it when a process dies.
 class FolderLock {
  public:
-  explicit FolderLock(const std::string& folder)
-      : descriptor_(::open((folder + "/.opaline-lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX) != 0)
-      throw run_failed(folder, std::string("cannot be locked: ") + std::strerror(errno));
+  FolderLock(const std::string& folder, const std::function<bool()>& wait)
+      : descriptor_(
+            ::open((folder + "/.opaline-lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666)) {
+    while (descriptor_ >= 0 && !holds_) {
+      holds_ = ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+      if (!holds_ && errno != EWOULDBLOCK && errno != EINTR) break;
+      if (!holds_ && wait && !wait()) return;
+      if (!holds_) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    if (!holds_) {
+      const std::string reason = std::strerror(errno);
+      close();
+      throw run_failed(folder, "cannot be locked: " + reason);
+    }
   }
-  ~FolderLock() { ::close(descriptor_); }
+  ~FolderLock() { close(); }
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
+  bool holds() const { return holds_; }
+
  private:
+  void close() const {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
   int descriptor_;
+  bool holds_ = false;
 };
 
 /// Calls use(entry of the folder) for each; entries may vanish meanwhile.
@@ -63,11 +81,13 @@ std::vector<CacheEntry> list_cache(const std::string& folder) {
     const std::string name = file.path().filename().string();
     const auto parsed = parse_file_name(name);
     if (!parsed) return;
-    std::error_code gone;
-    const std::uint64_t bytes = fs::file_size(file.path(), gone);
-    if (gone) return;
-    const auto used = fs::last_write_time(file.path(), gone);
-    if (!gone) entries.push_back({name, parsed->stage, parsed->key, bytes, used});
+    struct stat status {};
+    if (::lstat(file.path().c_str(), &status) != 0) return;
+    const std::uint64_t bytes = S_ISREG(status.st_mode) ? std::uint64_t(status.st_size) : 0;
+    const auto used =
+        std::chrono::seconds(status.st_mtim.tv_sec) + std::chrono::nanoseconds(status.st_mtim.tv_nsec);
+    const std::chrono::sys_time<std::chrono::nanoseconds> when(used);
+    entries.push_back({name, parsed->stage, parsed->key, bytes, std::chrono::file_clock::from_sys(when)});
   });
   std::ranges::sort(entries, [](const CacheEntry& a, const CacheEntry& b) {
     return std::tie(a.last_used, a.file) < std::tie(b.last_used, b.file);
@@ -76,13 +96,13 @@ std::vector<CacheEntry> list_cache(const std::string& folder) {
 }
 
 std::string problem_of(const std::string& folder, const CacheEntry& entry) {
-  const auto opened = open_entry(folder, {entry.stage, entry.key});
-  const auto* bad = std::get_if<BadEntry>(&opened);
-  return bad != nullptr ? bad->reason : "";
+  return check_entry(folder, {entry.stage, entry.key});
 }
 
-std::vector<CacheEntry> prune_cache(const std::string& folder, std::uint64_t most_bytes) {
-  const FolderLock lock(folder);
+std::vector<CacheEntry> prune_cache(const std::string& folder, std::uint64_t most_bytes,
+                                    const std::function<bool()>& wait) {
+  const FolderLock lock(folder, wait);
+  if (!lock.holds()) return {};
   remove_leftovers(folder);
   const std::vector<CacheEntry> entries = list_cache(folder);
   std::uint64_t total = 0;
@@ -91,6 +111,7 @@ std::vector<CacheEntry> prune_cache(const std::string& folder, std::uint64_t mos
   for (const CacheEntry& entry : entries) {
     if (total <= most_bytes) break;
     const std::string path = folder + '/' + entry.file;
+    if (fs::is_directory(fs::symlink_status(path))) continue;
     if (::unlink(path.c_str()) != 0 && errno != ENOENT)
       throw run_failed(path, std::string("cannot be removed: ") + std::strerror(errno));
     total -= entry.bytes;

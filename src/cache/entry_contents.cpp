@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "cache/check_contents.h"
+
 namespace opaline {
 namespace {
 
@@ -36,6 +38,11 @@ Hdf5Handle struct_of(std::size_t size, std::initializer_list<Member> members) {
 template <>
 Hdf5Handle hdf5_type<float>() {
   return {H5T_NATIVE_FLOAT, leave_open};
+}
+
+template <>
+Hdf5Handle hdf5_type<double>() {
+  return {H5T_NATIVE_DOUBLE, leave_open};
 }
 
 template <>
@@ -141,15 +148,17 @@ void put_samples(Hdf5Writer& file, const SurfaceSamples& samples, std::span<cons
   file.put("radius", samples.radius);
 }
 
-std::optional<SurfaceSamples> get_samples(const Hdf5Reader& file, std::span<const std::uint32_t> meshes) {
-  auto samples = file.get<SurfaceSample>("samples");
-  const std::optional<double> area = file.number("area"), radius = file.number("radius");
+std::optional<SurfaceSamples> get_samples(const CheckedEntry& entry, const SampledSurface& surface) {
+  auto samples = entry.get<SurfaceSample>("samples");
+  const std::optional<double> area = entry.number("area"), radius = entry.number("radius");
   if (!samples || !area || !radius) return {};
   for (SurfaceSample& s : *samples) {
-    if (s.mesh >= meshes.size()) return {};
-    s.mesh = meshes[s.mesh];
+    if (s.mesh >= surface.meshes.size()) return {};
+    s.mesh = surface.meshes[s.mesh];
   }
-  return SurfaceSamples{std::move(*samples), *area, *radius};
+  SurfaceSamples all{std::move(*samples), *area, *radius};
+  if (!are_samples_of(all, surface)) return {};
+  return all;
 }
 
 void put_light(Hdf5Writer& file, const LightTransfer& transfer) {
@@ -157,11 +166,13 @@ void put_light(Hdf5Writer& file, const LightTransfer& transfer) {
   file.put("relative_error", transfer.relative_error);
 }
 
-std::optional<LightTransfer> get_light(const Hdf5Reader& file) {
-  auto weights = file.get<float>("weights");
-  const std::optional<double> error = file.number("relative_error");
+std::optional<LightTransfer> get_light(const CheckedEntry& entry, std::size_t samples) {
+  auto weights = entry.get<float>("weights");
+  const std::optional<double> error = entry.number("relative_error");
   if (!weights || !error) return {};
-  return LightTransfer{std::move(*weights), *error};
+  LightTransfer transfer{std::move(*weights), *error};
+  if (!is_light_of(transfer, samples)) return {};
+  return transfer;
 }
 
 void put_octree(Hdf5Writer& file, const Octree& octree) {
@@ -171,13 +182,16 @@ void put_octree(Hdf5Writer& file, const Octree& octree) {
   file.put("flux_unit", double(octree.flux_unit));
 }
 
-std::optional<Octree> get_octree(const Hdf5Reader& file) {
-  auto nodes = file.get<OctreeNode>("nodes");
-  auto samples = file.get<TreeSample>("samples");
-  auto normals = file.get<Vec3f>("normals");
-  const std::optional<double> unit = file.number("flux_unit");
-  if (!nodes || !samples || !normals || !unit) return {};
-  Octree octree{std::move(*nodes), std::move(*samples), std::move(*normals), float(*unit)};
+std::optional<Octree> get_octree(const CheckedEntry& entry, const SurfaceSamples& samples) {
+  const auto bytes = entry.bytes_of("nodes", sizeof(OctreeNode));
+  if (!bytes || !has_flags(*bytes, sizeof(OctreeNode), offsetof(OctreeNode, leaf))) return {};
+  auto nodes = entry.get<OctreeNode>("nodes");
+  auto tree_samples = entry.get<TreeSample>("samples");
+  auto normals = entry.get<Vec3f>("normals");
+  const std::optional<double> unit = entry.number("flux_unit");
+  if (!nodes || !tree_samples || !normals || !unit) return {};
+  Octree octree{std::move(*nodes), std::move(*tree_samples), std::move(*normals), float(*unit)};
+  if (!is_tree_of(octree, samples)) return {};
   list_children(octree);
   return octree;
 }
@@ -200,16 +214,16 @@ void put_exitance(Hdf5Writer& file, const SurfaceCache& exitance, std::span<cons
   file.put("nodes", std::span(exitance.nodes));
 }
 
-std::optional<SurfaceCache> get_exitance(const Hdf5Reader& file, std::span<const std::uint32_t> meshes,
-                                         std::size_t world_meshes) {
-  const auto own = file.get<float>("own_irradiance");
-  const auto triangles = file.get<std::uint32_t>("triangles");
-  const auto splits = file.get<SurfaceCache::Split>("splits");
-  auto patches = file.get<SurfaceCache::Patch>("patches");
-  auto vertices = file.get<SurfaceCache::Vertex>("vertices");
-  auto lattices = file.get<SurfaceCache::Lattice>("lattices");
-  auto lattice_nodes = file.get<std::uint32_t>("lattice_nodes");
-  auto nodes = file.get<Exitance>("nodes");
+std::optional<SurfaceCache> get_exitance(const CheckedEntry& entry, const World& world,
+                                         std::span<const std::uint32_t> meshes) {
+  const auto own = entry.get<float>("own_irradiance");
+  const auto triangles = entry.get<std::uint32_t>("triangles");
+  const auto splits = entry.get<SurfaceCache::Split>("splits");
+  auto patches = entry.get<SurfaceCache::Patch>("patches");
+  auto vertices = entry.get<SurfaceCache::Vertex>("vertices");
+  auto lattices = entry.get<SurfaceCache::Lattice>("lattices");
+  auto lattice_nodes = entry.get<std::uint32_t>("lattice_nodes");
+  auto nodes = entry.get<Exitance>("nodes");
   if (!own || own->size() != 3 || !triangles || triangles->size() != meshes.size() || !splits || !patches ||
       !vertices || !lattices || !lattice_nodes || !nodes)
     return {};
@@ -220,14 +234,32 @@ std::optional<SurfaceCache> get_exitance(const Hdf5Reader& file, std::span<const
                         std::move(*lattices),
                         std::move(*lattice_nodes),
                         std::move(*nodes)};
-  exitance.splits.resize(world_meshes);
+  exitance.splits.resize(world.meshes.size());
   auto next = splits->begin();
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     if (splits->end() - next < std::ptrdiff_t((*triangles)[m])) return {};
     exitance.splits[meshes[m]].assign(next, next + std::ptrdiff_t((*triangles)[m]));
     next += std::ptrdiff_t((*triangles)[m]);
   }
+  if (!is_exitance_of(exitance, world, meshes)) return {};
   return exitance;
+}
+
+namespace {
+constexpr std::uint64_t kAroundSets = 1 << 16;  // what HDF5 adds, generously
+}
+
+std::uint64_t most_bytes_of_samples(const SampledSurface& surface) {
+  return most_samples(surface) * sizeof(SurfaceSample) + kAroundSets;
+}
+
+std::uint64_t most_bytes_of_light(std::size_t samples) {
+  return samples * sizeof(float) + kAroundSets;
+}
+
+// A node that is no leaf has two children or more.
+std::uint64_t most_bytes_of_octree(std::size_t samples) {
+  return samples * (2 * sizeof(OctreeNode) + sizeof(TreeSample) + sizeof(Vec3f)) + kAroundSets;
 }
 
 }  // namespace opaline

@@ -2,39 +2,28 @@
 #include "cache/entry_file.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <cstring>
+#include <filesystem>
 #include <regex>
 
 #include "cache/content_hash.h"
+#include "cache/entry_header.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/core/machine_memory.h"
 
 namespace opaline {
 namespace {
 
-// Of the header and of the data sets behind it; stages have versions of their own, in their keys.
-constexpr int kFormat = 1;
-constexpr std::string_view kMagic = "opaline cache entry, format ";
-
-using Header = std::array<char, kUserBlock>;
-
-Header header_of(const EntryName& name, std::uint64_t payload, const StageKey& hash) {
-  const std::string text = fmt::format("{}{}\nstage {}\nkey {}\npayload {} bytes, xxh3-128 {}\n", kMagic,
-                                       kFormat, name.stage, hex(name.key), payload, hex(hash));
-  Header header{};
-  text.copy(header.data(), header.size());
-  return header;
-}
-
 struct Descriptor {
   int number = -1;
+  Descriptor(int number_) : number(number_) {}
+  Descriptor(Descriptor&& other) noexcept : number(std::exchange(other.number, -1)) {}
+  Descriptor& operator=(Descriptor&&) = delete;
   ~Descriptor() {
     if (number >= 0) ::close(number);
   }
@@ -51,22 +40,38 @@ bool read_all(int descriptor, std::span<char> bytes) {
   return true;
 }
 
-StageKey hash_of(std::string_view bytes) {
+StageKey hash_of(const std::string& listing, std::string_view payload) {
   ContentHash hash;
-  hash.add(bytes.data(), bytes.size());
+  hash.add(listing.data(), listing.size());
+  hash.add(payload.data(), payload.size());
   return hash.value();
 }
 
-/// What a header that is not the expected one suggests.
-std::string reason_of(const Header& header, std::uint64_t payload) {
-  const std::string text(header.data(), strnlen(header.data(), header.size()));
-  if (!text.starts_with(kMagic)) return "is not a cache entry";
-  const std::string own = fmt::format("{}{}\n", kMagic, kFormat);
-  if (!text.starts_with(own)) return fmt::format("is of another version than this program's {}", kFormat);
-  const std::size_t at = text.find("\npayload ");
-  std::uint64_t stated = 0;
-  if (at != std::string::npos) std::from_chars(text.data() + at + 9, text.data() + text.size(), stated);
-  return payload < stated ? "is truncated" : "is damaged";
+/// An entry's file, and what its header, which was read, states.
+struct OpenFile {
+  Descriptor file;
+  std::uint64_t size = 0;
+  EntryHeader header;
+  StatedEntry stated;
+  std::uint64_t payload() const { return size - kUserBlock; }
+};
+
+std::variant<OpenFile, NoEntry, BadEntry> open_file(const std::string& folder, const EntryName& name) {
+  Descriptor file(
+      ::open((folder + '/' + file_name(name)).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
+  if (file.number < 0 && errno == ENOENT) return NoEntry{};
+  if (file.number < 0 && (errno == ELOOP || errno == ENXIO)) return BadEntry{"is not a regular file"};
+  if (file.number < 0) return BadEntry{std::string("cannot be opened: ") + std::strerror(errno)};
+  struct stat status {};
+  if (::fstat(file.number, &status) != 0 || !S_ISREG(status.st_mode))
+    return BadEntry{"is not a regular file"};
+  const auto size = static_cast<std::uint64_t>(status.st_size);
+  if (size < kUserBlock) return BadEntry{"is truncated"};
+  EntryHeader header;
+  if (!read_all(file.number, header)) return BadEntry{"cannot be read"};
+  const std::optional<StatedEntry> stated = read_header(header, name);
+  if (!stated || stated->payload != size - kUserBlock) return BadEntry{reason_of(header, size - kUserBlock)};
+  return OpenFile{std::move(file), size, header, *stated};
 }
 
 }  // namespace
@@ -82,41 +87,85 @@ std::optional<EntryName> parse_file_name(const std::string& name) {
   return EntryName{parts[1], {std::stoull(parts[2], nullptr, 16), std::stoull(parts[3], nullptr, 16)}};
 }
 
-std::variant<CheckedEntry, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name) {
-  const Descriptor file{::open((folder + '/' + file_name(name)).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  if (file.number < 0 && errno == ENOENT) return NoEntry{};
-  if (file.number < 0) return BadEntry{std::string("cannot be opened: ") + std::strerror(errno)};
-  struct stat status {};
-  if (::fstat(file.number, &status) != 0 || !S_ISREG(status.st_mode))
-    return BadEntry{"is not a regular file"};
-  const auto size = static_cast<std::size_t>(status.st_size);
-  if (size < kUserBlock) return BadEntry{"is truncated"};
-  CheckedEntry entry;
-  entry.bytes.resize(size);
-  if (!read_all(file.number, entry.bytes)) return BadEntry{"cannot be read"};
-  const std::string_view payload(entry.bytes.data() + kUserBlock, size - kUserBlock);
-  Header header{};
-  std::copy_n(entry.bytes.data(), kUserBlock, header.data());
-  if (header != header_of(name, payload.size(), hash_of(payload)))
-    return BadEntry{reason_of(header, payload.size())};
-  ::futimens(file.number, nullptr);
-  return entry;
+std::optional<std::span<const char>> CheckedEntry::bytes_of(std::string_view name,
+                                                            std::size_t item_bytes) const {
+  const auto set = std::ranges::find(sets_, name, &StoredSet::name);
+  if (set == sets_.end() || set->item_bytes != item_bytes) return {};
+  if (set->count == 0) return std::span<const char>{};
+  return std::span(bytes_).subspan(set->offset, set->count * item_bytes);
 }
 
-std::uint64_t write_entry(const std::string& folder, const EntryName& name,
-                          const std::function<void(Hdf5Writer&)>& fill) {
-  AtomicFile file(folder + '/' + file_name(name));
+std::optional<double> CheckedEntry::number(std::string_view name) const {
+  const auto values = get<double>(name);
+  if (!values || values->size() != 1) return {};
+  return values->front();
+}
+
+std::variant<CheckedEntry, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name,
+                                                         std::uint64_t most_bytes) {
+  auto opened = open_file(folder, name);
+  if (const auto* bad = std::get_if<BadEntry>(&opened)) return *bad;
+  if (std::holds_alternative<NoEntry>(opened)) return NoEntry{};
+  const OpenFile& open = std::get<OpenFile>(opened);
+  if (open.size > most_bytes) return BadEntry{"is larger than its result can be"};
+  if (open.size > available_memory() / 4) return BadEntry{"is too large for the memory that is left"};
+  ZeroedArray<char> bytes(open.size);
+  std::ranges::copy(open.header, bytes.begin());
+  if (!read_all(open.file.number, std::span(bytes).subspan(kUserBlock))) return BadEntry{"cannot be read"};
+  const std::string_view payload(bytes.data() + kUserBlock, open.payload());
+  const std::string& listing = open.stated.listing;
+  if (!is_header(open.header, header_text(name, listing, payload.size(), hash_of(listing, payload))))
+    return BadEntry{"is damaged"};
+  auto sets = read_listing(listing, open.size);
+  if (!sets) return BadEntry{"is damaged"};
+  ::futimens(open.file.number, nullptr);
+  return CheckedEntry(std::move(bytes), std::move(*sets));
+}
+
+std::string check_entry(const std::string& folder, const EntryName& name) {
+  const auto opened = open_file(folder, name);
+  if (const auto* bad = std::get_if<BadEntry>(&opened)) return bad->reason;
+  if (std::holds_alternative<NoEntry>(opened)) return {};
+  const OpenFile& open = std::get<OpenFile>(opened);
+  const std::string& listing = open.stated.listing;
+  ContentHash hash;
+  hash.add(listing.data(), listing.size());
+  std::vector<char> piece(1 << 20);
+  for (std::uint64_t left = open.payload(); left > 0;) {
+    const std::span<char> part =
+        std::span(piece).first(std::size_t(std::min<std::uint64_t>(left, piece.size())));
+    if (!read_all(open.file.number, part)) return "cannot be read";
+    hash.add(part.data(), part.size());
+    left -= part.size();
+  }
+  if (!is_header(open.header, header_text(name, listing, open.payload(), hash.value())) ||
+      !read_listing(listing, open.size))
+    return "is damaged";
+  return {};
+}
+
+bool write_entry(const std::string& folder, const EntryName& name, std::uint64_t most_bytes,
+                 const std::function<void(Hdf5Writer&)>& fill) {
+  const std::string path = folder + '/' + file_name(name);
+  std::error_code ignored;
+  if (std::filesystem::is_symlink(path, ignored))
+    std::filesystem::remove(path, ignored);  // no entry is a link
+  AtomicFile file(path);
   const Hdf5Turn turn;
   Hdf5Writer writer;
   fill(writer);
   const std::string_view bytes = writer.bytes();
-  if (bytes.size() < kUserBlock) throw run_failed(folder + '/' + file_name(name), "HDF5 cannot make it");
+  if (bytes.size() < kUserBlock) throw run_failed(path, "HDF5 cannot make it");
+  if (bytes.size() > most_bytes) return false;
   const std::string_view payload = bytes.substr(kUserBlock);
-  const Header header = header_of(name, payload.size(), hash_of(payload));
-  file.append({header.data(), header.size()});
+  const std::string listing = listing_of(writer.sets());
+  std::string header = header_text(name, listing, payload.size(), hash_of(listing, payload));
+  require(header.size() <= kUserBlock, "the data sets of an entry are listed in its header");
+  header.resize(kUserBlock);
+  file.append(header);
   file.append(payload);
   file.commit_unflushed();
-  return bytes.size();
+  return true;
 }
 
 }  // namespace opaline

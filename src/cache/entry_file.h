@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One cache entry as a file: an HDF5 file behind a header that tells whether every byte is as it was written.
+// One cache entry as a file: an HDF5 file, for other tools, behind a header that tells whether every byte is
+// as it was written, and where its data sets lie. This program copies them from there and has HDF5 parse
+// nothing: HDF5 trusts what it finds in a file, and what stands in a cache's folder may have been put there
+// by anyone.
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "cache/hdf5_file.h"
 #include "opaline/cache/stage_key.h"
@@ -25,25 +34,53 @@ std::string file_name(const EntryName& name);
 /// Nothing for names that no entry has.
 std::optional<EntryName> parse_file_name(const std::string& name);
 
-/// An entry that was found whole, in memory: what is parsed are the bytes that were checked.
-struct CheckedEntry {
-  ZeroedArray<char> bytes;
+/// An entry that was found whole, in memory: what is used are the bytes that were checked.
+class CheckedEntry {
+ public:
+  CheckedEntry() = default;
+  /// bytes: the whole file; sets: within it
+  CheckedEntry(ZeroedArray<char> bytes, std::vector<StoredSet> sets)
+      : bytes_(std::move(bytes)), sets_(std::move(sets)) {}
+
+  /// The bytes of a data set of such items; nothing where there is none.
+  std::optional<std::span<const char>> bytes_of(std::string_view name, std::size_t item_bytes) const;
+
+  template <class T>
+  std::optional<std::vector<T>> get(std::string_view name) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const std::optional<std::span<const char>> bytes = bytes_of(name, sizeof(T));
+    if (!bytes) return {};
+    std::vector<T> values(bytes->size() / sizeof(T));
+    if (!bytes->empty()) std::memcpy(static_cast<void*>(values.data()), bytes->data(), bytes->size());
+    return values;
+  }
+  std::optional<double> number(std::string_view name) const;
+
+ private:
+  ZeroedArray<char> bytes_;
+  std::vector<StoredSet> sets_;
 };
 
 struct NoEntry {};
-/// Why an entry must not be parsed, to follow its name: "is truncated".
+/// Why an entry must not be used, to follow its name: "is truncated".
 struct BadEntry {
   std::string reason;
 };
 
-/// Checks the whole file before anyone parses any of it: the header holds the name, the length and the hash
-/// (XXH3, 128 bits) of the rest, and must match byte by byte. Makes it the most recently used, where the
-/// folder may be written.
-std::variant<CheckedEntry, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name);
+/// Checks the whole file before anyone looks into it: the header holds the name, where the data sets lie, and
+/// the length and the hash (XXH3, 128 bits) of the rest, and must match byte by byte. Makes the entry the
+/// most recently used, where the folder may be written. in    most_bytes: a larger file is bad and not read;
+/// what the key stands for cannot have more
+std::variant<CheckedEntry, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name,
+                                                         std::uint64_t most_bytes);
 
-/// Writes an entry beside its name and renames it; returns its size in bytes.
-/// error Error{run_failed} naming the file: disk full, folder not writable
-std::uint64_t write_entry(const std::string& folder, const EntryName& name,
-                          const std::function<void(Hdf5Writer&)>& fill);
+/// Why open_entry would not take the entry, by its own; empty if it would. Takes no memory of the file's
+/// size.
+std::string check_entry(const std::string& folder, const EntryName& name);
+
+/// Writes an entry beside its name and renames it; false, and nothing is written, if it is larger than
+/// most_bytes. error Error{run_failed} naming the file: disk full, folder not writable
+bool write_entry(const std::string& folder, const EntryName& name, std::uint64_t most_bytes,
+                 const std::function<void(Hdf5Writer&)>& fill);
 
 }  // namespace opaline

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HDF5 as far as cache entries need it: one-dimensional data sets of structs, and numbers beside them.
+// HDF5 as far as cache entries need it: one-dimensional data sets of structs, written so that reading them
+// back takes no HDF5.
 #pragma once
 
 #include <hdf5.h>
 
 #include <cstddef>
 #include <mutex>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,11 +47,18 @@ class Hdf5Turn {
 };
 
 /// Bytes in front of the file that HDF5 leaves alone.
-inline constexpr std::size_t kUserBlock = 512;
+inline constexpr std::size_t kUserBlock = 1024;
 
 /// Each struct in a cache entry says what its members are.
 template <class T>
 Hdf5Handle hdf5_type();
+
+/// Where the values of a data set lie in the file, one after the other as in memory.
+struct StoredSet {
+  std::string name;
+  std::size_t count = 0, item_bytes = 0;
+  std::size_t offset = 0;  ///< from the start of the file, user block included; of no meaning without values
+};
 
 /// A file that is made in memory: HDF5 (1.10) cannot let go of one whose disk is full. After the first
 /// failure what follows does nothing.
@@ -66,35 +73,14 @@ class Hdf5Writer {
   void put(const char* name, double value);
   /// The whole file, kUserBlock bytes of nothing in front; empty after a failure. Valid until the next put.
   std::string_view bytes();
+  /// What was put, in that order.
+  const std::vector<StoredSet>& sets() const { return sets_; }
 
  private:
   void put(const char* name, const Hdf5Handle& type, const void* values, std::size_t count);
   Hdf5Handle file_;
   bool good_;
-};
-
-/// A file in memory, which must outlive this; get gives nothing where the file has no such data set, or one
-/// of other members.
-class Hdf5Reader {
- public:
-  explicit Hdf5Reader(std::span<char> bytes);
-
-  template <class T>
-  std::optional<std::vector<T>> get(const char* name) const {
-    const Hdf5Handle set = open(name), type = hdf5_type<T>();
-    const std::optional<std::size_t> count = count_of(set, type);
-    if (!count) return {};
-    std::vector<T> values(*count);
-    if (!read(set, type, values.data(), *count)) return {};
-    return values;
-  }
-  std::optional<double> number(const char* name) const;
-
- private:
-  Hdf5Handle open(const char* name) const;
-  static std::optional<std::size_t> count_of(const Hdf5Handle& set, const Hdf5Handle& type);
-  static bool read(const Hdf5Handle& set, const Hdf5Handle& type, void* values, std::size_t count);
-  Hdf5Handle file_;
+  std::vector<StoredSet> sets_;
 };
 
 }  // namespace opaline

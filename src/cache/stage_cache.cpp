@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <limits>
 
 #include "cache/entry_contents.h"
 #include "cache/entry_file.h"
@@ -22,15 +23,14 @@ StageCache::StageCache(std::string folder, std::uint64_t most_bytes)
 }
 
 template <class Get>
-auto StageCache::find(const char* stage, const StageKey& key, const Get& get) {
+auto StageCache::find(const char* stage, const StageKey& key, std::uint64_t most_bytes, const Get& get) {
   const EntryName name{stage, key};
-  decltype(get(std::declval<const Hdf5Reader&>())) result;
-  auto opened = open_entry(folder_, name);
+  decltype(get(std::declval<const CheckedEntry&>())) result;
+  const auto opened = open_entry(folder_, name, most_bytes);
   if (const auto* bad = std::get_if<BadEntry>(&opened))
     unusable_.push_back(file_name(name) + ' ' + bad->reason);
-  if (auto* entry = std::get_if<CheckedEntry>(&opened)) {
-    const Hdf5Turn turn;
-    result = get(Hdf5Reader(entry->bytes));
+  if (const auto* entry = std::get_if<CheckedEntry>(&opened)) {
+    result = get(*entry);
     if (!result) unusable_.push_back(file_name(name) + " holds something else");
   }
   return result;
@@ -40,32 +40,45 @@ template <class Put>
 void StageCache::keep(const char* stage, const StageKey& key, const Put& put) {
   if (!not_kept_.empty()) return;
   try {
-    if (write_entry(folder_, {stage, key}, put) > most_bytes_)
-      not_kept_ = fmt::format("{}: larger than the whole cache may be", file_name({stage, key}));
-    prune_cache(folder_, most_bytes_);
+    if (!write_entry(folder_, {stage, key}, most_bytes_, put))
+      too_large_.push_back(file_name({stage, key}));
+    else
+      prune();
   } catch (const Error& failure) {
     not_kept_ = failure.what();
   }
 }
 
-std::optional<SurfaceSamples> StageCache::find_samples(const StageKey& key,
-                                                       std::span<const std::uint32_t> meshes) {
-  return find("samples", key, [&](const Hdf5Reader& file) { return get_samples(file, meshes); });
+// Whoever holds the lock for a moment makes room, too.
+void StageCache::prune() {
+  constexpr int kLooks = 100;  // a second
+  int looks = 0;
+  const bool waits = !is_locked_;
+  prune_cache(folder_, most_bytes_, [&] {
+    is_locked_ = !waits || ++looks >= kLooks;
+    return !is_locked_;
+  });
 }
 
-std::optional<LightTransfer> StageCache::find_light(const StageKey& key) {
-  return find("light", key, get_light);
+std::optional<SurfaceSamples> StageCache::find_samples(const StageKey& key, const SampledSurface& surface) {
+  return find("samples", key, most_bytes_of_samples(surface),
+              [&](const CheckedEntry& entry) { return get_samples(entry, surface); });
 }
 
-std::optional<Octree> StageCache::find_octree(const StageKey& key) {
-  return find("octree", key, get_octree);
+std::optional<LightTransfer> StageCache::find_light(const StageKey& key, std::size_t samples) {
+  return find("light", key, most_bytes_of_light(samples),
+              [&](const CheckedEntry& entry) { return get_light(entry, samples); });
 }
 
-std::optional<SurfaceCache> StageCache::find_exitance(const StageKey& key,
-                                                      std::span<const std::uint32_t> meshes,
-                                                      std::size_t world_meshes) {
-  return find("exitance", key,
-              [&](const Hdf5Reader& file) { return get_exitance(file, meshes, world_meshes); });
+std::optional<Octree> StageCache::find_octree(const StageKey& key, const SurfaceSamples& samples) {
+  return find("octree", key, most_bytes_of_octree(samples.samples.size()),
+              [&](const CheckedEntry& entry) { return get_octree(entry, samples); });
+}
+
+std::optional<SurfaceCache> StageCache::find_exitance(const StageKey& key, const World& world,
+                                                      std::span<const std::uint32_t> meshes) {
+  return find("exitance", key, std::numeric_limits<std::uint64_t>::max(),
+              [&](const CheckedEntry& entry) { return get_exitance(entry, world, meshes); });
 }
 
 void StageCache::keep_samples(const StageKey& key, const SurfaceSamples& samples,
@@ -87,11 +100,17 @@ void StageCache::keep_exitance(const StageKey& key, const SurfaceCache& exitance
 }
 
 std::string StageCache::warning() const {
-  if (unusable_.empty() && not_kept_.empty()) return {};
-  std::string text = "cache " + folder_;
-  if (!unusable_.empty()) text += fmt::format(": {}, and was computed again", fmt::join(unusable_, ", "));
-  if (!not_kept_.empty()) text += "; not all was kept: " + not_kept_;
-  return text;
+  std::vector<std::string> parts;
+  if (!unusable_.empty())
+    parts.push_back(fmt::format("{}, and was computed again", fmt::join(unusable_, ", ")));
+  if (!too_large_.empty())
+    parts.push_back(
+        fmt::format("not all was kept: {}: larger than the whole cache may be", fmt::join(too_large_, ", ")));
+  if (!not_kept_.empty()) parts.push_back("not all was kept: " + not_kept_);
+  if (is_locked_)
+    parts.push_back(
+        "another process holds its lock, so that nothing was removed: it may be larger than its bound");
+  return parts.empty() ? "" : fmt::format("cache {}: {}", folder_, fmt::join(parts, "; "));
 }
 
 }  // namespace opaline

@@ -48,13 +48,20 @@ void print_text(const std::vector<Checked>& all, const char* what) {
   write_line(stdout, fmt::format("{} {} of {}", all.size(), what, short_bytes(total)));
 }
 
+std::vector<CacheEntry> prune(const CacheArguments& arguments) {
+  bool said = false;
+  return prune_cache(arguments.folder, arguments.most_bytes, [&] {
+    if (!said) print_warning(arguments.log, "waiting: another process holds the lock of " + arguments.folder);
+    return said = true;
+  });
+}
+
 }  // namespace
 
 int cache_command(const CacheArguments& arguments) {
   std::vector<Checked> all;
-  const bool prune = arguments.action == CacheAction::prune;
-  for (CacheEntry& entry :
-       prune ? prune_cache(arguments.folder, arguments.most_bytes) : list_cache(arguments.folder))
+  const bool is_pruning = arguments.action == CacheAction::prune;
+  for (CacheEntry& entry : is_pruning ? prune(arguments) : list_cache(arguments.folder))
     all.push_back({std::move(entry), {}});
   bool sound = true;
   if (arguments.action == CacheAction::verify)
@@ -63,9 +70,9 @@ int cache_command(const CacheArguments& arguments) {
       sound = sound && problem.empty();
     }
   if (arguments.log.format == LogFormat::json)
-    write_line(stdout, compact({{prune ? "removed" : "entries", json_of(all)}, {"sound", sound}}));
+    write_line(stdout, compact({{is_pruning ? "removed" : "entries", json_of(all)}, {"sound", sound}}));
   else
-    print_text(all, prune ? "entries removed" : "entries");
+    print_text(all, is_pruning ? "entries removed" : "entries");
   if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
   return sound ? 0 : 1;
 }

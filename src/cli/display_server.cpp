@@ -23,7 +23,9 @@ namespace {
 // Numbers are sent as they lie in memory.
 static_assert(std::endian::native == std::endian::little);
 
-constexpr int kPatience = 2;  // seconds
+constexpr int kPatience = 2;  // seconds, for one call of the system's
+// Of all sends together: seconds, and a share of the time since the connection was made.
+constexpr double kTotalPatience = 5, kShareOfTime = 0.25;
 constexpr std::array<std::string_view, 4> kChannels{"R", "G", "B", "A"};
 enum class PacketType : std::uint8_t { create_image = 4, update_image = 6 };
 
@@ -116,6 +118,7 @@ void DisplayServer::connect(const ServerAddress& address) {
       ::close(socket);
   }
   if (socket_ < 0) give_up(std::strerror(failure));
+  connected_ = Clock::now();
 }
 
 void DisplayServer::create(const std::string& name, const Image& image) {
@@ -149,11 +152,20 @@ void DisplayServer::send(std::string packet) {
   const auto length = std::uint32_t(packet.size());
   std::memcpy(packet.data(), &length, sizeof length);
   for (std::size_t sent = 0; sent < packet.size();) {
+    const Clock::time_point before = Clock::now();
     const ssize_t n = ::send(socket_, packet.data() + sent, packet.size() - sent, MSG_NOSIGNAL);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return give_up(errno == EAGAIN ? "it does not answer" : std::strerror(errno));
+    const int failure = errno;
+    waited_ += Clock::now() - before;
+    if (n < 0 && failure == EINTR) continue;
+    if (n <= 0) return give_up(failure == EAGAIN ? "it does not answer" : std::strerror(failure));
     sent += std::size_t(n);
+    if (sent < packet.size() && is_too_slow()) return give_up("it is too slow");
   }
+}
+
+bool DisplayServer::is_too_slow() const {
+  const std::chrono::duration<double> since = Clock::now() - connected_;
+  return waited_.count() > kTotalPatience + kShareOfTime * since.count();
 }
 
 void DisplayServer::give_up(const std::string& why) {

@@ -2,6 +2,7 @@
 // Pictures under way on the screen of tev, a viewer that listens on a TCP port.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,9 +20,10 @@ struct ServerAddress {
 /// "host", "host:port", "[::1]:port"; tev's own port 14158 where none is given; nothing if it is neither.
 std::optional<ServerAddress> parse_server_address(std::string_view text);
 
-/// One connection. A viewer that is not there, goes away or does not take what it is sent within two seconds
-/// is named in one warning, and nothing is sent any more. Pictures: R G B A in float, as tev's CreateImage
-/// and UpdateImage (its version 3) have them; names tell them apart there.
+/// One connection. A viewer that is not there, goes away, takes nothing for two seconds or keeps the program
+/// waiting for more than five seconds and a quarter of the time in all is named in one warning, and nothing
+/// is sent any more. Pictures: R G B A in float, as tev's CreateImage and UpdateImage (its version 3) have
+/// them; names tell them apart there.
 class DisplayServer {
  public:
   DisplayServer(const ServerAddress& address, const Log& log);
@@ -39,11 +41,15 @@ class DisplayServer {
  private:
   void connect(const ServerAddress& address);
   void send(std::string packet);
+  bool is_too_slow() const;
   void give_up(const std::string& why);
 
   std::string address_;
   Log log_;
   int socket_ = -1;
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point connected_;
+  std::chrono::duration<double> waited_{0};  // in all sends
 };
 
 }  // namespace opaline

@@ -20,6 +20,12 @@ void renumber(std::vector<SurfaceSample>& samples, const std::vector<std::uint32
   for (SurfaceSample& s : samples) s.mesh = to[std::size_t(std::ranges::find(from, s.mesh) - from.begin())];
 }
 
+/// As many as the stretched surface takes at the spacing that its samples have.
+std::size_t carried_count(const SampleOrigin& origin, const GroupPlan& plan) {
+  const double stretched = origin.area > 0 ? std::max(1.0, plan.area / origin.area) : 1;
+  return std::size_t(std::min(1e9, double(origin.surface.samples.size()) * stretched));
+}
+
 }  // namespace
 
 void Session::bring_samples(Part& part, const PrecomputeInput& input, std::size_t group) {
@@ -56,7 +62,7 @@ void Session::place_anew(Part& part, const PrecomputeInput& input, std::size_t g
   if (!anchored_) part.origin = {};
   std::optional<SurfaceSamples> found;
   SurfaceCells cells;
-  if (cache_ != nullptr) found = cache_->find_samples(key, part.plan.meshes);
+  if (cache_ != nullptr) found = cache_->find_samples(key, {*world_, part.plan.meshes, part.plan.samples});
   work_.found += found ? 1 : 0;
   if (found) {
     part.surface = std::move(*found);
@@ -87,7 +93,8 @@ void Session::carry_along(Part& part, const PrecomputeInput& input, const StageK
   if (!part.is_carried()) part.origin.surface = std::move(part.surface);
   part.samples_key = {};
   std::optional<SurfaceSamples> found;
-  if (cache_ != nullptr) found = cache_->find_samples(key, part.plan.meshes);
+  if (cache_ != nullptr)
+    found = cache_->find_samples(key, {*world_, part.plan.meshes, carried_count(part.origin, part.plan)});
   if (found) {
     part.surface = std::move(*found);
     ++work_.found;
@@ -122,7 +129,7 @@ void Session::bring_lights(Part& part, const PrecomputeInput& input, std::size_t
     if (old != part.light_keys.end()) {
       transfers[l] = part.transfers[std::size_t(old - part.light_keys.begin())];
       decide(part, fmt::format("light of {} kept", lights[l].name));
-    } else if (cache_ != nullptr && (found = cache_->find_light(keys[l]))) {
+    } else if (cache_ != nullptr && (found = cache_->find_light(keys[l], part.surface.samples.size()))) {
       transfers[l] = std::move(*found);
       ++work_.found;
       decide(part, fmt::format("light of {} from the cache", lights[l].name));
@@ -153,7 +160,7 @@ void Session::bring_tree(Part& part, const std::vector<Light>& lights) {
   part.irradiance = combine_lights(part.transfers, lights);
   part.irradiance_noise = combined_noise(part.transfers, lights);
   std::optional<Octree> found;
-  if (cache_ != nullptr) found = cache_->find_octree(key);
+  if (cache_ != nullptr) found = cache_->find_octree(key, part.surface);
   if (found) {
     part.octree = std::move(*found);
     ++work_.found;
@@ -187,8 +194,7 @@ void Session::bring_exitance(Part& part, TranslucentGroup& group, const Precompu
   if (key != part.exitance_key) part.surface_cache.reset();
   const bool at_hand = part.surface_cache.has_value();
   std::optional<SurfaceCache> found;
-  if (!at_hand && cache_ != nullptr)
-    found = cache_->find_exitance(key, group.plan.meshes, world_->meshes.size());
+  if (!at_hand && cache_ != nullptr) found = cache_->find_exitance(key, *world_, group.plan.meshes);
   work_.found += found ? 1 : 0;
   if (found) part.surface_cache = std::move(found);
   if (!part.surface_cache) {

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A cache stays as small as it was told to, and loses what was used longest ago.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <numeric>
 
 #include "cache_test.h"
@@ -34,19 +39,64 @@ struct BoundedCache : ScratchFolder {
 TEST(CacheBound, LeastRecentlyUsedGo) {
   const BoundedCache folder(4);
   StageCache cache(folder.path.string(), 3 * folder.one);
-  ASSERT_TRUE(cache.find_light({0, 0}));
+  ASSERT_TRUE(cache.find_light({0, 0}, 1000));
   cache.keep_light({0, 4}, some_light(1000));
   EXPECT_EQ(folder.there(5), (std::vector<bool>{true, false, false, true, true}));
   EXPECT_EQ(cache.warning(), "");
 }
 
-// Claim: an entry larger than the bound is not kept, which is said. Fails if: it stays as the only one.
+// Claim: an entry larger than the bound is not kept, which is said; what is there stays, and smaller ones
+// still find their way in. Fails if: it is written and all others go for it.
 TEST(CacheBound, LargerThanAll) {
-  const BoundedCache folder(1);
-  StageCache cache(folder.path.string(), folder.one / 2);
-  cache.keep_light({0, 1}, some_light(1000));
-  EXPECT_EQ(folder.there(2), (std::vector<bool>{false, false}));
+  const BoundedCache folder(3);
+  StageCache cache(folder.path.string(), 4 * folder.one);
+  cache.keep_light({0, 9}, some_light(100000));
+  cache.keep_light({0, 3}, some_light(1000));
+  EXPECT_EQ(folder.there(4), (std::vector<bool>{true, true, true, true}));
+  EXPECT_FALSE(std::filesystem::exists(folder.entry(9)));
   EXPECT_NE(cache.warning().find("larger than the whole cache"), std::string::npos);
+}
+
+// Claim: what has an entry's name and is a folder, a pipe or a link, dangling or not, is listed as bad and
+// not waited for, and a new entry takes the place of a link, not of its target. Fails if: listing asks for
+// the size of what a name leads to, or opening follows it.
+TEST(CacheBound, NotRegularFiles) {
+  const BoundedCache folder(1);
+  std::filesystem::create_directory(folder.entry(1));
+  ASSERT_EQ(::mkfifo(folder.entry(2).c_str(), 0600), 0);
+  std::filesystem::create_symlink("nothing", folder.entry(3));
+  std::filesystem::create_symlink(folder.entry(0), folder.entry(4));
+  const std::vector<CacheEntry> entries = list_cache(folder.path.string());
+  ASSERT_EQ(entries.size(), 5u);
+  int bad = 0;
+  for (const CacheEntry& entry : entries)
+    bad += problem_of(folder.path.string(), entry) == "is not a regular file" ? 1 : 0;
+  EXPECT_EQ(bad, 4);
+  StageCache cache(folder.path.string());
+  for (std::uint64_t i = 1; i < 5; ++i) EXPECT_FALSE(cache.find_light({0, i}, 1000)) << i;
+  cache.keep_light({0, 3}, some_light(10));
+  EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(folder.entry(3))));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("nothing")));
+  prune_cache(folder.path.string(), 0);
+  EXPECT_TRUE(std::filesystem::is_directory(folder.entry(1)));
+}
+
+// Claim: where another process keeps the lock, a run waits for a second once, says so, and goes on; pruning
+// by itself waits, and asks. Fails if: either waits for the lock without a word.
+TEST(CacheBound, HeldLock) {
+  const BoundedCache folder(3);
+  const int lock = ::open(folder.file(".opaline-lock").c_str(), O_RDWR | O_CREAT, 0600);
+  ASSERT_EQ(::flock(lock, LOCK_EX), 0);
+  StageCache cache(folder.path.string(), 3 * folder.one);
+  cache.keep_light({0, 3}, some_light(1000));
+  cache.keep_light({0, 4}, some_light(1000));
+  EXPECT_NE(cache.warning().find("another process holds its lock"), std::string::npos) << cache.warning();
+  EXPECT_EQ(folder.there(5), (std::vector<bool>{true, true, true, true, true}));
+  int asked = 0;
+  EXPECT_TRUE(prune_cache(folder.path.string(), 0, [&] { return ++asked < 3; }).empty());
+  EXPECT_EQ(asked, 3);
+  ::close(lock);
+  EXPECT_EQ(prune_cache(folder.path.string(), 0, [] { return false; }).size(), 5u);
 }
 
 // Claim: pruning leaves at most the bytes asked for, the latest used, and other people's files. Source:

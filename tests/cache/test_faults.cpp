@@ -63,7 +63,7 @@ KilledWriters kill_writers(int times) {
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
     StageCache cache(path);
-    const auto found = cache.find_samples(key(std::uint64_t(i)), kMeshes);
+    const auto found = cache.find_samples(key(std::uint64_t(i)), surface_of(4000));
     killed.warning += cache.warning();
     if (!found) continue;
     ++killed.written;
@@ -127,7 +127,7 @@ TEST(CacheFaults, FullDisk) {
     ASSERT_EQ(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL), 0) << limit;
   }
   StageCache cache(folder.path.string());
-  EXPECT_TRUE(cache.find_light(key(1)));
+  EXPECT_TRUE(cache.find_light(key(1), 10));
   cache.keep_samples(key(2), samples, kMeshes);
   EXPECT_EQ(cache.warning(), "");
   EXPECT_EQ(whole_entries(folder.path.string()), 2);
@@ -142,7 +142,7 @@ TEST(CacheFaults, ReadOnlyFolder) {
   const int result = exit_code(in_child([&] {
     if (::geteuid() == 0 && ::setuid(65534) != 0) return 2;
     StageCache cache(folder.path.string());
-    if (!cache.find_samples(key(1), kMeshes) || !cache.warning().empty()) return 3;
+    if (!cache.find_samples(key(1), surface_of(100)) || !cache.warning().empty()) return 3;
     cache.keep_samples(key(2), some_samples(100), kMeshes);
     return cache.warning().find("Permission denied") == std::string::npos ? 4 : 0;
   }));
@@ -170,7 +170,7 @@ TEST(CacheFaults, TwoProcesses) {
     for (std::uint64_t i = 0; i < 60; ++i) {
       StageCache cache(folder.path.string(), 300000);  // some five entries
       const std::size_t count = 1000 + 10 * (i % 7);
-      const auto found = cache.find_samples(key(i % 7), kMeshes);
+      const auto found = cache.find_samples(key(i % 7), surface_of(count));
       if (found && !same_bytes(found->samples, some_samples(count).samples)) return 1;
       if (!found) cache.keep_samples(key(i % 7), some_samples(count), kMeshes);
       if (!cache.warning().empty()) return 2;

@@ -191,6 +191,19 @@ TEST(CliPartial, ViewerGone) {
   EXPECT_EQ(warnings(nobody), 1u);
 }
 
+// Claim: a viewer that reads 4 KB/s is dropped with one warning before it has had the 12 MB of a picture,
+// which would take it most of an hour; the picture is made. Tolerance: a minute and a half, on a busy
+// machine; alone it takes 8 s. Fails if: patience is counted anew for each send.
+TEST(CliPartial, SlowViewer) {
+  const PartialScene ball;
+  const Viewer viewer(SIZE_MAX, std::chrono::milliseconds(100));
+  Child child({"render", ball.scene, "-o", ball.exr, "--resolution", "512x512", "--display-server",
+               viewer.address(), "--log", "json"});
+  const Outcome outcome = child.wait(90);
+  EXPECT_EQ(outcome.exit_code, 0) << "signal " << outcome.signal;
+  EXPECT_TRUE(contains(event_of(events_of(outcome.out), "warning")["message"], "too slow")) << outcome.out;
+}
+
 // Claim: an address that is none is exit 2 and says what is expected. Source: `opaline render --help`. Fails
 // if: a port is cut to 16 bits.
 TEST(CliPartial, Mistakes) {

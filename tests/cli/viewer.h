@@ -8,6 +8,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -103,8 +105,11 @@ inline std::map<std::string, ShownPicture> shown_by(const std::string& stream) {
 /// Listens until it has had one connection.
 class Viewer {
  public:
-  /// bytes: after as many it closes the connection
-  explicit Viewer(std::size_t bytes = SIZE_MAX) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  /// bytes: after as many it closes the connection; pause: after each 400 bytes it reads
+  explicit Viewer(std::size_t bytes = SIZE_MAX, std::chrono::milliseconds pause = {})
+      : socket_(::socket(AF_INET, SOCK_STREAM, 0)), pause_(pause) {
+    const int small = 4096;
+    if (pause.count() > 0) ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -116,6 +121,7 @@ class Viewer {
     thread_ = std::jthread([this, bytes] { serve(bytes); });
   }
   ~Viewer() {
+    leaving_ = true;
     ::shutdown(socket_, SHUT_RDWR);
     ::close(socket_);
   }
@@ -134,14 +140,17 @@ class Viewer {
   void serve(std::size_t bytes) {
     const int connection = ::accept(socket_, nullptr, nullptr);
     char buffer[4096];
-    for (ssize_t n = 1; n > 0 && stream_.size() < bytes;) {
-      n = ::read(connection, buffer, sizeof buffer);
+    for (ssize_t n = 1; n > 0 && stream_.size() < bytes && !leaving_;) {
+      n = ::read(connection, buffer, pause_.count() > 0 ? 400 : sizeof buffer);
       if (n > 0) stream_.append(buffer, std::size_t(n));
+      if (pause_.count() > 0) std::this_thread::sleep_for(pause_);
     }
     if (connection >= 0) ::close(connection);
   }
 
   int socket_;
+  std::chrono::milliseconds pause_;
+  std::atomic<bool> leaving_ = false;
   std::string address_, stream_;
   std::jthread thread_;
 };

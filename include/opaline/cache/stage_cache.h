@@ -16,9 +16,18 @@
 
 namespace opaline {
 
+/// What samples of an entry are to lie on.
+struct SampledSurface {
+  const World& world;
+  std::span<const std::uint32_t> meshes;  ///< the group's, in its order
+  std::size_t count;                      ///< how many samples were asked for
+};
+
 /// A folder of entries, HDF5 files that any number of processes fill and read at once: an entry appears whole
-/// under its key or not at all, and is checked whole before it is parsed. Nothing here fails a run: what
-/// cannot be used is computed again, what cannot be kept is not.
+/// under its key or not at all, is checked whole before it is looked into, and then against what the key
+/// stands for: counts, ranges and sizes; so no entry, by whomever it was made, has more memory taken than its
+/// result can need. Nothing here fails a run: what cannot be used is computed again, what cannot be kept is
+/// not.
 class StageCache {
  public:
   static constexpr std::uint64_t kDefaultBytes = std::uint64_t(8) << 30;
@@ -27,13 +36,13 @@ class StageCache {
   /// error Error{run_failed} naming the folder: there is none and none can be made
   explicit StageCache(std::string folder, std::uint64_t most_bytes = kDefaultBytes);
 
-  /// meshes: the group's, which the samples lie on, in its order.
-  std::optional<SurfaceSamples> find_samples(const StageKey& key, std::span<const std::uint32_t> meshes);
-  std::optional<LightTransfer> find_light(const StageKey& key);
-  std::optional<Octree> find_octree(const StageKey& key);
-  /// world_meshes: how many the world has.
-  std::optional<SurfaceCache> find_exitance(const StageKey& key, std::span<const std::uint32_t> meshes,
-                                            std::size_t world_meshes);
+  std::optional<SurfaceSamples> find_samples(const StageKey& key, const SampledSurface& surface);
+  /// samples: how many the light reaches
+  std::optional<LightTransfer> find_light(const StageKey& key, std::size_t samples);
+  std::optional<Octree> find_octree(const StageKey& key, const SurfaceSamples& samples);
+  /// meshes: the group's, in its order
+  std::optional<SurfaceCache> find_exitance(const StageKey& key, const World& world,
+                                            std::span<const std::uint32_t> meshes);
 
   void keep_samples(const StageKey& key, const SurfaceSamples& samples,
                     std::span<const std::uint32_t> meshes);
@@ -47,14 +56,16 @@ class StageCache {
 
  private:
   template <class Get>
-  auto find(const char* stage, const StageKey& key, const Get& get);
+  auto find(const char* stage, const StageKey& key, std::uint64_t most_bytes, const Get& get);
   template <class Put>
   void keep(const char* stage, const StageKey& key, const Put& put);
+  void prune();
 
   std::string folder_;
   std::uint64_t most_bytes_;
-  std::vector<std::string> unusable_;
-  std::string not_kept_;  // why; then nothing more is tried
+  std::vector<std::string> unusable_, too_large_;
+  std::string not_kept_;    // why; then nothing more is tried
+  bool is_locked_ = false;  // by another process, for too long to wait
 };
 
 }  // namespace opaline

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The reader of EXR and PNG files, alone and as the sums of a direct rendering are read.
+#include "fuzz_target.h"
+#include "opaline/image/image.h"
+#include "opaline/render/direct.h"
+
+namespace opaline::fuzz {
+namespace {
+
+constexpr const char* kScene = "a scene's key";
+
+Scene small_scene() {
+  Scene scene;
+  scene.film.resolution = {3, 2};
+  return scene;
+}
+
+Image picture(const std::vector<std::string>& channels) {
+  Image image;
+  image.width = 3, image.height = 2;
+  image.channels = channels;
+  for (std::size_t i = 0; i < 6 * channels.size(); ++i) image.pixels.push_back(float(i) / 8);
+  image.metadata = {{"opaline:seed", "0"}, {"Software", "opaline"}};
+  return image;
+}
+
+}  // namespace
+
+std::vector<std::string> seeds() {
+  std::vector<std::string> all;
+  const ScratchFile exr("exr"), png("png");
+  const auto keep = [&](const std::string& path) { all.push_back(file_bytes(path)); };
+  write_exr(exr.path(), picture({"R", "G", "B", "A", "Z"}), true);
+  keep(exr.path());
+  Image cropped = picture({"R"});
+  cropped.crop_x = 7, cropped.crop_y = 5, cropped.full_width = cropped.full_height = 20;
+  write_exr(exr.path(), cropped, false);
+  keep(exr.path());
+  DirectState state;
+  state.passes = 3;
+  state.sums.assign(36, 0.5f);
+  write_direct_state(exr.path(), state, small_scene(), kScene);
+  keep(exr.path());
+  write_png(png.path(), picture({"R", "G", "B"}), 0);
+  keep(png.path());
+  return all;
+}
+
+std::vector<std::string> words() {
+  return {"IHDR",
+          "PLTE",
+          "tRNS",
+          "gAMA",
+          "sRGB",
+          "iCCP",
+          "IDAT",
+          "IEND",
+          "tEXt",
+          "channels",
+          "chlist",
+          "compression",
+          "dataWindow",
+          "box2i",
+          "displayWindow",
+          "lineOrder",
+          "tiles",
+          "tiledesc",
+          "opaline:direct_passes",
+          "opaline:direct_scene",
+          "string",
+          "deepscanline",
+          "multiView",
+          "type"};
+}
+
+}  // namespace opaline::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace opaline;
+  static const fuzz::ScratchFile file("picture");
+  static const Scene scene = fuzz::small_scene();
+  file.put({reinterpret_cast<const char*>(data), size});
+  fuzz::try_input([&] {
+    const Image image = read_image(file.path());
+    fuzz::expect(image.width > 0 && image.height > 0 && !image.channels.empty(), "pixels and channels");
+    fuzz::expect(
+        image.pixels.size() == std::size_t(image.width) * std::size_t(image.height) * image.channels.size(),
+        "a value a pixel and channel");
+  });
+  fuzz::try_input([&] { read_direct_state(file.path(), scene, fuzz::kScene); });
+  return 0;
+}
