@@ -18,7 +18,7 @@ namespace {
 constexpr float kWorth = 0.02f, kUsual = 0.06f;
 // Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
 // field of each less evenly; and how many each of many neighbours brings at least.
-constexpr int kAlone = 24, kTogether = 48, kEach = 3;
+constexpr int kAlone = 24, kTogether = 96, kEach = 3;
 constexpr std::uint64_t kStride = 11;  // in the sequence from one point's places to the next one's
 constexpr int kFewerRays = 16;  // than a point's own are traced from a place to each light with an area
 constexpr std::size_t kMostTogether = 64;  // points that share their places

@@ -76,12 +76,16 @@ Noise place_noise() {
   return noise;
 }
 
-// Claim: neighbours' places fill each other's gaps. Source: near_field_sampler.h. Tolerance: measured .0049.
-// Fails if: they take the same ones of the sequence (.012), or another pass draws the same (0).
+// Claim: neighbours' places fill each other's gaps, and are so many that p99 of their noise is 2.2 %. Source:
+// near_field_sampler.h. Tolerance: a tenth above the measured rms of .0041 and p99 of .0217. Fails if: they
+// take the same ones of the sequence (rms .012), are half as many together (.0049, .0247), or another pass
+// draws the same (0).
 TEST(NearFieldPlaces, FillEachOthersGaps) {
   const Noise noise = place_noise();
-  EXPECT_LT(noise.rms, .0056);
-  EXPECT_LT(noise.p99, .028);
+  RecordProperty("rms", std::to_string(noise.rms));
+  RecordProperty("p99", std::to_string(noise.p99));
+  EXPECT_LT(noise.rms, .0045);
+  EXPECT_LT(noise.p99, .024);
   EXPECT_GT(noise.rms, .001);
 }
 
@@ -136,7 +140,7 @@ TEST(NearFieldPlaces, AreTheSeedsOwn) {
 }
 
 // Claim: neighbours share their places: 16 times the pixels take less than 10 times the rays to them. Source:
-// near_field_sampler.h. Tolerance: measured 8.0. Fails if: each point has as many of its own (16.9).
+// near_field_sampler.h. Tolerance: measured 9.7. Fails if: each point has as many of its own (16.9).
 TEST(NearFieldPlaces, AreShared) {
   const double few = place_rays(64), many = place_rays(256);
   EXPECT_GT(few, 1000);
