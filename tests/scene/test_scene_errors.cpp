@@ -47,6 +47,7 @@ TEST(SceneErrors, NameThePlace) {
       {R"({"mm_per_unit": @0})", {"'mm_per_unit' is out of range", "got 0"}},
       {R"({"mm_per_unit": @"mm"})", {"expected a number", "got \"mm\""}},
       {R"({"settings": {"max_solid_angle": @0}})", {"'settings.max_solid_angle'"}},
+      {R"({"settings": {"tolerance": @1e-5}})", {"'settings.tolerance' cannot be kept", "at least 1e-4"}},
       {R"({"settings": {"near_field": @1}})", {"true or false", "got 1"}},
       {R"({"settings": {"near_field": @null}})", {"true or false", "got null"}},
       {R"({"settings": {"evaluator": @"dualtree"}})", {"did you mean 'dual_tree'"}},
