@@ -244,6 +244,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   if (!options.frames.empty()) render.frames = precompute.frames = *parse_frames(options.frames);
   if (precompute_command.parsed()) return precompute;
   if (info_command.parsed()) return info;
+  if (!options.layers.empty()) render.layers = *layers_of(options.layers);
   render.display_server = parse_server_address(options.display_server);
   check_outputs(render);
   if (!options.target_error.empty()) render.target_error = share_of(options.target_error);

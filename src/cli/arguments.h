@@ -10,6 +10,7 @@
 #include "cli/display_server.h"
 #include "cli/log.h"
 #include "opaline/cache/stage_cache.h"
+#include "opaline/image/picture_layers.h"
 #include "opaline/report/ladder.h"
 
 namespace opaline {
@@ -20,10 +21,11 @@ struct RenderArguments {
   std::string scene;
   /// For load_scene: what the short options mean, in a fixed order, then every --set in the order given.
   std::vector<std::string> overrides;
-  std::vector<std::string> outputs;  ///< at least one; .exr or .png, no two alike
-  std::string samples_ply;           ///< empty: none
-  std::string resume;                ///< file of a direct rendering's sums to go on from; empty: none
-  std::string cache;                 ///< folder of stage results; empty: none
+  std::vector<std::string> outputs;        ///< at least one; .exr or .png, no two alike
+  LayerChoice layers{false, {"diffuse"}};  ///< of the EXR files, beside R, G, B and A
+  std::string samples_ply;                 ///< empty: none
+  std::string resume;                      ///< file of a direct rendering's sums to go on from; empty: none
+  std::string cache;                       ///< folder of stage results; empty: none
   std::uint64_t cache_bytes = StageCache::kDefaultBytes;
   std::vector<int> frames;  ///< empty: one picture; else outputs have a place for the frame's number
   int threads = 0;          ///< 0: one for each core

@@ -82,6 +82,11 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
       ->required()
       ->type_name("FILE");
   add_common_options(app, render.scene, options);
+  app.add_option("--layers", options.layers,
+                 "what the EXR holds beside R, G, B and A: diffuse (default), specular, albedo, N, P, Z, "
+                 "irradiance, error, direct's variance; all or none")
+      ->check(layers_check())
+      ->type_name("NAME,...");
   app.add_option("--samples-ply", render.samples_ply, "also write the surface samples as a PLY point cloud")
       ->type_name("FILE");
   app.add_option(

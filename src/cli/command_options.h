@@ -28,6 +28,7 @@ struct Options {
   std::vector<std::string> rungs;
   std::string frames;
   std::string display_server;
+  std::string layers;
 };
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options);

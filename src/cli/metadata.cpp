@@ -3,6 +3,7 @@
 
 #include <OpenImageIO/hash.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <fstream>
@@ -82,18 +83,30 @@ std::string shell_quoted(const std::string& argument) {
   return quoted + "'";
 }
 
+namespace {
+
+/// The option that asks for the layers; empty for those that are written unasked.
+std::string layers_text(const RenderArguments& arguments) {
+  const LayerChoice& layers = arguments.layers;
+  if (!layers.all && layers.names == RenderArguments{}.layers.names) return {};
+  if (layers.all || layers.names.empty()) return layers.all ? " --layers all" : " --layers none";
+  return fmt::format(" --layers {}", fmt::join(layers.names, ","));
+}
+
+}  // namespace
+
 std::string command_of(const RenderArguments& arguments) {
   std::string command = command_line("opaline", arguments.scene, arguments.overrides);
   if (arguments.target_error)
     command += *arguments.target_error < 1 ? fmt::format(" --target-error {}", *arguments.target_error)
                                            : " --target-error 100%";
-  return command;
+  return command + layers_text(arguments);
 }
 
 std::string command_again(const RenderArguments& arguments) {
   std::string command = command_line(arguments.program, arguments.scene, arguments.overrides);
   for (const std::string& output : arguments.outputs) command += " -o " + quoted_path(output);
-  return command;
+  return command + layers_text(arguments);
 }
 
 // Lengths go in front: what is hashed can be cut in one way only.
@@ -134,7 +147,7 @@ Metadata frame_metadata(const RenderArguments& arguments, const std::string& has
   const std::string name = fs::path(arguments.scene).filename().string();
   return {{"opaline:version", OPALINE_VERSION},
           {"opaline:scene_hash", hash},
-          {"opaline:command", command_line("opaline", name, arguments.overrides)},
+          {"opaline:command", command_line("opaline", name, arguments.overrides) + layers_text(arguments)},
           {"opaline:frame", std::to_string(frame)}};
 }
 

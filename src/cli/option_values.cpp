@@ -4,15 +4,25 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <span>
+#include <sstream>
 #include <vector>
 
 #include "cli/display_server.h"
+#include "scene/json_tree.h"
+#include "scene/schema.h"
 
 namespace opaline {
 namespace {
+
+constexpr std::array<std::string_view, 11> kLayerWords{"diffuse", "specular",   "albedo",   "N",   "P",   "Z",
+                                                       "error",   "irradiance", "variance", "all", "none"};
+constexpr std::span kLayers = std::span(kLayerWords).first(9);
 
 constexpr WholeRange kSide{1, 65536}, kPixel{0, 65536};
 
@@ -116,6 +126,33 @@ CLI::Validator positive_share_check() {
 CLI::Validator seconds_of() {
   const std::map<std::string, double> units{{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
   return CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE).description("");
+}
+
+std::optional<LayerChoice> layers_of(const std::string& text) {
+  LayerChoice layers{text == "all", {}};
+  if (layers.all || text == "none") return layers;
+  std::istringstream names(text);
+  for (std::string name; std::getline(names, name, ',');) {
+    if (std::ranges::find(kLayers, name) == kLayers.end()) return {};
+    layers.names.push_back(name);
+  }
+  if (layers.names.empty()) return {};
+  return layers;
+}
+
+CLI::Validator layers_check() {
+  return CLI::Validator(
+      [](std::string& text) {
+        if (layers_of(text)) return std::string();
+        std::istringstream names(text);
+        std::string name;
+        while (std::getline(names, name, ',') && std::ranges::find(kLayers, name) != kLayers.end())
+          ;
+        const std::string near = did_you_mean(name, kLayerWords);
+        return fmt::format("there is no layer '{}'{}", printable(name),
+                           near.empty() ? "; expected all, none, or some of " + join(kLayers) : near);
+      },
+      {});
 }
 
 CLI::Validator rung_check() {

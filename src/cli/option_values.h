@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "opaline/image/picture_layers.h"
+
 namespace opaline {
 
 struct WholeRange {
@@ -36,6 +38,9 @@ CLI::Validator positive_share_check();
 CLI::Validator seconds_of();
 /// What parse_server_address takes.
 CLI::Validator server_address_check();
+/// "diffuse,N", "all" or "none"; nothing if a name is no layer's.
+std::optional<LayerChoice> layers_of(const std::string& text);
+CLI::Validator layers_check();
 /// NAME=VALUE.
 CLI::Validator rung_check();
 

@@ -83,7 +83,7 @@ void PartialPicture::send_tiles() {
 
 void PartialPicture::write_files(const Image& picture) {
   try {
-    for (const std::string& path : files_) write_picture(path, picture, film_);
+    for (const std::string& path : files_) write_picture(path, picture, film_, {});
   } catch (const std::exception& failure) {
     print_warning(log_, std::string("no partial pictures are written: ") + failure.what());
     files_.clear();

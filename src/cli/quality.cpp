@@ -123,7 +123,7 @@ FinishPicture trial_writing(const RenderArguments& arguments, const Film& film) 
   return [&arguments, &film](const Image& picture) {
     for (const std::string& path : arguments.outputs) {
       const AtomicFile trial(path);  // never put in place
-      write_picture(trial.temporary(), picture, film);
+      write_picture(trial.temporary(), picture, film, arguments.layers);
     }
   };
 }

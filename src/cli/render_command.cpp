@@ -172,6 +172,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   const Scene& scene = session.scene();
   if (!arguments.resume.empty() && scene.settings.method != Method::direct)
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct");
+  check_layers(arguments.layers, scene.settings.method);
   check_precompute(arguments, scene, session.plan());
   check_memory(scene, session.plan());
   KnownErrors errors = choose_settings(stages, arguments, session);

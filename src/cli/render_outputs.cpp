@@ -3,7 +3,10 @@
 
 #include <algorithm>
 
+#include "cli/names.h"
 #include "opaline/core/atomic_file.h"
+#include "opaline/core/error.h"
+#include "render/layers.h"
 
 namespace opaline {
 
@@ -13,8 +16,20 @@ void check_writable(const RenderArguments& arguments) {
   if (!arguments.resume.empty()) const AtomicFile probe(arguments.resume);
 }
 
-WriteReport write_picture(const std::string& path, const Image& image, const Film& film) {
-  if (output_format(path) == OutputFormat::exr) return write_exr(path, image, film.half);
+void check_layers(const LayerChoice& layers, Method method) {
+  const std::vector<std::string> channels = layer_names(method);
+  for (const std::string& layer : layers.names)
+    if (std::ranges::none_of(channels, [&](const std::string& channel) {
+          return channel.substr(0, channel.find('.')) == layer;
+        }))
+      throw Error(ErrorKind::bad_input, {}, 0, 0,
+                  "--layers: there is no layer '" + layer + "' with this method",
+                  layer == "variance" ? "--method direct" : "another --method", name_of(method));
+}
+
+WriteReport write_picture(const std::string& path, const Image& image, const Film& film,
+                          const LayerChoice& layers) {
+  if (output_format(path) == OutputFormat::exr) return write_exr(path, image, film.half, layers);
   write_png(path, image, film.exposure);
   return {};
 }
@@ -24,7 +39,7 @@ std::vector<std::string> write_outputs(const RenderArguments& arguments, const S
   std::size_t cut = 0;
   std::vector<std::string> written;
   for (const std::string& path : arguments.outputs) {
-    cut = std::max(cut, write_picture(path, image, session.scene().film).half_overflow);
+    cut = std::max(cut, write_picture(path, image, session.scene().film, arguments.layers).half_overflow);
     written.push_back(path);
   }
   if (!arguments.samples_ply.empty()) {

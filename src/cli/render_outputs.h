@@ -17,7 +17,11 @@ void check_writable(const RenderArguments& arguments);
 
 /// EXR or PNG, as the name ends.
 /// error as write_exr
-WriteReport write_picture(const std::string& path, const Image& image, const Film& film);
+WriteReport write_picture(const std::string& path, const Image& image, const Film& film,
+                          const LayerChoice& layers);
+
+/// error Error{bad_input}: a layer was named that this method does not have
+void check_layers(const LayerChoice& layers, Method method);
 
 /// Writes everything that was asked for; returns the names.
 /// error as write_exr

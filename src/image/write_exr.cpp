@@ -20,15 +20,17 @@
 
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
-#include "opaline/image/image.h"
+#include "opaline/core/parallel.h"
+#include "opaline/image/picture_layers.h"
 
 namespace opaline {
 namespace {
 
 constexpr float half_max = 65504.0f;
 
-/// A multiple of the 16 rows that ZIP compresses together.
-constexpr int strip_rows = 64;
+/// ZIP compresses 16 rows together. A strip has many of them, for all threads, as far as memory is not felt.
+constexpr int block_rows = 16, most_blocks = 32;
+constexpr std::size_t strip_bytes = std::size_t(16) << 20;
 
 /// The file under OpenEXR's writer. It remembers the first failure, since the writer's destructor, which
 /// writes last, does not tell.
@@ -87,14 +89,22 @@ Imath::Box2i data_window(const Image& image) {
   return {corner, corner + Imath::V2i(image.width - 1, image.height - 1)};
 }
 
-Imf::Header make_header(const Image& image, const std::vector<bool>& is_half) {
+/// A channel of the picture as the file has it.
+struct FileChannel {
+  std::size_t place = 0;  // among the picture's channels
+  bool half = false;
+  std::size_t bytes() const { return half ? sizeof(::half) : sizeof(float); }
+  Imf::PixelType type() const { return half ? Imf::HALF : Imf::FLOAT; }
+};
+
+Imf::Header make_header(const Image& image, const std::vector<FileChannel>& channels) {
   const int width = image.full_width > 0 ? image.full_width : image.width,
             height = image.full_height > 0 ? image.full_height : image.height;
   Imf::Header header({{0, 0}, {width - 1, height - 1}}, data_window(image));
   header.compression() = Imf::ZIP_COMPRESSION;
-  header.zipCompressionLevel() = 1;  // 3 % larger than at the usual level 4, in three quarters of its time
-  for (std::size_t c = 0; c < image.channels.size(); ++c)
-    header.channels().insert(image.channels[c], Imf::Channel(is_half[c] ? Imf::HALF : Imf::FLOAT));
+  header.zipCompressionLevel() = 1;  // 5 % larger than at the usual level 4, in two thirds of its time
+  for (const FileChannel& channel : channels)
+    header.channels().insert(image.channels[channel.place], Imf::Channel(channel.type()));
   header.insert("Software", Imf::StringAttribute("opaline"));
   for (const auto& [name, value] : image.metadata) header.insert(name, Imf::StringAttribute(value));
   return header;
@@ -112,32 +122,41 @@ float storable(float value, bool half, WriteReport& report) {
   return value;
 }
 
-// Appends the value's bytes; the place after them.
-char* store(float value, bool half, char* to) {
-  if (!half) {
-    std::memcpy(to, &value, sizeof value);
-    return to + sizeof value;
+/// One channel of a row in the file's type.
+template <class Stored>
+void store_row(const float* value, std::size_t step, std::size_t count, char* to, WriteReport& report) {
+  constexpr bool half = sizeof(Stored) < sizeof(float);
+  for (std::size_t i = 0; i < count; ++i, value += step, to += sizeof(Stored)) {
+    const Stored stored(storable(*value, half, report));
+    std::memcpy(to, &stored, sizeof stored);
   }
-  const ::half rounded(value);
-  std::memcpy(to, &rounded, sizeof rounded);
-  return to + sizeof rounded;
 }
 
-/// Rows of a picture in the file's own types, pixel by pixel.
+/// Rows of a picture in the file's own types, channel by channel.
 class Strip {
  public:
-  Strip(const Image& image, const std::vector<bool>& is_half) : image_(image), is_half_(is_half) {
-    for (const bool half : is_half) pixel_bytes_ += half ? sizeof(::half) : sizeof(float);
-  }
+  Strip(const Image& image, const std::vector<FileChannel>& channels)
+      : image_(image), channels_(channels), planes_(channels.size()) {}
 
   void fill(int first, int count, WriteReport& report) {
-    const std::size_t pixels = static_cast<std::size_t>(count) * static_cast<std::size_t>(image_.width);
-    const std::size_t row = static_cast<std::size_t>(image_.width) * is_half_.size();
-    const float* value = image_.pixels.data() + static_cast<std::size_t>(first) * row;
-    bytes_.resize(pixels * pixel_bytes_);
-    char* to = bytes_.data();
-    for (std::size_t i = 0; i < pixels; ++i)
-      for (const bool half : is_half_) to = store(storable(*value++, half, report), half, to);
+    const auto width = static_cast<std::size_t>(image_.width), rows = static_cast<std::size_t>(count),
+               step = image_.channels.size();
+    for (std::size_t c = 0; c < channels_.size(); ++c) planes_[c].resize(rows * width * channels_[c].bytes());
+    std::vector<WriteReport> reports(chunk_count(rows, block_rows));
+    parallel_chunks(rows, block_rows, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+      for (std::size_t y = begin; y < end; ++y)
+        for (std::size_t c = 0; c < channels_.size(); ++c) {
+          const float* value = image_.pixels.data() + (static_cast<std::size_t>(first) + y) * width * step +
+                               channels_[c].place;
+          char* to = planes_[c].data() + y * width * channels_[c].bytes();
+          const auto store = channels_[c].half ? store_row<::half> : store_row<float>;
+          store(value, step, width, to, reports[chunk]);
+        }
+    });
+    for (const WriteReport& part : reports) {
+      report.non_finite += part.non_finite;
+      report.half_overflow += part.half_overflow;
+    }
     first_ = first;
   }
 
@@ -145,44 +164,60 @@ class Strip {
     Imath::Box2i window = data_window(image_);
     window.min.y += first_;
     Imf::FrameBuffer buffer;
-    const char* at = bytes_.data();
-    for (std::size_t c = 0; c < is_half_.size(); ++c) {
-      buffer.insert(image_.channels[c],
-                    Imf::Slice::Make(is_half_[c] ? Imf::HALF : Imf::FLOAT, at, window, pixel_bytes_,
-                                     pixel_bytes_ * static_cast<std::size_t>(image_.width)));
-      at += is_half_[c] ? sizeof(::half) : sizeof(float);
-    }
+    for (std::size_t c = 0; c < channels_.size(); ++c)
+      buffer.insert(image_.channels[channels_[c].place],
+                    Imf::Slice::Make(channels_[c].type(), planes_[c].data(), window, channels_[c].bytes(),
+                                     channels_[c].bytes() * static_cast<std::size_t>(image_.width)));
     return buffer;
   }
 
  private:
   const Image& image_;
-  const std::vector<bool>& is_half_;
-  std::size_t pixel_bytes_ = 0;
-  std::vector<char> bytes_;
+  const std::vector<FileChannel>& channels_;
+  std::vector<std::vector<char>> planes_;
   int first_ = 0;
 };
 
+int strip_rows_of(const Image& image, const std::vector<FileChannel>& channels) {
+  std::size_t row = 0;
+  for (const FileChannel& channel : channels) row += channel.bytes() * static_cast<std::size_t>(image.width);
+  const std::size_t blocks = strip_bytes / (row * block_rows);
+  return block_rows * static_cast<int>(std::clamp<std::size_t>(blocks, 4, most_blocks));
+}
+
 }  // namespace
 
+bool has_channel(const LayerChoice& layers, const std::string& channel) {
+  const bool is_picture = channel.size() == 1 && channel != "Z";
+  return layers.all || is_picture ||
+         std::ranges::find(layers.names, channel.substr(0, channel.find('.'))) != layers.names.end();
+}
+
 WriteReport write_exr(const std::string& path, const Image& image, bool half) {
+  return write_exr(path, image, half, {});
+}
+
+WriteReport write_exr(const std::string& path, const Image& image, bool half, const LayerChoice& layers) {
   const std::size_t row = static_cast<std::size_t>(image.width) * image.channels.size();
   require(image.width > 0 && image.height > 0 && row > 0, "a picture has pixels and channels");
   require(image.pixels.size() == row * static_cast<std::size_t>(image.height),
           "a value per pixel and channel");
-  std::vector<bool> is_half;
-  for (const std::string& channel : image.channels) is_half.push_back(half && !always_float(channel));
+  std::vector<FileChannel> channels;
+  for (std::size_t c = 0; c < image.channels.size(); ++c)
+    if (has_channel(layers, image.channels[c]))
+      channels.push_back({c, half && !always_float(image.channels[c])});
 
   const auto threads =
       static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
   Imf::setGlobalThreadCount(threads > 1 ? threads : 0);
   WriteReport report;
-  Strip strip(image, is_half);
+  Strip strip(image, channels);
   AtomicFile file(path);
   CheckedFile sink(file.temporary());
   std::string complaint;
   try {
-    Imf::OutputFile output(sink, make_header(image, is_half));
+    Imf::OutputFile output(sink, make_header(image, channels));
+    const int strip_rows = strip_rows_of(image, channels);
     for (int first = 0; first < image.height; first += strip_rows) {
       const int count = std::min(strip_rows, image.height - first);
       strip.fill(first, count, report);

@@ -9,6 +9,7 @@
 
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/core/parallel.h"
 #include "opaline/image/image.h"
 
 namespace opaline {
@@ -27,7 +28,8 @@ std::array<std::size_t, 3> rgb_channels(const Image& image) {
 /// NaN and infinities become 0, as in the EXR. OpenImageIO's scalar formula is the exact one; its ColorConfig
 /// would give the same, unless $OCIO named another configuration.
 std::uint8_t quantize(float value, double gain) {
-  const double exposed = std::isfinite(value) && value > 0 ? value * gain : 0.0;
+  if (!(std::isfinite(value) && value > 0)) return 0;
+  const double exposed = value * gain;
   const float encoded = OIIO::linear_to_sRGB(static_cast<float>(std::min(exposed, 1.0)));
   return static_cast<std::uint8_t>(std::lround(255.0f * std::min(encoded, 1.0f)));
 }
@@ -57,8 +59,11 @@ void write_png(const std::string& path, const Image& image, double exposure) {
   const double gain = std::exp2(exposure);
   AtomicFile file(path);
   std::vector<std::uint8_t> bytes(pixels * 3);
-  for (std::size_t i = 0; i < bytes.size(); ++i)
-    bytes[i] = quantize(image.pixels[i / 3 * channels + rgb[i % 3]], gain);
+  parallel_chunks(pixels, 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        bytes[3 * i + c] = quantize(image.pixels[i * channels + rgb[c]], gain);
+  });
   file.append(encoded(path, image.width, image.height, bytes));
   file.commit();
 }

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <regex>
+#include <set>
 
 #include "opaline/image/image.h"
 #include "run_program.h"
@@ -100,16 +101,16 @@ TEST(CliRender, SceneHash) {
   EXPECT_NE(hash({}), plain);
 }
 
-// Claim: it changes with the bytes of a mesh file that a shape shows, each time the file changes, and not with
-// a file that no shape shows. Source: metadata.h. Fails if: mesh files are not hashed.
+// Claim: it changes with the bytes of a mesh file that a shape shows, each time the file changes, and not
+// with a file that no shape shows. Source: metadata.h. Fails if: mesh files are not hashed.
 TEST(CliRender, SceneHashCoversMeshFiles) {
   const SceneFolder folder;
   const std::string out = folder.file("a.exr"), mesh = folder.file("wedge.obj");
   const std::string obj = "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
   const auto hash = [&](const std::string& bytes, const std::string& shape) {
     put_bytes(mesh, bytes);
-    const std::vector<std::string> line{"render", folder.scene, "-o",       out,     "--quiet",
-                                        "--method", "lambert",  "--set", "shapes=" + shape};
+    const std::vector<std::string> line{
+        "render", folder.scene, "-o", out, "--quiet", "--method", "lambert", "--set", "shapes=" + shape};
     EXPECT_EQ(run_program(line).exit_code, 0);
     return metadata_of(out)["opaline:scene_hash"];
   };
@@ -118,6 +119,35 @@ TEST(CliRender, SceneHashCoversMeshFiles) {
   EXPECT_EQ(hash(obj, shown), hash(obj, shown));
   EXPECT_NE(hash(obj + "# other bytes\n", shown), hash(obj, shown));
   EXPECT_EQ(hash(obj + "# other bytes\n", hidden), hash(obj, hidden));
+}
+
+// Claim: an EXR holds R, G, B, A and diffuse unless --layers says what else, all or none; a mistyped name is
+// answered with the nearest one, and a layer that the method lacks before the work. Source: the help. Fails
+// if: the option is not passed on, or the check comes after the picture.
+TEST(CliRender, LayersOnRequest) {
+  const SceneFolder folder;
+  const std::string out = folder.file("a.exr");
+  const auto layers = [&](const std::string& asked) {
+    std::vector<std::string> line{"render", folder.scene, "-o", out, "--quiet"};
+    if (!asked.empty()) line.insert(line.end(), {"--layers", asked});
+    EXPECT_EQ(run_program(line).exit_code, 0) << asked;
+    std::set<std::string> names;
+    for (const std::string& channel : read_image(out).channels)
+      names.insert(channel.substr(0, channel.find('.')));
+    return names;
+  };
+  using Names = std::set<std::string>;
+  EXPECT_EQ(layers(""), (Names{"R", "G", "B", "A", "diffuse"}));
+  EXPECT_EQ(layers("none"), (Names{"R", "G", "B", "A"}));
+  EXPECT_EQ(layers("N,error"), (Names{"R", "G", "B", "A", "N", "error"}));
+  EXPECT_EQ(layers("all"), (Names{"R", "G", "B", "A", "Z", "diffuse", "specular", "albedo", "N", "P",
+                                  "irradiance", "error"}));
+  const Outcome typo = run_program({"render", folder.scene, "-o", out, "--layers", "N,difuse"});
+  EXPECT_EQ(typo.exit_code, 2);
+  EXPECT_TRUE(contains(typo.err, "diffuse")) << typo.err;
+  const Outcome other = run_program({"render", folder.scene, "-o", out, "--layers", "variance"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_TRUE(contains(other.err, "--method direct")) << other.err;
 }
 
 // Claim: timings are in the file only when asked for. Source: arguments.h. Fails if: the flag does nothing.

@@ -3,6 +3,7 @@
 // alone.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <chrono>
@@ -10,23 +11,26 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <set>
 #include <thread>
 
 #include "../core/scratch_folder.h"
-#include "opaline/image/image.h"
+#include "opaline/image/picture_layers.h"
 
 namespace opaline {
 namespace {
 
-/// A picture whose values no half can hold exactly, 70 rows: more than one strip of the writer.
-Image layered() {
+/// A picture whose values no half can hold exactly; 70 rows are more than one block of the compression, 600
+/// more than one strip of the writer.
+Image layered(int height = 70) {
   Image image;
   image.width = 5;
-  image.height = 70;
+  image.height = height;
   image.channels = {"R",   "G",   "B", "diffuse.R",    "N.X",       "N.Y",
                     "N.Z", "P.X", "Z", "irradiance.G", "variance.B"};
   image.metadata = {{"opaline:seed", "0"}, {"opaline:scene", "bunny, \"50 mm\"\nsecond line"}, {"note", "-"}};
-  for (int i = 0; i < 5 * 70 * 11; ++i) image.pixels.push_back(0.1f + 0.37f * static_cast<float>(i % 1013));
+  for (int i = 0; i < 5 * height * 11; ++i)
+    image.pixels.push_back(0.1f + 0.37f * static_cast<float>(i % 1013));
   return image;
 }
 
@@ -116,6 +120,28 @@ TEST(Exr, SameBytesLater) {
     EXPECT_TRUE(bytes_of(folder.file("a.exr")) == bytes_of(elsewhere.file("b.exr"))) << half;
     EXPECT_TRUE(bytes_of(folder.file("a.png")) == bytes_of(elsewhere.file("b.png")));
   }
+}
+
+// Claim: a file holds the layers that were asked for, R and G always; the values are those of a file with all
+// of them; and its bytes are the same for one thread and for three. Source: picture_layers.h. Tolerance:
+// none. Fails if: a channel is stored with another one's step or type, or a strip's rows depend on the
+// threads.
+TEST(Exr, HoldsTheLayersThatWereAskedFor) {
+  const ScratchFolder folder;
+  const std::string all = folder.file("all.exr"), some = folder.file("some.exr");
+  for (const std::size_t threads : {1, 3}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    write_exr(all, layered(600), true);
+    write_exr(folder.file(std::to_string(threads) + ".exr"), layered(600), true,
+              {false, {"N", "Z", "specular"}});
+  }
+  EXPECT_TRUE(bytes_of(folder.file("1.exr")) == bytes_of(folder.file("3.exr")));
+  const Image chosen = read_image(folder.file("1.exr")), whole = read_image(all);
+  EXPECT_EQ(std::set<std::string>(chosen.channels.begin(), chosen.channels.end()),
+            (std::set<std::string>{"R", "G", "B", "N.X", "N.Y", "N.Z", "Z"}));
+  for (const std::string& channel : chosen.channels)
+    for (const int pixel : {0, 17, 2999})
+      EXPECT_EQ(value(chosen, channel, pixel), value(whole, channel, pixel)) << channel;
 }
 
 // Claim: NaN and infinities are written as 0 and counted; values beyond a half become 65504 with their sign
