@@ -169,12 +169,12 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
 
 std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArguments& arguments,
                                             const Session& session, const KnownErrors& errors,
-                                            const Image& picture) {
+                                            const RenderResult& picture) {
   if (!arguments.verify || session.groups().empty()) return {};
   // An error far below the target need not be known to its last digit.
   const double expected = errors.predicted
                               ? std::max(*errors.predicted, kKnownShare * errors.target.value_or(0))
-                              : estimated_relative_error(picture);
+                              : estimated_relative_error(picture.image, picture.translucent);
   return stages.run("verifying", [&] { return measure_error(session, expected, &stages.monitor()); });
 }
 

@@ -44,6 +44,6 @@ double budget_left(const RenderArguments& arguments);
 /// With --verify: the error of what the session has rendered.
 std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArguments& arguments,
                                             const Session& session, const KnownErrors& errors,
-                                            const Image& picture);
+                                            const RenderResult& picture);
 
 }  // namespace opaline

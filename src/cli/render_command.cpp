@@ -94,7 +94,7 @@ Summary summarize(const Session& session, const Shading& shading) {
   Summary summary;
   summary.peak_memory = peak_memory();
   summary.queries = shading.picture.queries;
-  summary.estimated_error = estimated_relative_error(shading.picture.image);
+  summary.estimated_error = estimated_relative_error(shading.picture.image, shading.picture.translucent);
   if (shading.direct) {
     summary.entry_samples = shading.direct->entry_samples;
     summary.direct_error = shading.direct->relative_error;
@@ -197,7 +197,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   Image& image = shading.picture.image;
   for (const std::string& text : picture_warnings(scene, session.world(), image))
     print_warning(arguments.log, text);
-  errors.measured = verify_picture(stages, arguments, session, errors, image);
+  errors.measured = verify_picture(stages, arguments, session, errors, shading.picture);
   const RenderArguments repeated = repeating(arguments, session, shading);
   if (arguments.time_budget) hash = scene_hash(repeated.scene, repeated.overrides, scene);
   image.metadata = make_metadata(repeated, hash, scene, session.groups(), frame);

@@ -23,6 +23,7 @@ struct alignas(64) PacketSums {
   float exitance[3][kLanes];  ///< far kernel times flux
   float spread[3][kLanes];    ///< of the samples of each leaf around their mean, squared
   float squares[3][kLanes];   ///< of the samples' contributions
+  float sheets[3][kLanes];    ///< of what samples of other sheets within h bring beyond the far kernel
   /// Samples of the same sheet within h, weighted by (1 - r^2/h^2)^2: area, flux, and, of all
   /// channels together, flux^2 / area.
   float near_area[kLanes], near_flux[3][kLanes], near_squares[kLanes];

@@ -103,7 +103,7 @@ class Builder {
                                              .irradiance = dark,
                                              .tolerance = kEvaluationShare * input_.tolerance,
                                              .instruction_set = input_.instruction_set,
-                                             .irradiance_noise = input_.irradiance_noise,
+                                             .cloud = input_.cloud,
                                              .monitor = input_.monitor});
     doubts.assign(queries_.size(), {});
     if (input_.add_own_light) {

@@ -16,7 +16,11 @@ void add_near_part(const EvaluateInput& input, float near2, const TreeSample& s,
   const float r2 = dot(d, d), missing = 1 - far_weight(std::sqrt(r2 / near2));
   alignas(16) float kernel[4];
   _mm_store_ps(kernel, input.kernel.table(r2));
-  for (std::size_t c = 0; c < 3; ++c) sums.exitance[c][lane] += kernel[c] * missing * s.flux[c];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float part = kernel[c] * missing * s.flux[c];
+    sums.exitance[c][lane] += part;
+    sums.sheets[c][lane] += part * part;
+  }
 }
 
 Points4 load(const float* lanes) {
@@ -34,13 +38,12 @@ PointSums<Points4> sums_at(const EvaluateInput& input, const PacketSums& from, s
   }
   // The irradiance varies around the point by the same share of its mean in each channel.
   const Points4 spread = square > 0 ? load(from.near_squares + lane) / square : Points4{};
-  // Of the tolerance, what the nodes' errors come to (bench_evaluate).
-  constexpr float kHierarchy = 0.1f;
   for (std::size_t c = 0; c < 3; ++c) {
     sums.far[c] = larger(Points4{}, load(from.exitance[c] + lane));
     sums.spread[c] = load(from.spread[c] + lane);
     sums.squares[c] = load(from.squares[c] + lane);
-    sums.hierarchy[c] = kHierarchy * float(input.tolerance) * sums.far[c];
+    sums.sheets[c] = load(from.sheets[c] + lane);
+    sums.hierarchy[c] = input.cloud.hierarchy[c] * float(input.tolerance) * sums.far[c];
     sums.near_squares[c] = sums.near_flux[c] * sums.near_flux[c] * spread;
   }
   return sums;

@@ -22,6 +22,7 @@ struct PointSums {
   std::array<F, 3> far{};      ///< far kernel times flux
   std::array<F, 3> spread{};   ///< squares of the samples' contributions around the mean of their neighbours
   std::array<F, 3> squares{};  ///< of the samples' contributions
+  std::array<F, 3> sheets{};   ///< of what samples of other sheets within h bring beyond the far kernel
   std::array<F, 3> hierarchy{};  ///< error of the nodes taken as points
   /// Samples of the same sheet within h, weighted by (1 - r^2/h^2)^2: area, flux, flux^2 / area.
   F near_area{};
@@ -84,16 +85,24 @@ std::array<F, 3> surface_share(const SplitKernel& kernel, F near_area) {
 }
 
 /// Standard error of channel c, in flux units. near: the part of the kernel that rests on the interpolated
-/// irradiance e; variance: of the irradiance around the point; noise: relative, of the samples' irradiance.
+/// irradiance; variance: of the irradiance around the point.
 template <class F>
-F estimated_error(const PointSums<F>& sums, std::size_t c, F near, F variance, float noise) {
+F estimated_error(const PointSums<F>& sums, std::size_t c, F near, F variance, const CloudError& cloud) {
   // A sample stands off its cell's middle by a fraction of the distance over which neighbours differ.
   constexpr float kOffset = 0.2f;
   // Of an irradiance that varies around the point, what its mean misses.
   constexpr float kVariation = 0.2f;
-  const F sampling = kOffset * kOffset * larger(F{}, sums.spread[c]);
-  const F interpolation = kVariation * kVariation * near * near * variance;
-  return root(sampling + interpolation + noise * noise * sums.squares[c] +
+  // Of an irradiance that neighbours do not foretell, what its sample says of the whole cell.
+  constexpr float kRough = 0.8f;
+  // Of what a sample that faces the point from another sheet brings, what its cell does not.
+  constexpr float kSheets = 0.4f;
+  const F local =
+      kOffset * kOffset * larger(F{}, sums.spread[c]) + kVariation * kVariation * near * near * variance;
+  const float scale = cloud.scale[c], rough = kRough * cloud.roughness[c],
+              sheets = kSheets * cloud.other_sheets;
+  // Samples within nodes are not in the sum of squares.
+  const F squares = sums.squares[c] + cloud.far_squares[c] * sums.far[c] * sums.far[c];
+  return root(scale * scale * local + rough * rough * squares + sheets * sheets * sums.sheets[c] +
               sums.hierarchy[c] * sums.hierarchy[c]);
 }
 
@@ -114,8 +123,9 @@ PointResult<F> result_from(const PointSums<F>& sums, const EvaluateInput& input,
     const F near = input.kernel.near[c] * share[c];
     out.near[c] = near;
     out.exitance[c] = sums.far[c] * unit + near * e;
+    // Where there is less than what is in doubt, all of it is.
     out.error[c] =
-        unit * estimated_error<F>(sums, c, near * (1 - own), variance, float(input.irradiance_noise));
+        smaller(out.exitance[c], unit * estimated_error<F>(sums, c, near * (1 - own), variance, input.cloud));
   }
   return out;
 }

@@ -15,10 +15,12 @@ struct Pixels {
   std::vector<double> diffuse, error;
 };
 
-Pixels lit_pixels(const Image& image, std::size_t diffuse, std::size_t error) {
+Pixels lit_pixels(const Image& image, std::span<const std::uint8_t> counted, std::size_t diffuse,
+                  std::size_t error) {
   Pixels lit;
-  for (std::size_t at = 0; at < image.pixels.size(); at += image.channels.size())
-    if (image.pixels[at + diffuse] > 0) {
+  const std::size_t channels = image.channels.size();
+  for (std::size_t at = 0; at < image.pixels.size(); at += channels)
+    if (image.pixels[at + diffuse] > 0 && (counted.empty() || counted[at / channels] != 0)) {
       lit.diffuse.push_back(double(image.pixels[at + diffuse]));
       lit.error.push_back(double(image.pixels[at + error]));
     }
@@ -39,15 +41,17 @@ double mean_relative(const Pixels& lit) {
 
 }  // namespace
 
-double estimated_relative_error(const Image& image) {
+double estimated_relative_error(const Image& image, std::span<const std::uint8_t> counted) {
+  if (std::ranges::none_of(counted, [](std::uint8_t c) { return c != 0; })) counted = {};
   const auto place = [&](const std::string& name) {
     return std::size_t(std::ranges::find(image.channels, name) - image.channels.begin());
   };
   double worst = 0;
   for (const char* part : {".R", ".G", ".B"}) {
-    const std::size_t diffuse = place(std::string("diffuse") + part), error = place(std::string("error") + part);
+    const std::size_t diffuse = place(std::string("diffuse") + part),
+                      error = place(std::string("error") + part);
     if (diffuse < image.channels.size() && error < image.channels.size())
-      worst = std::max(worst, mean_relative(lit_pixels(image, diffuse, error)));
+      worst = std::max(worst, mean_relative(lit_pixels(image, counted, diffuse, error)));
   }
   return worst;
 }

@@ -2,6 +2,7 @@
 // The layers of a picture and what one ray adds to them.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,10 @@ struct PixelSample {
   RgbF diffuse{}, specular{};
   RgbF emitted{};     ///< lights and surroundings seen directly
   float coverage = 0; ///< 1 on a surface
-  RgbF albedo{}, irradiance{}, error{};
+  RgbF albedo{}, irradiance{};
+  RgbF error{};           ///< of diffuse, much the same for all rays of a pixel
+  RgbF noise{};           ///< variance of diffuse that is each ray's own
+  float translucent = 0;  ///< 1 on a translucent surface
   Vec3f normal{}, position{};
   float depth = 0;
 
@@ -35,6 +39,14 @@ inline std::vector<std::string> layer_names(Method method) {
   add(method == Method::direct ? "variance" : "irradiance", "RGB");
   if (method == Method::hierarchical) add("error", "RGB");
   return names;
+}
+
+/// Standard error of the mean of a pixel's rays; all: one over their number.
+inline RgbF pixel_error(const PixelSample& sum, float all) {
+  RgbF error = sum.error * all;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (sum.noise[c] > 0) error[c] = std::sqrt(error[c] * error[c] + sum.noise[c] * all * all);
+  return error;
 }
 
 /// Writes the mean of `count` samples to one pixel: radiance and coverage over all of them; albedo, normal, position,
@@ -58,7 +70,7 @@ inline std::size_t store_pixel(const PixelSample& sum, int count, Method method,
   put(normalized(sum.normal), 1);
   put(sum.position, seen);
   put(sum.irradiance, seen);
-  if (method == Method::hierarchical) put(sum.error, all);
+  if (method == Method::hierarchical) put(pixel_error(sum, all), 1);
   return is_finite(radiance) ? 0 : 1;
 }
 
@@ -70,6 +82,8 @@ inline void add_sample(PixelSample& sum, const PixelSample& s) {
   sum.albedo += s.albedo;
   sum.irradiance += s.irradiance;
   sum.error += s.error;
+  sum.noise += s.noise;
+  sum.translucent += s.translucent;
   sum.normal += s.normal;
   sum.position += s.position;
   sum.depth += s.depth;

@@ -20,7 +20,8 @@ constexpr float kWorth = 0.02f, kUsual = 0.06f;
 // field of each less evenly; and how many each of many neighbours brings at least.
 constexpr int kAlone = 24, kTogether = 96, kEach = 3;
 constexpr std::uint64_t kStride = 11;  // in the sequence from one point's places to the next one's
-constexpr int kFewerRays = 16;  // than a point's own are traced from a place to each light with an area
+constexpr int kFewerRays = 16;      // than a point's own are traced from a place to each light with an area
+constexpr float kErrorLeft = 0.4f;  // of what the interpolated irradiance was off by
 constexpr std::size_t kMostTogether = 64;  // points that share their places
 
 }  // namespace
@@ -71,7 +72,7 @@ NearFieldSampler::NearFieldSampler(const TranslucentGroup& group)
 
 std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& lighting,
                                                     std::span<const RgbF> own, std::span<Exitance> exitance,
-                                                    HeldView::NearField* held) const {
+                                                    std::span<RgbF> noise, HeldView::NearField* held) const {
   std::vector<std::uint32_t> marked;
   std::vector<float> stakes(exitance.size());
   for (std::uint32_t i = 0; i < exitance.size(); ++i) {
@@ -82,7 +83,7 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   if (held != nullptr && held->kernel == key_) {
     const auto known =
         std::stable_partition(open.begin(), open.end(), [&](std::uint32_t i) { return !held->is_found[i]; });
-    add_held(*held, lighting, own, {known, open.end()}, exitance);
+    add_held(*held, lighting, own, {known, open.end()}, exitance, noise);
     open.erase(known, open.end());
   } else if (held != nullptr) {
     const std::size_t n = exitance.size();
@@ -128,7 +129,7 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
                                  std::span(places.points).subspan(skip, count), set_entered);
     for (std::size_t m = 0; m < own_set.size(); ++m) {
       const std::uint32_t i = own_set[m];
-      replace_mixed(own[i], means.of[0][m], exitance[i]);
+      replace_mixed(own[i], means.of[0][m], exitance[i], noise[i]);
       if (held == nullptr) continue;
       held->is_found[i] = true;
       for (std::size_t l = 0; l < lighting.lights.size(); ++l)
@@ -141,21 +142,25 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
 // Where the near fields of points were found before.
 void NearFieldSampler::add_held(const HeldView::NearField& held, const PointIrradianceInput& lighting,
                                 std::span<const RgbF> own, std::span<const std::uint32_t> points,
-                                std::span<Exitance> exitance) const {
+                                std::span<Exitance> exitance, std::span<RgbF> noise) const {
   for (const std::uint32_t i : points) {
     RgbF mean;
     for (std::size_t l = 0; l < lighting.lights.size(); ++l)
       mean += RgbF(emission(lighting.lights[l])) * held.transfers[l * exitance.size() + i];
-    replace_mixed(own[i], mean, exitance[i]);
+    replace_mixed(own[i], mean, exitance[i], noise[i]);
   }
 }
 
-// Puts the near field's mean irradiance, NaN where it is not known, where `evaluate` took a mixture.
-void NearFieldSampler::replace_mixed(const RgbF& own, const RgbF& mean, Exitance& e) const {
+// Puts the near field's mean irradiance, NaN where it is not known, where `evaluate` took a mixture. noise:
+// the variance of a mean of places of which some have all the light there is, and others none.
+void NearFieldSampler::replace_mixed(const RgbF& own, const RgbF& mean, Exitance& e, RgbF& noise) const {
   for (std::size_t c = 0; c < 3; ++c) {
     if (std::isnan(mean[c])) continue;
+    const float brightest = std::max({own[c], e.irradiance[c], mean[c]});
+    noise[c] = e.near[c] * e.near[c] * mean[c] * (brightest - mean[c]) / kTogether;
     const float share = kernel_.own_irradiance[c], mixed = share * own[c] + (1 - share) * e.irradiance[c];
     e.exitance[c] += e.near[c] * (mean[c] - mixed);
+    e.error[c] *= kErrorLeft;
   }
 }
 

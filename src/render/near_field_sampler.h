@@ -26,9 +26,11 @@ class NearFieldSampler {
   /// Corrects the exitance of the points beside shadow edges.
   /// in    lighting: of the points; own: their irradiance
   /// held: found earlier at the same points beside lights in the same places, and added to; or null
-  /// out   exitance: as evaluated with it, one a point; returns which points these were
+  /// out   exitance: as evaluated with it, one a point; noise: its variance, one a point, replaced at those
+  ///       beside shadow edges; returns which points these were
   std::vector<std::uint32_t> refine(const PointIrradianceInput& lighting, std::span<const RgbF> own,
-                                    std::span<Exitance> exitance, HeldView::NearField* held = nullptr) const;
+                                    std::span<Exitance> exitance, std::span<RgbF> noise,
+                                    HeldView::NearField* held = nullptr) const;
 
  private:
   static constexpr std::size_t kRings = 1024;  // of equal width, out to h
@@ -46,8 +48,8 @@ class NearFieldSampler {
   double drawn_distance(double u) const;
   void add_held(const HeldView::NearField& held, const PointIrradianceInput& lighting,
                 std::span<const RgbF> own, std::span<const std::uint32_t> points,
-                std::span<Exitance> exitance) const;
-  void replace_mixed(const RgbF& own, const RgbF& mean, Exitance& e) const;
+                std::span<Exitance> exitance, std::span<RgbF> noise) const;
+  void replace_mixed(const RgbF& own, const RgbF& mean, Exitance& e, RgbF& noise) const;
   Means means_of(std::span<const SurfacePoint> points, std::span<const std::uint32_t> marked,
                  std::span<const int> drawn, std::span<const SurfacePoint> places,
                  std::span<const std::span<const RgbF>> entered) const;

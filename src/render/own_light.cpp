@@ -66,14 +66,18 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
   for (std::size_t i = 0; i < points.size(); ++i) {
     exitance[i].exitance += own_part(share, exitance[i], own[i]);
     const RgbF& v = variance[i];
-    const RgbF two_errors =
-        own_part(share, exitance[i], RgbF{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)} * 2);
-    doubts[i] = {two_errors + exitance[i].exitance * (kBumps * tolerance)};
+    const RgbF noise = own_part(share, exitance[i], RgbF{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)});
+    doubts[i] = {noise * 2 + exitance[i].exitance * (kBumps * tolerance)};
+    variance[i] = noise * noise;
   }
   lighting.variance = {};
-  for (const std::uint32_t i : near_field_.refine(lighting, own, exitance))
+  for (const std::uint32_t i : near_field_.refine(lighting, own, exitance, variance))
     doubts[i] = {doubts[i].noise + exitance[i].exitance * (kEdgeNoise * tolerance), true};
-  for (std::size_t i = 0; i < points.size(); ++i) exitance[i].irradiance = own[i];
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    exitance[i].irradiance = own[i];
+    for (std::size_t c = 0; c < 3; ++c)
+      exitance[i].error[c] = std::sqrt(exitance[i].error[c] * exitance[i].error[c] + variance[i][c]);
+  }
 }
 
 }  // namespace opaline

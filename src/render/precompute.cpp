@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "evaluate/cloud_error.h"
 #include "opaline/core/random.h"
 #include "opaline/irradiance/light_sampling.h"
 #include "opaline/render/surface_caches.h"
@@ -72,6 +73,14 @@ SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& su
                            settings.near_irradiance);
 }
 
+CloudError cloud_error(const TranslucentGroup& group, const World& world, const Settings& settings) {
+  const auto kernel = [&](double spacing) {
+    return make_split_kernel(group.profile, spacing, world.diagonal, settings.near_field,
+                             settings.near_irradiance);
+  };
+  return tell_cloud_error({group.octree, group.kernel, kernel, settings.tolerance, settings.instruction_set});
+}
+
 Precompute precompute(const PrecomputeInput& input) {
   const std::vector<Light> lights = recentred_lights(input.scene, input.world);
   Precompute result;
@@ -85,17 +94,17 @@ Precompute precompute(const PrecomputeInput& input) {
 
     const Stopwatch kernel_watch;
     SplitKernel kernel = group_kernel(profile, surface, input.world, input.scene.settings);
-    TranslucentGroup group{plan, profile, std::move(surface), {}, {}, 0, {}, std::move(kernel)};
+    TranslucentGroup group{plan, profile, std::move(surface), {}, {}, {}, std::move(kernel)};
     add_cost(octree, kernel_watch.cost({}));
 
     const Stopwatch irradiance_watch;
     group.transfers = light_samples(input, g, group.surface.samples, lights);
     group.irradiance = combine_lights(group.transfers, lights);
-    group.irradiance_noise = combined_noise(group.transfers, lights);
     add_cost(irradiance, irradiance_watch.cost({}));
 
     const Stopwatch octree_watch;
     group.octree = gather_flux(group.surface.samples, group.irradiance);
+    group.cloud = cloud_error(group, input.world, input.scene.settings);
     add_cost(octree, octree_watch.cost({}));
     result.groups.push_back(std::move(group));
   }

@@ -11,13 +11,15 @@ namespace {
 
 // Pixels without anything stay as they are: zero, and their memory untouched.
 std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, const Scene& scene,
-                  Image& image) {
+                  RenderResult& result) {
+  Image& image = result.image;
   std::size_t non_finite = 0;
   if (sums.empty()) return non_finite;
   for_each_pixel(tile, rendered_part(scene.film), [&](int x, int y, std::size_t i) {
     if (sums[i].empty()) return;
     const std::size_t row = std::size_t(y - image.crop_y), column = std::size_t(x - image.crop_x);
-    const std::size_t place = (row * std::size_t(image.width) + column) * image.channels.size();
+    const std::size_t pixel = row * std::size_t(image.width) + column, place = pixel * image.channels.size();
+    result.translucent[pixel] = 2 * sums[i].translucent > sums[i].coverage ? 1 : 0;
     non_finite += store_pixel(sums[i], scene.film.samples_per_pixel, scene.settings.method,
                               image.pixels.data() + place);
   });
@@ -49,6 +51,7 @@ RenderResult render(const RenderInput& input) {
   const Rectangle part = rendered_part(film);
   RenderResult result;
   result.image = empty_image(part, film, layer_names(input.scene.settings.method));
+  result.translucent.resize(std::size_t(result.image.width) * std::size_t(result.image.height));
   const Shader shader(input);
   const TileRenderer renderer(input, shader);
   const std::vector<Rectangle> tiles = tiles_of(film);
@@ -60,7 +63,7 @@ RenderResult render(const RenderInput& input) {
     const TileRenderer::Tile tile =
         renderer.render(tiles[begin], {}, view != nullptr ? &view->tiles[begin] : nullptr);
     queries += tile.queries;
-    non_finite += store(tiles[begin], tile.sums, input.scene, result.image);
+    non_finite += store(tiles[begin], tile.sums, input.scene, result);
     if (input.after_tile) input.after_tile(result.image, common_part(tiles[begin], part));
   });
   result.queries = queries;

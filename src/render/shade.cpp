@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "evaluate/surface_patch.h"
 #include "opaline/diffusion/fresnel.h"
 #include "render/direct_exitance.h"
 
@@ -154,17 +155,18 @@ Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<
                           const Pass& pass, HeldView::Surface* held) const {
   if (kind.group != nullptr) return evaluated(kind, surfaces, rays, held);
   if (kind.entries != nullptr)
-    return {direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}), {}, {}};
+    return {
+        direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}), {}, {}, {}};
   PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
-  if (input_.scene.settings.method != Method::hierarchical) return {{}, irradiance(lighting, held), {}};
+  if (input_.scene.settings.method != Method::hierarchical) return {{}, irradiance(lighting, held), {}, {}};
   Lit lit;
-  lit.error.resize(surfaces.points.size());  // as variance at first
-  lighting.variance = lit.error;
+  lit.error.resize(surfaces.points.size());
+  if (has_visible_lights()) lit.noise.resize(surfaces.points.size());
+  lighting.variance = lit.noise;
   lit.irradiance = irradiance(lighting, held);
-  for (std::size_t i = 0; i < lit.error.size(); ++i) {
-    const RgbF v = lit.error[i];
-    const std::uint32_t mesh = rays[surfaces.rays[i]].hit.mesh;
-    lit.error[i] = appearances_[mesh].albedo * RgbF{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)};
+  for (std::size_t i = 0; i < lit.noise.size(); ++i) {
+    const RgbF& albedo = appearances_[rays[surfaces.rays[i]].hit.mesh].albedo;
+    lit.noise[i] = lit.noise[i] * albedo * albedo;
   }
   return lit;
 }
@@ -173,14 +175,24 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces, std::s
                               HeldView::Surface* held) const {
   Lit lit;
   const TranslucentGroup& group = *kind.group;
-  const PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
-  if (needs_irradiance(group)) lit.irradiance = irradiance(lighting, held);
+  PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
+  if (needs_irradiance(group)) {
+    lit.noise.resize(surfaces.points.size());
+    if (has_visible_lights()) lighting.variance = lit.noise;
+    lit.irradiance = irradiance(lighting, held);
+    lighting.variance = {};
+  }
   std::vector<Exitance> exitance =
       group.surface_cache ? interpolated(*group.surface_cache, surfaces, lit, rays)
                           : summed(group, surfaces, lit, held != nullptr ? &held->packets : nullptr);
+  for (std::size_t i = 0; i < lit.noise.size(); ++i) {
+    const RgbF own = own_part(group.kernel.own_irradiance, exitance[i], RgbF(1));
+    lit.noise[i] = lit.noise[i] * own * own;
+  }
   const auto& near_field = near_fields_[std::size_t(&group - input_.groups.data())];
   const bool keeps = held != nullptr && input_.view->keeps_near_field && input_.view->has_room;
-  if (near_field) near_field->refine(lighting, lit.irradiance, exitance, keeps ? &held->near_field : nullptr);
+  if (near_field)
+    near_field->refine(lighting, lit.irradiance, exitance, lit.noise, keeps ? &held->near_field : nullptr);
   const bool traced = !lit.irradiance.empty();
   for (std::vector<RgbF>* values : {&lit.exitance, &lit.error, &lit.irradiance})
     values->reserve(exitance.size());
@@ -199,8 +211,8 @@ std::vector<Exitance> Shader::summed(const TranslucentGroup& group, const Surfac
   for (const SurfacePoint& point : surfaces.points) queries.push_back({point.position, point.normal});
   const Settings& settings = input_.scene.settings;
   return evaluate({group.octree, group.kernel, queries, lit.irradiance, settings.evaluator,
-                   settings.tolerance, settings.max_solid_angle, settings.instruction_set,
-                   group.irradiance_noise, nullptr, packets});
+                   settings.tolerance, settings.max_solid_angle, settings.instruction_set, group.cloud,
+                   nullptr, packets});
 }
 
 std::vector<Exitance> Shader::interpolated(const SurfaceCache& cache, const Surfaces& surfaces,
@@ -228,6 +240,8 @@ void Shader::write(const Surfaces& surfaces, const Lit& lit, std::span<const Tra
     sample.albedo = appearance.albedo;
     if (!lit.irradiance.empty()) sample.irradiance = lit.irradiance[i];
     if (!lit.error.empty()) sample.error = lit.error[i] * radiance;
+    if (!lit.noise.empty()) sample.noise = lit.noise[i] * (radiance * radiance);
+    sample.translucent = appearance.translucent ? 1.0f : 0.0f;
     sample.normal = point.normal;
     sample.position = Vec3f(Vec3d(point.position) + input_.world.origin);
     sample.depth = ray.far;

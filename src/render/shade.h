@@ -62,6 +62,7 @@ class Shader {
   struct Lit {
     std::vector<RgbF> exitance;           // empty: albedo x irradiance
     std::vector<RgbF> irradiance, error;  // empty: not known
+    std::vector<RgbF> noise;              // variance of the exitance at each point by itself; empty: none
   };
 
   std::vector<Surfaces> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,

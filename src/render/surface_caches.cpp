@@ -77,7 +77,7 @@ std::optional<SurfaceCache> make_group_cache(const PrecomputeInput& input, const
        .kernel = group.kernel,
        .tolerance = settings.tolerance,
        .instruction_set = settings.instruction_set,
-       .irradiance_noise = group.irradiance_noise,
+       .cloud = group.cloud,
        .most_places = most_places,
        .add_own_light = own_light ? std::bind_front(&OwnLight::add, &*own_light) : AddOwnLight(),
        .monitor = input.monitor});

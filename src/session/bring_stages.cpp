@@ -158,7 +158,6 @@ void Session::bring_tree(Part& part, const std::vector<Light>& lights) {
   if (key == part.tree_key) return decide(part, "tree kept");
   part.tree_key = {};
   part.irradiance = combine_lights(part.transfers, lights);
-  part.irradiance_noise = combined_noise(part.transfers, lights);
   std::optional<Octree> found;
   if (cache_ != nullptr) found = cache_->find_octree(key, part.surface);
   if (found) {

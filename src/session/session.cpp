@@ -203,7 +203,9 @@ RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
     const auto render_part = [&](const Scene& scene) { return recoloured(scene, *view, monitor); };
     if (std::optional<Image> mixed = mix_->mixed(scene_, render_part)) {
       if (after_tile) after_tile(*mixed, rendered_part(scene_.film));
-      return {std::move(*mixed)};
+      RenderResult result;
+      result.image = std::move(*mixed);
+      return result;
     }
   }
   RenderResult result = opaline::render({scene_, *world_, *rays_, groups_, monitor, after_tile, view});
@@ -235,9 +237,9 @@ Image Session::recoloured(const Scene& scene, HeldView& view, Monitor* monitor) 
                       {},
                       {},
                       {},
-                      combined_noise(group.transfers, lights),
                       gather_flux(group.surface.samples, irradiance),
                       group.kernel});
+    groups.back().cloud = group.cloud;
     work_.nodes_built += groups.back().octree.nodes.size();
   }
   RenderResult part = opaline::render({scene, *world_, *rays_, groups, monitor, {}, &view});
@@ -319,8 +321,8 @@ std::vector<Session::Part> Session::arranged_parts() {
 void Session::assemble() {
   for (Part& part : parts_)
     groups_.push_back({part.plan, part.profile, std::move(part.surface), std::move(part.transfers),
-                       std::move(part.irradiance), part.irradiance_noise, std::move(part.octree),
-                       std::move(*part.kernel)});
+                       std::move(part.irradiance), std::move(part.octree), std::move(*part.kernel)});
+  for (TranslucentGroup& group : groups_) group.cloud = cloud_error(group, *world_, scene_.settings);
 }
 
 void Session::decide(const Part& part, const std::string& text) {

@@ -30,7 +30,6 @@ struct Session::Part {
   std::vector<StageKey> light_keys;
   std::vector<LightTransfer> transfers;  // one a light
   std::vector<RgbF> irradiance;
-  double irradiance_noise = 0;
   Octree octree;
   std::optional<SplitKernel> kernel;
   StageKey exitance_key;

@@ -55,9 +55,8 @@ struct Exitance {
   RgbF irradiance;  ///< E interpolated from the samples within h, W/mm^2
   RgbF near;        ///< what of the near field's integral the surface around the point leaves
   /// Estimated standard error of the exitance against the converged diffusion of the same scene, W/mm^2: from
-  /// the spread of neighbouring samples, the variation of E nearby, the solid angles of the nodes taken as
-  /// points, and the irradiance's noise. Its mean over a picture is within a factor 3 of the measured one
-  /// (test_error_estimate).
+  /// the spread of neighbouring samples, the variation of E nearby, the roughness and noise of E, samples of
+  /// other sheets within h, and the nodes taken as points (CloudError; bench_error_estimate).
   RgbF error{};
 };
 
@@ -75,6 +74,19 @@ struct QueryPackets {
   std::vector<PacketCut> cuts;       ///< one a chunk
 };
 
+/// How far off sums over a cloud of samples are: what one query cannot see, per channel. tell_cloud_error
+/// finds it by trial sums at a few samples.
+struct CloudError {
+  /// Of the irradiance: what a sample's is off the mean of its neighbours', rms, over its own; noise of its
+  /// shadow rays included.
+  std::array<float, 3> roughness{};
+  std::array<float, 3> far_squares{};  ///< sum of squares of the samples' flux over the square of their sum
+  /// Error over what the contributions and the irradiance of neighbours differ by, in units of what is usual.
+  std::array<float, 3> scale{1, 1, 1};
+  std::array<float, 3> hierarchy{.1f, .1f, .1f};  ///< mean error of the tree's nodes over the tolerance
+  float other_sheets = 1;  ///< 0: without the samples of other sheets within h
+};
+
 struct EvaluateInput {
   const Octree& octree;
   const SplitKernel& kernel;
@@ -85,7 +97,7 @@ struct EvaluateInput {
   double tolerance = 0.005;                                    ///< dual_tree
   double max_solid_angle = 0.05;                               ///< classic, sr
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
-  double irradiance_noise = 0;  ///< relative standard error of the samples' irradiance
+  CloudError cloud = {};        ///< of the samples, for Exitance::error
   Monitor* monitor = nullptr;
   QueryPackets* packets = nullptr;  ///< dual_tree: of an earlier evaluation of these queries, or to be filled
 };

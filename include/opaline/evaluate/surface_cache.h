@@ -83,7 +83,7 @@ struct SurfaceCacheInput {
   const SplitKernel& kernel;
   double tolerance = 0.005;
   InstructionSet instruction_set = InstructionSet::automatic;
-  double irradiance_noise = 0;                                        ///< as EvaluateInput's
+  CloudError cloud = {};                                              ///< as EvaluateInput's
   std::size_t most_places = std::numeric_limits<std::size_t>::max();  ///< to evaluate at
   AddOwnLight add_own_light = {};  ///< none: the cache is without that light
   Monitor* monitor = nullptr;

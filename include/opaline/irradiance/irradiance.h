@@ -41,9 +41,6 @@ std::vector<LightTransfer> compute_irradiance(const IrradianceInput& input);
 /// E per sample, W/mm^2, per unit area of the surface: the sum over lights of emission x weight.
 std::vector<RgbF> combine_lights(std::span<const LightTransfer> transfers, std::span<const Light> lights);
 
-/// Relative standard error at a sample of all lights together, each weighed by the brightness it brings.
-double combined_noise(std::span<const LightTransfer> transfers, std::span<const Light> lights);
-
 struct PointIrradianceInput {
   const RayScene& rays;
   std::span<const SurfacePoint> points;

@@ -25,9 +25,9 @@ struct TranslucentGroup {
   SurfaceSamples surface;
   std::vector<LightTransfer> transfers;  ///< one a light
   std::vector<RgbF> irradiance;          ///< one a sample, all lights
-  double irradiance_noise = 0;           ///< relative standard error at a sample, all lights
   Octree octree;
   SplitKernel kernel;
+  CloudError cloud = {};                           ///< of the samples with this irradiance and kernel
   std::optional<SurfaceCache> surface_cache = {};  ///< the exitance everywhere, where that is cheaper than at
                                                    ///< the points of the picture
 };
@@ -67,6 +67,9 @@ std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);
 SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,
                          const Settings& settings);
+
+/// Of a group with its tree and kernel.
+CloudError cloud_error(const TranslucentGroup& group, const World& world, const Settings& settings);
 
 /// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free
 /// path is below the sample spacing, `render` traces shadow rays for the irradiance at its points; this
