@@ -63,11 +63,11 @@ bool sweep_meets(const Ball& ball, const Vec3d& direction, const Ball& other) {
 }  // namespace
 
 bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
-                const Light& light) {
+                const Light& light, double unit) {
   if (std::ranges::find(group.meshes, mesh) != group.meshes.end()) return true;
   Ball target = ball_around(meshes, group);
   // Rays look for the surface beside a sample, too, and leave it at a small distance.
-  target.radius = 1.01 * target.radius + 3 * group.spacing;
+  target.radius = 1.01 * target.radius + 3 * group.spacing / unit;
   const Ball blocker{meshes[mesh].center, meshes[mesh].radius};
   const Source source = std::visit(SourceOf{}, light.source);
   if (source.ball) return hull_meets(target, *source.ball, blocker);

@@ -56,9 +56,10 @@ StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> mes
   return key.key();
 }
 
-StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes) {
+StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes,
+                             double unit) {
   KeyBuilder key("carried samples", kCarriedVersion);
-  key.add(from);
+  key.add(from).add(unit);
   for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
   return key.key();
 }
@@ -74,15 +75,16 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
   if (!is_delta(light))
     key.add(settings.light_samples).add(light_seed(irradiance_seed(settings, group), light));
   for (std::uint32_t m = 0; m < meshes.size(); ++m)
-    if (may_shadow(meshes, m, plan, light)) key.add(meshes[m].shape);
+    if (may_shadow(meshes, m, plan, light, input.world.unit)) key.add(meshes[m].shape);
   return key.key();
 }
 
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes) {
   const Camera& camera = input.scene.camera;
   const Film& film = input.scene.film;
-  KeyBuilder key("view", 1);
+  KeyBuilder key("view", 2);
   key.add(camera.position).add(camera.look_at).add(camera.up).add(camera.field_of_view);
+  key.add(input.world.origin).add(input.world.unit);
   key.add(film.resolution).add(film.samples_per_pixel).add(film.filter);
   if (film.crop) key.add(*film.crop);
   key.add(input.plan.rays);

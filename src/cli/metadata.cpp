@@ -35,14 +35,14 @@ std::string mesh_bytes(const Shape& shape, const std::string& path) {
   }
 }
 
-Json settings_json(const Scene& scene, std::span<const TranslucentGroup> translucent) {
+Json settings_json(const Scene& scene, const World& world, std::span<const TranslucentGroup> translucent) {
   const Settings& settings = scene.settings;
   const Film& film = scene.film;
   Json groups = Json::array();
   for (const TranslucentGroup& group : translucent)
     groups.push_back({{"name", group.plan.name},
                       {"samples", group.surface.samples.size()},
-                      {"spacing_mm", group.surface.spacing()}});
+                      {"spacing_mm", group.surface.spacing() * world.unit}});
   Json json{{"method", name_of(settings.method)},
             {"evaluator", name_of(settings.evaluator)},
             {"tolerance", settings.tolerance},
@@ -130,12 +130,13 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
 }
 
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
-                       std::span<const TranslucentGroup> translucent, std::optional<int> frame) {
+                       const World& world, std::span<const TranslucentGroup> translucent,
+                       std::optional<int> frame) {
   const std::string name = fs::path(arguments.scene).filename().string();
   Metadata metadata{{"opaline:version", OPALINE_VERSION}, {"opaline:scene", name}};
   if (!hash.empty()) metadata.emplace_back("opaline:scene_hash", hash);
   metadata.emplace_back("opaline:seed", std::to_string(scene.settings.seed));
-  metadata.emplace_back("opaline:settings", compact(settings_json(scene, translucent)));
+  metadata.emplace_back("opaline:settings", compact(settings_json(scene, world, translucent)));
   RenderArguments without_folder = arguments;
   without_folder.scene = name;
   metadata.emplace_back("opaline:command", command_of(without_folder));

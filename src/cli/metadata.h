@@ -40,7 +40,8 @@ Metadata frame_metadata(const RenderArguments& arguments, const std::string& has
 /// empty; opaline:seed; opaline:settings, JSON of the values in use; opaline:command, a command line that
 /// makes the same picture: outputs, threads and log are not in it; opaline:frame, for one of a range.
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
-                       std::span<const TranslucentGroup> groups, std::optional<int> frame);
+                       const World& world, std::span<const TranslucentGroup> groups,
+                       std::optional<int> frame);
 
 /// What the sums of a direct rendering belong to: the scene and all overrides but those that say when to
 /// stop. error Error{bad_input}: the scene came through a pipe

@@ -200,7 +200,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   errors.measured = verify_picture(stages, arguments, session, errors, shading.picture);
   const RenderArguments repeated = repeating(arguments, session, shading);
   if (arguments.time_budget) hash = scene_hash(repeated.scene, repeated.overrides, scene);
-  image.metadata = make_metadata(repeated, hash, scene, session.groups(), frame);
+  image.metadata = make_metadata(repeated, hash, scene, session.world(), session.groups(), frame);
   if (errors.target || errors.measured)
     image.metadata.emplace_back("opaline:error", compact(errors_json(errors)));
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));

@@ -64,14 +64,15 @@ double total_diffuse_reflectance(const ChannelProfile& profile) {
   return apply_to(profile, [](const auto& p) { return total_diffuse_reflectance(p); });
 }
 
-DiffuseProfile make_diffuse_profile(const Medium& medium) {
+DiffuseProfile make_diffuse_profile(const Medium& medium, double unit) {
   DiffuseProfile profile;
   profile.eta = medium.eta;
   profile.average_reflectance = average_reflectance_outside(medium.eta);
   const double mismatch = boundary_mismatch(medium.eta);
   for (std::size_t c = 0; c < 3; ++c) {
-    const ReducedMedium reduced =
-        std::visit([&](const auto& coefficients) { return reduce(coefficients, c, mismatch); }, medium.coefficients);
+    ReducedMedium reduced = std::visit(
+        [&](const auto& coefficients) { return reduce(coefficients, c, mismatch); }, medium.coefficients);
+    reduced.mean_free_path /= unit;
     profile.channels[c] = make_channel(reduced, medium.profile, mismatch);
     profile.mean_free_path[c] = reduced.mean_free_path;
     profile.diffuse_mean_free_path[c] = reduced.mean_free_path / std::sqrt(3 * reduced.absorbed);

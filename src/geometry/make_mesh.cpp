@@ -7,17 +7,12 @@
 
 #include "builtin_shapes.h"
 #include "check_mesh.h"
+#include "geometry/shape_label.h"
 #include "opaline/core/error.h"
 #include "read_mesh.h"
 
 namespace opaline {
 namespace {
-
-/// How messages call the shape: its file, or "shape 'name'".
-std::string label(const Shape& shape) {
-  if (const auto* file = std::get_if<MeshFile>(&shape.source)) return file->path;
-  return "shape '" + shape.name + "'";
-}
 
 struct SourceReader {
   const std::string& name;
@@ -123,12 +118,12 @@ const MeshMemory::Work& MeshMemory::work() const {
 }
 
 CheckedMesh make_mesh(const Shape& shape) {
-  const std::string name = label(shape);
+  const std::string name = shape_label(shape);
   return make_mesh(shape, name, read_source(shape, name, nullptr), nullptr);
 }
 
 CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory) {
-  const std::string name = label(shape);
+  const std::string name = shape_label(shape);
   MeshMemory::State& state = *memory.state_;
   if (!state.is_current) {
     state.source = read_source(shape, name, &state.source);

@@ -14,6 +14,7 @@
 #include <mutex>
 #include <streambuf>
 
+#include "geometry/mesh_size.h"
 #include "mesh_scan.h"
 #include "scene/schema.h"
 #include "soup_importer.h"
@@ -143,6 +144,7 @@ std::string read_mesh_bytes(const std::string& path) {
   const std::uintmax_t size = fs::file_size(path, error);
   if (!file || error) throw bad_file(path, "cannot open the mesh file");
   if (size == 0) throw bad_file(path, "the mesh file is empty");
+  check_mesh_size(path, size);
   std::string bytes(size, '\0');
   file.read(bytes.data(), std::streamsize(size));
   if (std::uintmax_t(file.gcount()) != size) throw run_failed(path, "reading the mesh file failed");

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <unordered_set>
+#include <utility>
 
 #include "mesh_scan.h"
 #include "text_cursor.h"
@@ -95,8 +97,9 @@ class ObjScanner {
     return value > 0 ? value - 1 : std::int64_t(count) + value;
   }
 
-  /// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn".
+  /// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn"; normal_ becomes its normal, or -1.
   std::int64_t corner(std::string_view text, const TextCursor& at) {
+    normal_ = -1;
     const std::size_t slash = text.find('/');
     const std::int64_t vertex = index(text.substr(0, slash), scan_.positions.size(), "vertex", at);
     if (slash == text.npos) return vertex;
@@ -104,6 +107,7 @@ class ObjScanner {
     if (second == text.npos || second + 1 == text.size()) return vertex;
     const std::int64_t normal = index(text.substr(second + 1), normals_, "normal", at);
     remember_highest(highest_normal_, normal, at);
+    normal_ = normal;
     return vertex;
   }
 
@@ -118,6 +122,7 @@ class ObjScanner {
 
   void face(TextCursor& at, std::size_t first) {
     corners_.clear();
+    corner_normals_.clear();
     for (std::string_view word = at.word(); !word.empty(); word = at.word()) {
       if (word[0] == '#') {  // OpenMesh would read numbers in the comment as corners
         std::fill(bytes_.begin() + std::ptrdiff_t(at.offset() - word.size()),
@@ -125,10 +130,12 @@ class ObjScanner {
         break;
       }
       corners_.push_back(corner(word, at));
+      corner_normals_.push_back(normal_);
       remember_highest(highest_vertex_, corners_.back(), at);
     }
     if (corners_.size() < 3)
       throw bad_line(path_, line(at), "bad face", "at least three corners", std::to_string(corners_.size()));
+    if (corners_.size() > kMostCorners) return cut_later(first);
     keep_first_of_equal_corners();
     if (corners_.size() < 3) {
       ++scan_.collapsed;
@@ -152,7 +159,38 @@ class ObjScanner {
     corners_.resize(kept);
   }
 
+  /// OpenMesh compares each corner of a face with each: a face with very many is read as the triangles of its
+  /// fan, behind all others.
+  void cut_later(std::size_t first) {
+    hide(first);
+    std::unordered_set<std::int64_t> met;
+    std::vector<std::pair<std::int64_t, std::int64_t>> fan;
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      if (met.insert(corners_[i]).second) fan.emplace_back(corners_[i], corner_normals_[i]);
+    if (fan.size() < 3) {
+      ++scan_.collapsed;
+      return;
+    }
+    scan_.triangles += fan.size() - 2;
+    fans_.push_back(std::move(fan));
+  }
+
+  void append_fans() {
+    for (const auto& fan : fans_)
+      for (std::size_t i = 2; i < fan.size(); ++i) {
+        bytes_ += "\nf";
+        for (const auto& [vertex, normal] : {fan[0], fan[i - 1], fan[i]}) {
+          bytes_ += ' ' + std::to_string(vertex + 1);
+          if (normal >= 0) bytes_ += "//" + std::to_string(normal + 1);
+          hash_.add(std::uint64_t(vertex));
+        }
+        hash_.end_face();
+      }
+    if (!fans_.empty()) bytes_ += '\n';
+  }
+
   void finish() {
+    append_fans();
     require_faces(path_, scan_.positions.size(), scan_.triangles + scan_.collapsed);
     check_.throw_if_any(path_);
     check_range(highest_vertex_, scan_.positions.size(), "vertex");
@@ -182,7 +220,11 @@ class ObjScanner {
   VertexCheck check_;
   CornerHash hash_;
   std::vector<std::size_t> joined_;  // offsets of the newlines taken out
-  std::vector<std::int64_t> corners_, seen_;
+  static constexpr std::size_t kMostCorners = 1024;
+
+  std::vector<std::int64_t> corners_, corner_normals_, seen_;
+  std::vector<std::vector<std::pair<std::int64_t, std::int64_t>>> fans_;  // vertices and normals
+  std::int64_t normal_ = -1;
   std::size_t normals_ = 0, unread_ = 0;
   Highest highest_vertex_, highest_normal_;
   std::string first_unread_;

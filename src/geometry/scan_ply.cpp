@@ -52,6 +52,9 @@ class PlyScanner {
         break;
       }
     }
+    if (faces_ == nullptr && std::ranges::any_of(header_.elements, is_strips))
+      throw bad_file(path_, "PLY triangle strips are not read", "faces; export the mesh as triangles",
+                     "element tristrips");
     require_faces(path_, faces_ == nullptr || vertices_ != nullptr ? 1 : 0, faces_ != nullptr ? 1 : 0);
     require_faces(path_, vertices_->count, faces_->count);
     check_vertex_properties();
@@ -61,6 +64,8 @@ class PlyScanner {
     indices_ = &*indices;
     return elements;
   }
+
+  static bool is_strips(const PlyElement& element) { return element.name == "tristrips"; }
 
   static bool is_indices(const PlyProperty& p) {
     return p.is_list && !is_floating(p.type) && (p.name == "vertex_indices" || p.name == "vertex_index");

@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "geometry/check_world.h"
 #include "geometry/oriented_point.h"
+#include "geometry/shape_label.h"
 
 namespace opaline {
 
@@ -26,6 +28,18 @@ CheckedMesh load_mesh(const Shape& shape, MeshMemory* memory) {
   }
 }
 
+void check_shape(const World& world, const Shape& shape, std::size_t index) {
+  try {
+    check_precision(world.meshes[index], shape_label(shape), world.diagonal, world.unit);
+  } catch (const Error& failure) {
+    throw told_at(shape.place, failure);
+  }
+}
+
+double unit_of(double diagonal) {
+  return diagonal > 0 ? std::exp2(10 * std::floor(std::ilogb(diagonal) / 10.0)) : 1;
+}
+
 }  // namespace
 
 World make_world(const Scene& scene) {
@@ -44,7 +58,7 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
     ++loaded;
   };
   const auto move = [&](Mesh& mesh) {
-    for (Vec3d& p : mesh.positions) p -= world.origin;
+    for (Vec3d& p : mesh.positions) p = into_world(world, p);
   };
   const std::size_t count = scene.shapes.size();
   world.meshes.resize(count);
@@ -61,15 +75,18 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
     all.low = component_min(all.low, world.boxes[i].low);
     all.high = component_max(all.high, world.boxes[i].high);
   }
-  world.diagonal = length(all.high - all.low);
-  world.origin = stable_middle(all, world.diagonal);
+  const double diagonal = length(all.high - all.low);
+  world.unit = unit_of(diagonal);
+  world.diagonal = diagonal / world.unit;
+  world.origin = stable_middle(all, diagonal);
   for (std::size_t i = 0; i < count; ++i) {
-    if (kept[i] && world.origin == old.origin) {
+    if (kept[i] && world.origin == old.origin && world.unit == old.unit) {
       world.meshes[i] = old.meshes[*kept[i]];
       world.reports[i] = old.reports[*kept[i]];
     } else {
       if (kept[i]) load(i);
       move(world.meshes[i]);
+      check_shape(world, scene.shapes[i], i);
     }
   }
   return world;

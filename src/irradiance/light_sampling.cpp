@@ -93,12 +93,23 @@ std::uint64_t light_seed(std::uint64_t seed, const Light& light) {
   return hash_bits(seed, name);
 }
 
-Light recentred(const Light& light, const Vec3d& origin) {
+Light recentred(const Light& light, const Vec3d& origin, double unit) {
   Light moved = light;
-  std::visit(
-      Overloaded{[&](PointLight& l) { l.position -= origin; }, [&](SphereLight& l) { l.center -= origin; },
-                 [&](QuadLight& l) { l.corner -= origin; }, [](auto&) {}},
-      moved.source);
+  std::visit(Overloaded{[&](PointLight& l) {
+                          l.position = (l.position - origin) / unit;
+                          l.intensity = l.intensity / unit / unit;
+                        },
+                        [&](SphereLight& l) {
+                          l.center = (l.center - origin) / unit;
+                          l.radius /= unit;
+                        },
+                        [&](QuadLight& l) {
+                          l.corner = (l.corner - origin) / unit;
+                          l.u = l.u / unit;
+                          l.v = l.v / unit;
+                        },
+                        [](auto&) {}},
+             moved.source);
   return moved;
 }
 

@@ -20,8 +20,8 @@ double filter_place(PixelFilter filter, double u) {
 
 }  // namespace
 
-CameraRays::CameraRays(const Camera& camera, const Film& film, const Vec3d& world_origin)
-    : position_(camera.position - world_origin),
+CameraRays::CameraRays(const Camera& camera, const Film& film, const World& world)
+    : position_(into_world(world, camera.position)),
       forward_(normalized(camera.look_at - camera.position)),
       center_x_(0.5 * film.resolution[0]),
       center_y_(0.5 * film.resolution[1]) {

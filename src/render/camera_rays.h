@@ -9,11 +9,12 @@
 
 namespace opaline {
 
-/// Rays through the film. Directions have length 1 along the view axis: a ray's time is the depth Z in mm. All
-/// pixels share one pattern of sub-pixel places, drawn from the filter's density; a single sample is the centre.
+/// Rays through the film. Directions have length 1 along the view axis: a ray's time is the depth Z. All
+/// pixels share one pattern of sub-pixel places, drawn from the filter's density; a single sample is the
+/// centre.
 class CameraRays {
  public:
-  CameraRays(const Camera& camera, const Film& film, const Vec3d& world_origin);
+  CameraRays(const Camera& camera, const Film& film, const World& world);
 
   /// x, y: pixel in the whole picture; sample in [0, samples_per_pixel).
   Ray ray(int x, int y, int sample) const;

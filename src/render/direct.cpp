@@ -104,8 +104,8 @@ class DirectRenderer {
   static std::vector<EntrySampler> make_samplers(const DirectInput& input) {
     std::vector<EntrySampler> samplers;
     for (const GroupPlan& group : input.plan.groups)
-      samplers.emplace_back(group, make_diffuse_profile(input.scene.media[group.medium]), input.rays,
-                            input.world.diagonal, input.scene.settings.entry_strategy);
+      samplers.emplace_back(group, make_diffuse_profile(input.scene.media[group.medium], input.world.unit),
+                            input.rays, input.world.diagonal, input.scene.settings.entry_strategy);
     return samplers;
   }
 

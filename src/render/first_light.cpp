@@ -99,7 +99,7 @@ std::vector<TranslucentGroup> draft_groups(const PrecomputeInput& input) {
   std::vector<TranslucentGroup> groups;
   for (std::size_t g = 0; g < input.plan.groups.size(); ++g) {
     const GroupPlan& plan = input.plan.groups[g];
-    const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium]);
+    const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
     SurfaceSamples surface =
         draft_samples(input.world, plan.meshes, std::max(kFewest, plan.samples / kFewer));
     SplitKernel kernel = group_kernel(profile, surface, input.world, input.scene.settings);

@@ -84,11 +84,12 @@ double nearest_of_mesh(const Segment& segment, const Mesh& mesh, double nearest)
 
 std::optional<double> near_light_distance(const Light& light, const World& world,
                                           std::span<const std::uint32_t> meshes, double limit) {
-  const std::optional<Segment> middle = middle_of(recentred(light, world.origin), limit);
+  const double widest = limit / world.unit;
+  const std::optional<Segment> middle = middle_of(recentred(light, world.origin, world.unit), widest);
   if (!middle) return {};
-  double nearest = limit;
+  double nearest = widest;
   for (const std::uint32_t mesh : meshes) nearest = nearest_of_mesh(*middle, world.meshes[mesh], nearest);
-  return nearest < limit ? std::optional(nearest) : std::nullopt;
+  return nearest < widest ? std::optional(nearest * world.unit) : std::nullopt;
 }
 
 }  // namespace opaline

@@ -61,7 +61,7 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
   const Bounds box = box_of(world);
   const Camera& camera = scene.camera;
   const Vec3d middle = .5 * (box.low + box.high), towards = middle - camera.position;
-  const double distance = length(towards), radius = world.diagonal / 2;
+  const double distance = length(towards), radius = world.diagonal * world.unit / 2;
   const double cosine = dot(normalized(towards), normalized(camera.look_at - camera.position));
   const double pixels =
       radius / distance / std::tan(camera.field_of_view * std::numbers::pi / 360) * scene.film.resolution[1];
@@ -103,10 +103,11 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
     const double distance = place ? length(*place - middle) : 0;
     if (emission(light) == Rgb{})
       texts.push_back(fmt::format("the light {} has no brightness", light.name));
-    else if (distance > kFarAway * world.diagonal)
+    else if (distance > kFarAway * world.diagonal * world.unit)
       texts.push_back(
           fmt::format("the light {} is {:.3g} scene units away from shapes that measure {:.3g} together",
-                      light.name, distance / scene.mm_per_unit, world.diagonal / scene.mm_per_unit));
+                      light.name, distance / scene.mm_per_unit,
+                      world.diagonal * world.unit / scene.mm_per_unit));
   }
   return texts;
 }

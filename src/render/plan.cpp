@@ -12,6 +12,7 @@
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/render.h"
 #include "opaline/sampling/sample_surface.h"
+#include "render/check_reach.h"
 #include "render/light_distance.h"
 
 namespace opaline {
@@ -121,7 +122,7 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
       it = groups.end() - 1;
     }
     it->meshes.push_back(std::uint32_t(i));
-    it->area += surface_area(world.meshes[i]);
+    it->area += surface_area(world.meshes[i]) * world.unit * world.unit;
   }
   return groups;
 }
@@ -207,6 +208,7 @@ RayBuild cheaper_build(const Scene& scene, const Plan& plan) {
 }  // namespace
 
 Plan make_plan(const Scene& scene, const World& world) {
+  check_reach(scene, world);
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
   std::set<std::string> said;  // by the first of several shapes from one file

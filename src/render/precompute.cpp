@@ -47,14 +47,15 @@ std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size
                                          std::span<const SurfaceSample> samples,
                                          std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
-  const DiffuseProfile profile = make_diffuse_profile(input.scene.media[input.plan.groups[group].medium]);
+  const DiffuseProfile profile =
+      make_diffuse_profile(input.scene.media[input.plan.groups[group].medium], input.world.unit);
   return compute_irradiance({input.rays, samples, lights, profile.eta, settings.light_samples,
                              irradiance_seed(settings, group), input.monitor});
 }
 
 std::vector<Light> recentred_lights(const Scene& scene, const World& world) {
   std::vector<Light> lights;
-  for (const Light& light : scene.lights) lights.push_back(recentred(light, world.origin));
+  for (const Light& light : scene.lights) lights.push_back(recentred(light, world.origin, world.unit));
   return lights;
 }
 
@@ -87,7 +88,7 @@ Precompute precompute(const PrecomputeInput& input) {
   StageCost sampling{"sampling"}, irradiance{"irradiance"}, octree{"octree"};
   for (std::size_t g = 0; g < input.plan.groups.size(); ++g) {
     const GroupPlan& plan = input.plan.groups[g];
-    const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium]);
+    const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
     const Stopwatch sampling_watch;
     SurfaceSamples surface = place_samples(input, g);
     add_cost(sampling, sampling_watch.cost({}));
@@ -124,7 +125,8 @@ std::vector<RgbF> radiant_exitance(const TranslucentGroup& group, const World& w
                                    std::span<const Vec3d> points, std::span<const Vec3f> normals,
                                    const Settings& settings) {
   std::vector<Query> queries(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) queries[i] = {Vec3f(points[i] - world.origin), normals[i]};
+  for (std::size_t i = 0; i < points.size(); ++i)
+    queries[i] = {Vec3f(into_world(world, points[i])), normals[i]};
   const std::vector<Exitance> exitance = evaluate({group.octree,
                                                    group.kernel,
                                                    queries,

@@ -77,7 +77,7 @@ bool needs_irradiance(const TranslucentGroup& group) {
 
 Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers) : input_(input) {
   for (const Light& light : input.scene.lights) {
-    lights_.push_back(recentred(light, input.world.origin));
+    lights_.push_back(recentred(light, input.world.origin, input.world.unit));
     if (const auto* all_around = std::get_if<Surroundings>(&light.source))
       surroundings_ += RgbF(all_around->radiance);
     else if (!is_delta(light))
@@ -243,8 +243,8 @@ void Shader::write(const Surfaces& surfaces, const Lit& lit, std::span<const Tra
     if (!lit.noise.empty()) sample.noise = lit.noise[i] * (radiance * radiance);
     sample.translucent = appearance.translucent ? 1.0f : 0.0f;
     sample.normal = point.normal;
-    sample.position = Vec3f(Vec3d(point.position) + input_.world.origin);
-    sample.depth = ray.far;
+    sample.position = Vec3f(out_of_world(input_.world, Vec3d(point.position)));
+    sample.depth = float(ray.far * input_.world.unit);
   }
 }
 

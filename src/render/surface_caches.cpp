@@ -21,7 +21,7 @@ constexpr double kBegin = 0.11, kMost = 0.4;
 std::vector<double> expected_points(const PrecomputeInput& input) {
   constexpr int kColumns = 48, kRows = 48;
   const Film& film = input.scene.film;
-  const CameraRays camera(input.scene.camera, film, input.world.origin);
+  const CameraRays camera(input.scene.camera, film, input.world);
   std::vector<TracedRay> rays;
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < kColumns; ++column)

@@ -47,7 +47,7 @@ Image empty_image(const Rectangle& part, const Film& film, std::vector<std::stri
 }
 
 TileRenderer::TileRenderer(const RenderInput& input, const Shader& shader)
-    : input_(input), camera_(input.scene.camera, input.scene.film, input.world.origin), shader_(shader) {}
+    : input_(input), camera_(input.scene.camera, input.scene.film, input.world), shader_(shader) {}
 
 // Finds what the rays hit, or takes it from what is held.
 void TileRenderer::trace(std::span<TracedRay> rays, HeldView::Batch* held) const {

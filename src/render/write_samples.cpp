@@ -33,9 +33,9 @@ void write_samples_ply(const std::string& path, std::span<const TranslucentGroup
   for (const TranslucentGroup& group : groups)
     for (std::size_t i = 0; i < group.surface.samples.size(); ++i) {
       const SurfaceSample& s = group.surface.samples[i];
-      append(bytes, Vec3d(s.position) + world.origin);
+      append(bytes, out_of_world(world, Vec3d(s.position)));
       append(bytes, s.normal);
-      append(bytes, s.area);
+      append(bytes, float(double(s.area) * world.unit * world.unit));
       append(bytes, group.irradiance.empty() ? RgbF{} : group.irradiance[i]);
       append(bytes, s.mesh);
     }

@@ -212,6 +212,29 @@ CarriedSamples bent_along(const CarryInput& input, std::span<const PlainTriangle
   return {.surface = std::move(result), .divided = divide};
 }
 
+/// What is needed of a world to carry samples from it, in another unit.
+World in_unit(const World& world, double unit) {
+  const double factor = world.unit / unit;
+  World scaled;
+  scaled.meshes = world.meshes;
+  scaled.unit = unit;
+  for (Mesh& mesh : scaled.meshes)
+    for (Vec3d& p : mesh.positions) p = p * factor;
+  return scaled;
+}
+
+SurfaceSamples in_unit(const SurfaceSamples& surface, double factor) {
+  SurfaceSamples scaled = surface;
+  scaled.area *= factor * factor;
+  scaled.radius *= factor;
+  for (SurfaceSample& s : scaled.samples) {
+    s.position = s.position * float(factor);
+    s.centroid = s.centroid * float(factor);
+    s.area *= float(factor * factor);
+  }
+  return scaled;
+}
+
 }  // namespace
 
 bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, const World& to,
@@ -224,6 +247,10 @@ bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, co
 }
 
 CarriedSamples carry_samples(const CarryInput& input) {
+  if (input.from.unit != input.to.unit)
+    return carry_samples({in_unit(input.from, input.to.unit), input.from_meshes, input.to, input.to_meshes,
+                          in_unit(input.samples, input.from.unit / input.to.unit), input.cells,
+                          input.monitor});
   if (const std::optional<Motion> motion = common_motion(input)) return {moved(input, *motion), true};
   const std::vector<PlainTriangle> plain = plain_triangles(input.to, input.to_meshes);
   const std::vector<SurfacePoint> points = points_after(input);

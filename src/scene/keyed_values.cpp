@@ -23,7 +23,13 @@ class KeyedValue {
     if (keyed->kind != Node::Kind::object || keyed->children.empty())
       fail(*keyed, "'keyed' has no values", "values by frame such as {\"1\": 0, \"24\": 5}");
     for (const Node& value : keyed->children) keys_.push_back({frame_of(value), &value});
-    std::ranges::sort(keys_, {}, &Key::frame);
+    std::ranges::stable_sort(keys_, {}, &Key::frame);
+    const auto twice = std::ranges::adjacent_find(keys_, {}, &Key::frame);
+    if (twice != keys_.end()) {
+      const Node &first = *twice->value, &second = *std::next(twice)->value;
+      fail(second, "'" + printable(first.key) + "' and '" + printable(second.key) + "' are the same frame",
+           "each frame once");
+    }
     for (const Node& member : node.children) {
       if (member.key == "keyed") continue;
       if (member.key != "between")

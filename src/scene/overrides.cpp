@@ -37,6 +37,8 @@ class Override {
     const std::size_t equals = text_.find('=');
     if (equals == std::string_view::npos || equals == 0) fail("no value given", "path.to.key=value");
     const std::string_view path = text_.substr(0, equals);
+    if (std::ranges::count(path, '.') >= max_depth)
+      fail("the path is nested too deeply", "at most " + std::to_string(max_depth) + " levels");
     Node* node = &document_.root;
     for (std::size_t begin = 0; begin <= path.size();) {
       const std::size_t end = std::min(path.find('.', begin), path.size());

@@ -40,7 +40,8 @@ void Session::bring_samples(Part& part, const PrecomputeInput& input, std::size_
   if (!is_from_this_plan(part.origin, input, group) ||
       !can_carry(*part.origin.world, part.origin.meshes, *world_, part.plan.meshes))
     return place_anew(part, input, group, anew);
-  const StageKey carried = carried_samples_key(part.origin.key, part.plan, mesh_keys_);
+  const StageKey carried =
+      carried_samples_key(part.origin.key, part.plan, mesh_keys_, part.origin.world->unit / world_->unit);
   if (carried == part.samples_key) return keep_samples(part);
   carry_along(part, input, carried);
 }
@@ -79,7 +80,7 @@ void Session::place_anew(Part& part, const PrecomputeInput& input, std::size_t g
                    key,
                    sampling_seed(settings, group),
                    part.plan.samples,
-                   part.surface.area,
+                   part.surface.area * world_->unit * world_->unit,
                    {},
                    std::move(cells),
                    settings.samples.has_value(),
@@ -174,10 +175,10 @@ void Session::bring_tree(Part& part, const std::vector<Light>& lights) {
 
 void Session::bring_kernel(Part& part) {
   const Medium& medium = scene_.media[part.plan.medium];
-  KeyBuilder key("kernel", 1);
+  KeyBuilder key("kernel", 2);
   std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
   key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(medium.profile);
-  key.add(part.surface.spacing()).add(world_->diagonal);
+  key.add(part.surface.spacing()).add(world_->diagonal).add(world_->unit);
   key.add(scene_.settings.near_field).add(scene_.settings.near_irradiance);
   if (key.key() == part.kernel_key) return;
   part.kernel_key = {};

@@ -313,7 +313,7 @@ std::vector<Session::Part> Session::arranged_parts() {
       old->plan.name.clear();
     }
     parts[g].plan = plan;
-    parts[g].profile = make_diffuse_profile(scene_.media[plan.medium]);
+    parts[g].profile = make_diffuse_profile(scene_.media[plan.medium], world_->unit);
   }
   return parts;
 }

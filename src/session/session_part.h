@@ -13,7 +13,7 @@ struct SampleOrigin {
   StageKey key;
   std::uint64_t seed = 0;
   std::size_t count = 0;       // asked for
-  double area = 0;             // of the surface then
+  double area = 0;             // of the surface then, mm^2
   SurfaceSamples surface;      // while the part's own are carried; else the part's own are these
   SurfaceCells cells;          // of these samples; empty until a surface bends where no edits were expected
   bool count_was_set = false;  // by settings.samples

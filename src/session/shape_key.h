@@ -7,8 +7,8 @@
 
 namespace opaline {
 
-/// Of the file's bytes or the built-in shape's measures. A file that cannot be read has a key, too: loading
-/// will say why.
+/// Of the file's bytes or the built-in shape's measures. error Error{bad_input} naming a mesh file that is
+/// none
 StageKey source_key(const Shape& shape);
 
 /// Of the source and all that loading does with it.

@@ -48,8 +48,8 @@ TEST(MayShadow, MissesNothing) {
       const auto without =
           light_samples(input, 0, with.pre.groups[0].surface.samples, recentred_lights(bare, world));
       const bool same = without[0].weights == with.pre.groups[0].transfers[0].weights;
-      const bool may =
-          may_shadow(mesh_keys(with.world), 1, with.plan.groups[0], recentred_lights(scene, with.world)[0]);
+      const bool may = may_shadow(mesh_keys(with.world), 1, with.plan.groups[0],
+                                  recentred_lights(scene, with.world)[0], with.world.unit);
       ASSERT_TRUE(may || same) << i << " light kind " << source.index();
       said_no += !may;
       shadowed += !same;

@@ -155,5 +155,18 @@ TEST(CliFailures, SecondInterruptKills) {
   EXPECT_EQ(outcome.signal, SIGINT) << "exit code " << outcome.exit_code;
 }
 
+// Claim: a path of 20,000 parts after --set is refused by its depth. Fails if: a tree that deep is built,
+// whose end is as deep a recursion (the program before it: a segmentation fault at some lengths).
+TEST(CliFailures, DeepOverrides) {
+  const SceneFolder folder;
+  for (const std::size_t parts : {65u, 20000u, 60000u}) {
+    std::string path = "media";
+    for (std::size_t i = 1; i < parts; ++i) path += ".a";
+    const Outcome outcome = run_program({"info", folder.scene, "--set", path + "=1"});
+    EXPECT_EQ(outcome.exit_code, 2) << parts << " signal " << outcome.signal;
+    EXPECT_TRUE(contains(outcome.err, "nested too deeply (expected at most 64 levels")) << outcome.err;
+  }
+}
+
 }  // namespace
 }  // namespace opaline

@@ -95,7 +95,7 @@ TEST(BadMesh, Ply) {
       {"strip.ply",
        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0 1 0 0 0 1 0 3 0 1 2\n",
-       "no faces"},
+       "PLY triangle strips are not read"},
       {"int.ply",
        "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int z\nelement "
        "face 1\n"

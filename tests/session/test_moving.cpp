@@ -270,5 +270,21 @@ TEST(Moving, AnchoredFrames) {
   EXPECT_TRUE(same_pixels(forth[1], cold_picture(other)));
 }
 
+// Claim: samples go along where the world's unit of length changes with them, as when another object leaves
+// for far away: no sample is placed anew, and the picture is as near to the cold one as after any move (2 %,
+// RigidObject). Back again, it is the first picture. Fails if: carried positions, areas or radii stay in the
+// unit of the world they came from, or the picture's rays and lights do.
+TEST(Moving, IntoAWorldOfAnotherUnit) {
+  Scene near = two_balls(), far = near;
+  far.shapes[2].to_world = {{20, 0, 0}, {0, 1, 0}, {0, 0, 20}, {}};
+  Session session;
+  const Image first = picture_of(session, near);
+  const Image picture = picture_of(session, far);
+  ASSERT_NE(make_world(near).unit, make_world(far).unit);
+  EXPECT_EQ(session.work().samples_placed + session.work().samples_removed, 0u);
+  EXPECT_LT(difference(picture, cold_picture(far)), .02);
+  EXPECT_TRUE(same_pixels(picture_of(session, near), first));
+}
+
 }  // namespace
 }  // namespace opaline

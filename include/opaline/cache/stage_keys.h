@@ -23,8 +23,10 @@ std::vector<MeshKeys> mesh_keys(const World& world);
 /// Of a group's samples placed anew: its meshes, their count and random numbers.
 StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group);
 
-/// Of the samples of key `from`, carried along to the group's meshes as they are now.
-StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes);
+/// Of the samples of key `from`, carried along to the group's meshes as they are now. in    unit: of the world
+/// they come from over that of this one
+StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes,
+                             double unit);
 
 /// Of the light that enters at samples from one light: the samples, where and how large the light is but not
 /// its colour, the index of refraction, random numbers, and every mesh that could throw a shadow from this
@@ -48,9 +50,9 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
 StageKey view_light_key(const Light& light);
 
 /// Whether a mesh could be in the way between a light and a group's meshes, to judge by the balls around them
-/// all; at most too cautious.
+/// all; at most too cautious. in    light: recentred; unit: World::unit
 bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
-                const Light& light);
+                const Light& light, double unit);
 
 /// Of the exitance all over a group's surfaces: its tree, its kernel, its meshes with their normals, the
 /// tolerance, and the instruction set, which rounds.

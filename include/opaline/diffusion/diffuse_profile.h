@@ -21,8 +21,8 @@ double total_diffuse_reflectance(const ChannelProfile& profile);
 /// Everything about a medium that rendering needs, computed once.
 struct DiffuseProfile {
   std::array<ChannelProfile, 3> channels;
-  Rgb mean_free_path{};          ///< 1/sigma_t', mm; 0 where the medium neither scatters nor absorbs
-  Rgb diffuse_mean_free_path{};  ///< 1/sigma_tr, mm: over which light decays far inside; infinite without
+  Rgb mean_free_path{};          ///< 1/sigma_t'; 0 where the medium neither scatters nor absorbs
+  Rgb diffuse_mean_free_path{};  ///< 1/sigma_tr: over which light decays far inside; infinite without
                                  ///< absorption
   Rgb total{};                   ///< total diffuse reflectance per entered flux
   double eta = 1;
@@ -30,7 +30,8 @@ struct DiffuseProfile {
   bool translucent = false;        ///< some channel scatters
 };
 
-DiffuseProfile make_diffuse_profile(const Medium& medium);
+/// unit: of all its lengths, mm.
+DiffuseProfile make_diffuse_profile(const Medium& medium, double unit = 1);
 
 /// Integral over r < h of 2 pi r R_d(r) (1 - w(r/h)), w the near-field weight below: the near part of the
 /// total.

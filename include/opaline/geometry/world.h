@@ -15,17 +15,24 @@
 
 namespace opaline {
 
-/// Every shape's mesh in the order of Scene::shapes, moved so that zero is near the middle of them all: sums
-/// of floats far from the origin lose what they are made of. p_world = p + origin.
+/// Every shape's mesh in the order of Scene::shapes, moved so that zero is near the middle of them all, and in
+/// a unit of length that suits them: sums of floats far from the origin lose what they are made of, and
+/// squares and cubes of very small or large lengths leave a float's range. All later stages compute in this
+/// space. A point p of it is p * unit + origin in the scene.
 struct World {
   std::vector<Mesh> meshes;
   std::vector<MeshReport> reports;
-  std::vector<Bounds> boxes;  ///< one a mesh, before it was moved
+  std::vector<Bounds> boxes;  ///< one a mesh, in the scene, mm
   /// The middle of everything, rounded to a power of two of 1/8 to 1/4 of the diagonal: where one object
   /// moves a little, the others keep their bits.
-  Vec3d origin{};
-  double diagonal = 0;  ///< of the bounding box of everything, mm; 0 for an empty scene
+  Vec3d origin{};       ///< mm
+  double unit = 1;      ///< mm; the power of 1024 for which the diagonal is 1 to 1024 units
+  double diagonal = 0;  ///< of the bounding box of everything, units; 0 for an empty scene
 };
+
+/// From the scene's millimetres into the world's space, and back.
+inline Vec3d into_world(const World& world, const Vec3d& p) { return (p - world.origin) / world.unit; }
+inline Vec3d out_of_world(const World& world, const Vec3d& p) { return p * world.unit + world.origin; }
 
 /// Meshes of all shapes; error as make_mesh, told at the shape's place in the scene.
 World make_world(const Scene& scene);
@@ -66,10 +73,10 @@ struct TracedRay {
 
 /// Geometry at a point of a triangle: everything shading and sampling ask for.
 struct SurfacePoint {
-  Vec3f position;    ///< in the world's recentred space
+  Vec3f position;    ///< in the world's space
   Vec3f normal;      ///< shading normal, unit
   Vec3f geometric;   ///< geometric normal, unit
-  float offset = 0;  ///< RayScene::offset here, mm, for rays from the point; 0: the largest mesh's
+  float offset = 0;  ///< RayScene::offset here, for rays from the point; 0: the largest mesh's
 };
 
 /// How a ray structure is built. Rays meet the same triangles either way, at the same places; one that meets
@@ -93,7 +100,7 @@ class RayScene {
   /// Geometry at a place of a triangle, from the single precision vertices that the rays meet; offset is set.
   SurfacePoint surface_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v) const;
 
-  /// How far to move the origin of a ray off the surface of a mesh, along the geometric normal, mm: 2^-18 of
+  /// How far to move the origin of a ray off the surface of a mesh, along the geometric normal: 2^-18 of
   /// the mesh's diagonal, more where floats far from the middle of the world are coarser.
   float offset(const SurfacePoint& point) const { return point.offset > 0 ? point.offset : largest_offset_; }
   std::size_t bytes() const;

@@ -14,7 +14,7 @@ namespace opaline {
 /// not occluded) x emission, emission being the light's colour (intensity, irradiance or radiance).
 struct LightSample {
   Vec3f direction;   ///< unit, from the point towards the light
-  float distance;    ///< mm; infinity for directional lights and surroundings
+  float distance;    ///< infinity for directional lights and surroundings
   float weight = 0;  ///< intensity -> 1/d^2, irradiance -> 1, radiance -> solid angle / samples; 0: no light here
 };
 
@@ -27,8 +27,9 @@ bool is_delta(const Light& light);
 /// Seed of a light's random numbers: by its name, so that adding or removing another light leaves them alone.
 std::uint64_t light_seed(std::uint64_t seed, const Light& light);
 
-/// The light moved by -origin into recentred space.
-Light recentred(const Light& light, const Vec3d& origin);
+/// The light in a world's space: moved by -origin, its lengths and a point's intensity, W/sr per square of
+/// the length, in a unit of so many mm.
+Light recentred(const Light& light, const Vec3d& origin, double unit = 1);
 
 /// Sample of a light from a point.
 /// in    unit_square: in [0, 1)^2, unused by delta lights; samples: how many share the light's solid angle

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/check_reach.h"
+
+#include <fmt/format.h>
+
+#include "opaline/core/error.h"
+#include "opaline/irradiance/light_sampling.h"
+
+namespace opaline {
+namespace {
+
+constexpr double kFarthest = 0x1p50, kBrightest = 1e30;
+
+/// The largest distance of a light's points from zero, at most some times too large.
+struct ReachOf {
+  double operator()(const PointLight& light) const { return length(light.position); }
+  double operator()(const SphereLight& light) const { return length(light.center) + light.radius; }
+  double operator()(const QuadLight& light) const {
+    return length(light.corner) + length(light.u) + length(light.v);
+  }
+  double operator()(const DirectionalLight&) const { return 0; }
+  double operator()(const Surroundings&) const { return 0; }
+};
+
+void check_distance(const Scene& scene, const std::string& what, double distance, double mm) {
+  if (distance <= kFarthest) return;
+  throw bad_file(
+      scene.file, what + " is too far from the shapes",
+      fmt::format("at most {:.3g} mm from the middle of them all, 2^50 of the unit that suits their "
+                  "size, for single precision to reach it",
+                  kFarthest * mm),
+      fmt::format("{:.3g} mm", distance * mm));
+}
+
+}  // namespace
+
+void check_reach(const Scene& scene, const World& world) {
+  if (world.meshes.empty()) return;
+  check_distance(scene, "camera.position", length(into_world(world, scene.camera.position)), world.unit);
+  for (const Light& light : scene.lights) {
+    const Light moved = recentred(light, world.origin, world.unit);
+    const std::string name = "the light '" + light.name + "'";
+    check_distance(scene, name, std::visit(ReachOf{}, moved.source), world.unit);
+    const double brightest = max_component(emission(moved));
+    if (brightest > kBrightest)
+      throw bad_file(scene.file, name + " is too bright for shapes of this size",
+                     fmt::format("at most {:.3g} W/sr", kBrightest * world.unit * world.unit),
+                     fmt::format("{:.3g} W/sr", max_component(emission(light))));
+  }
+}
+
+}  // namespace opaline

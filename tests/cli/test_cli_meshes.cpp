@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mesh paths that lead to something else than a mesh, as the program's commands meet them.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "run_program.h"
+
+namespace opaline {
+namespace {
+
+/// The outcome of rendering a scene with this one mesh; killed after 20 s.
+Outcome render_of(const SceneFolder& folder, const std::string& mesh, const std::string& command) {
+  put_bytes(folder.scene, R"({"shapes": [{"file": ")" + mesh + R"("}], "film": {"resolution": [8, 8]}})");
+  std::vector<std::string> words{command, folder.scene};
+  if (command == "render") words.insert(words.end(), {"-o", folder.file("a.exr")});
+  return Child(words, ".", {.file_size = {}, .address_space = rlim_t(2) << 30}).wait(20);
+}
+
+// Claim: `render` looks at what a mesh path leads to before it reads it, as `info` does: a folder, a pipe
+// that nobody writes to, a missing file, and binary STL of 3 GB that holds one triangle are each named, exit
+// 2, within 2 GB of address space. Fails if: the hash of the scene or the key of a shape reads a file before
+// it is checked (the program before it: out of memory; for ever; "cannot be read again"; 3 GB of memory).
+TEST(CliMeshes, WhatIsNoMeshIsNamedBeforeItIsRead) {
+  const SceneFolder folder;
+  std::filesystem::create_directory(folder.file("folder.obj"));
+  ASSERT_EQ(::mkfifo(folder.file("pipe.ply").c_str(), 0600), 0);
+  std::string triangle(84 + 50, '\0');
+  triangle[80] = 1;
+  put_bytes(folder.file("sparse.stl"), triangle);
+  std::filesystem::resize_file(folder.file("sparse.stl"), std::uintmax_t(3) << 30);
+  const struct {
+    const char *mesh, *said;
+  } cases[] = {{"folder.obj", "folder.obj: cannot read the mesh (expected a file, got a directory)"},
+               {"pipe.ply", "pipe.ply: cannot read the mesh (expected a file, got something else)"},
+               {"missing.obj", "missing.obj: no such mesh file"},
+               {"sparse.stl", "sparse.stl: the file is far longer than its header says (expected 134 bytes"}};
+  for (const char* command : {"render", "info"})
+    for (const auto& c : cases) {
+      const Outcome outcome = render_of(folder, c.mesh, command);
+      EXPECT_EQ(outcome.exit_code, 2) << command << ' ' << c.mesh << " signal " << outcome.signal;
+      EXPECT_TRUE(contains(outcome.err, c.said)) << outcome.err;
+    }
+}
+
+}  // namespace
+}  // namespace opaline
