@@ -43,6 +43,7 @@ struct Shading {
 std::string how_to_go_on(const RenderArguments& arguments, const Session& session,
                          const ResumableState& resumable) {
   if (arguments.resume.empty()) return "nothing was kept: --resume FILE keeps the sums of a direct rendering";
+  if (resumable.state.passes == 0) return "nothing was kept: the first pass over the picture was not done";
   const std::size_t samples = resumable.state.passes * entry_samples_per_pass(session.scene().film);
   return fmt::format("the sums of {} entry samples a pixel are in {}; go on by {}", grouped(samples),
                      arguments.resume, arguments.command_line);

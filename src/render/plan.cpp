@@ -11,6 +11,7 @@
 #include "opaline/irradiance/light_sampling.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/render.h"
+#include "opaline/render/surface_caches.h"
 #include "opaline/sampling/sample_surface.h"
 #include "render/check_reach.h"
 #include "render/light_distance.h"
@@ -232,6 +233,8 @@ Plan make_plan(const Scene& scene, const World& world) {
     warn_of_near_lights(scene, world, group, plan.warnings);
     // Measured at 1 and 10 million: samples, weights and tree while its nodes are written.
     plan.bytes += group.samples * (191 + 4 * scene.lights.size());
+    if (scene.settings.evaluator == EvaluatorKind::surface_cache)
+      plan.bytes += most_wanted_places(group, world) * kBytesOfPlace;
     plan.bytes += std::size_t(needle_share(world, group) * double(group.samples) * 250);
   }
   plan.rays = cheaper_build(scene, plan);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 
 #include "render/camera_rays.h"
 #include "render/own_light.h"
@@ -45,11 +44,19 @@ bool is_worth_beginning(const PrecomputeInput& input, const TranslucentGroup& gr
 
 }  // namespace
 
+std::size_t most_wanted_places(const GroupPlan& group, const World& world) {
+  constexpr std::size_t kOfVertex = 4, kOfSample = 16;  // smooth surfaces take about 1 and 2 of each
+  std::size_t vertices = 0;
+  for (const std::uint32_t mesh : group.meshes) vertices += world.meshes[mesh].positions.size();
+  return kOfVertex * vertices + kOfSample * group.samples;
+}
+
 std::vector<std::size_t> most_cache_places(const PrecomputeInput& input,
                                            std::span<const TranslucentGroup> groups, std::size_t pictures) {
   const EvaluatorKind evaluator = input.scene.settings.evaluator;
-  const bool wanted = evaluator == EvaluatorKind::surface_cache;
-  std::vector<std::size_t> most(groups.size(), wanted ? std::numeric_limits<std::size_t>::max() : 0);
+  std::vector<std::size_t> most(groups.size());
+  if (evaluator == EvaluatorKind::surface_cache)
+    for (std::size_t g = 0; g < groups.size(); ++g) most[g] = most_wanted_places(groups[g].plan, input.world);
   if (groups.empty() || evaluator != EvaluatorKind::automatic) return most;
   const std::vector<double> points = expected_points(input);
   for (std::size_t g = 0; g < groups.size(); ++g)

@@ -199,7 +199,12 @@ void Session::bring_exitance(Part& part, TranslucentGroup& group, const Precompu
   if (found) part.surface_cache = std::move(found);
   if (!part.surface_cache) {
     part.surface_cache = make_group_cache(input, group, most_places);
-    if (!part.surface_cache) return;
+    if (!part.surface_cache) {
+      if (scene_.settings.evaluator == EvaluatorKind::surface_cache)
+        decide(part, fmt::format("more than {} places of the surface: evaluated at the picture's points",
+                                 most_places));
+      return;
+    }
     work_.places_evaluated += part.surface_cache->places();
     if (cache_ != nullptr) cache_->keep_exitance(key, *part.surface_cache, group.plan.meshes);
   }

@@ -15,13 +15,13 @@ using namespace test;
 // time, one thread; 1e-30 of E for "nothing". Fails if: worker threads or the caller's do not flush denormals
 // and the kernel is computed by exp.
 TEST(Underflow, DoesNotStall) {
-  const double radius = .02;
+  const double radius = 20;
   const Cloud cloud(SphereShape{{}, radius}, 20000);
   const Octree octree = cloud.tree(RgbF(1));
   for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
-    const DiffuseProfile profile = make_diffuse_profile(grey_medium(.01, .5, 1.3, kind));
+    const DiffuseProfile profile = make_diffuse_profile(grey_medium(10, .5, 1.3, kind));
     const double decay = kind == ProfileKind::dipole
-                             ? std::sqrt(1.5) / .01
+                             ? std::sqrt(1.5) / 10
                              : 1 / (3 * std::get<NormalizedDiffusion>(profile.channels[0]).d);
     const SplitKernel kernel = make_split_kernel(profile, cloud.surface.spacing(), 1e4 / decay + 1, true);
     const auto seconds = [&](double distance, EvaluatorKind evaluator, RgbF& out) {

@@ -45,9 +45,9 @@ TEST(NearLights, AreWarnedOf) {
       {PointLight{{93, 120.5, 104}, {}}, ""},
       {SphereLight{{93, 120.5, 104}, .2, white}, "the light lamp is 0.5 mm from"},
       {SphereLight{{93, 120.5, 104}, 3, white}, ""},
-      {QuadLight{{90, 120.5, 104}, {0, 0, .2}, {9, 0, 0}, white}, "the light lamp is 0.5 mm from"},
+      {QuadLight{{90, 120.5, 104}, {9, 0, 0}, {0, 0, .2}, white}, "the light lamp is 0.5 mm from"},
       {QuadLight{{90, 110, 104}, {0, 90, 0}, {.2, 0, 0}, white}, "the light lamp is 0 mm from"},
-      {QuadLight{{90, 120.5, 104}, {0, 0, 9}, {9, 0, 0}, white}, ""},
+      {QuadLight{{90, 120.5, 104}, {9, 0, 0}, {0, 0, 9}, white}, ""},
       {DirectionalLight{{0, -1, 0}, white}, ""},
       {Surroundings{white}, ""},
   };

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "opaline/image/metrics.h"
+#include "opaline/render/surface_caches.h"
 #include "support/scenes.h"
 
 namespace opaline::test {
@@ -37,6 +38,22 @@ TEST(SurfaceCaches, WhereManyPointsAskForThem) {
   scene = torus_scene(16, 1);
   scene.settings.evaluator = EvaluatorKind::surface_cache;
   EXPECT_TRUE(has_cache(scene));
+}
+
+// Claim: a long thin bar of few samples, whose sides would be cut into a hundred thousand squares of the near
+// field's size, is evaluated at the points of the picture though a surface cache is asked for, and the plan's
+// memory says what such a cache may take at most. Source: most_wanted_places. Measured without the bound: 204
+// MB where 11 were foreseen. Fails if: most_cache_places lets a wanted cache have any number of places.
+TEST(SurfaceCaches, NeedlesFallBackToPoints) {
+  Scene scene = single_shape(SlabShape{{}, 30, 32000, 1}, marble(), 500);
+  scene.lights = {point_light({30, 60, 40}, {9000, 8000, 7000})};
+  scene.camera.position = {0, 50, 90};
+  scene.film.resolution = {16, 16};
+  scene.settings.evaluator = EvaluatorKind::surface_cache;
+  EXPECT_FALSE(has_cache(scene));
+  const std::size_t bytes = Prepared(scene).plan.bytes;
+  scene.settings.evaluator = EvaluatorKind::dual_tree;
+  EXPECT_GT(bytes, Prepared(scene).plan.bytes + 500 * kBytesOfPlace);
 }
 
 // Claim: the picture through a surface cache is that of the exact sum within the tolerance, mean over the
