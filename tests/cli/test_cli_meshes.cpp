@@ -21,7 +21,7 @@ Outcome render_of(const SceneFolder& folder, const std::string& mesh, const std:
 // Claim: `render` looks at what a mesh path leads to before it reads it, as `info` does: a folder, a pipe
 // that nobody writes to, a missing file, and binary STL of 3 GB that holds one triangle are each named, exit
 // 2, within 2 GB of address space. Fails if: the hash of the scene or the key of a shape reads a file before
-// it is checked (the program before it: out of memory; for ever; "cannot be read again"; 3 GB of memory).
+// it is checked.
 TEST(CliMeshes, WhatIsNoMeshIsNamedBeforeItIsRead) {
   const SceneFolder folder;
   std::filesystem::create_directory(folder.file("folder.obj"));

@@ -81,8 +81,7 @@ void expect_same(const Image& a, const Image& b, double scale) {
 // of the picture as it is, for powers of two between 2^-58 and 2^50, by each method and profile; positions
 // and depths are k times what they were. Tolerance none: every stage computes in a unit that suits the world,
 // and scaling by a power of two rounds nothing. Fails if: anything is compared with an absolute length, area
-// or brightness, or is squared outside of the world's space (the program before it had that space: 1 % at
-// 2^20, black at 2^30).
+// or brightness, or is squared outside of the world's space.
 TEST(Scale, PowersOfTwoAreTheSamePicture) {
   for (const Method method : {Method::hierarchical, Method::direct, Method::lambert})
     for (const ProfileKind profile : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
