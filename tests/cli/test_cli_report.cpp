@@ -213,9 +213,9 @@ TEST(LongCliReport, SpoiltPartShows) {
 
 // Claim: translucency stays cheap beside plain paint: of a marble ball of 20k samples at 192 x 192 pixels the
 // shading costs at most 5 times lambert's by the dual tree and 2.5 times by the surface cache, the whole job
-// at most 2.5 times. Source: measured with this test's command, three times: 2.5 to 2.7, 1.2 to 1.3, 1.53
-// to 1.56; ratios of one round each, so that the machine cancels. Tolerance: about twice that, for machines
-// shared with other tests. Fails if: points are evaluated one by one (the classic traversal's shading is 9
+// at most 3 times. Source: measured with this test's command, three times: 2.5 to 2.7, 1.2 to 1.3, 2.3 to 2.6
+// (the job of lambert is a fifth shorter since only the layers that are asked for are written); ratios of one round
+// each, so that the machine cancels. Tolerance: about twice that for the shading, for machines shared with other tests. Fails if: points are evaluated one by one (the classic traversal's shading is 9
 // times lambert's), or sampling takes three times as long.
 TEST(CliReport, RatiosStaySmall) {
   const SceneFolder folder;
@@ -229,7 +229,7 @@ TEST(CliReport, RatiosStaySmall) {
   EXPECT_LT(std::stod(cell(table, 1, "shading_ratio_min")), 5);
   EXPECT_LT(std::stod(cell(table, 3, "shading_ratio_min")), 2.5);
 #ifndef __SANITIZE_ADDRESS__  // whose checks make sampling dearer than loading: 2.6
-  EXPECT_LT(std::stod(cell(table, 1, "job_ratio_min")), 2.5);
+  EXPECT_LT(std::stod(cell(table, 1, "job_ratio_min")), 3);
 #endif
 }
 
