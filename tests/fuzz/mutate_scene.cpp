@@ -240,6 +240,7 @@ void change(Json& scene, Random& random) {
       scene["mm_per_unit"] = magnitude(random);
       return;
     case 8:
+      if (!scene.contains("media") || !scene["media"].is_object()) scene["media"] = Json::object();
       scene["media"][random() % 2 == 0 ? "a" : "b"] =
           Json{{"sigma_a", amounts(random)}, {"sigma_s_prime", amounts(random)}};
       return;
