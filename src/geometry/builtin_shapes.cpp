@@ -76,7 +76,7 @@ class Icosphere {
 
 SourceMesh tessellate(const SphereShape& sphere, const std::string& name) {
   require_positive(sphere.radius, "radius of a sphere", name);
-  Icosphere unit(6);  // 81,920 triangles: area .99995 of the sphere's
+  Icosphere unit(sphere.fineness);
   SourceMesh mesh;
   for (const Vec3d& direction : unit.vertices) {
     mesh.positions.push_back(sphere.center + sphere.radius * direction);
@@ -125,7 +125,7 @@ SourceMesh tessellate(const QuadShape& quad, const std::string& name) {
 SourceMesh tessellate(const TorusShape& torus, const std::string& name) {
   require_positive(torus.major_radius, "major radius of a torus", name);
   require_positive(torus.minor_radius, "minor radius of a torus", name);
-  constexpr std::uint32_t around = 256, across = 128;
+  const std::uint32_t around = 4u << torus.fineness, across = 2u << torus.fineness;
   constexpr double turn = 2 * std::numbers::pi;
   SourceMesh mesh;
   for (std::uint32_t i = 0; i < around; ++i) {

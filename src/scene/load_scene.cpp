@@ -68,6 +68,22 @@ void read_surroundings(const Value& value, std::vector<Light>& lights) {
   if (radiance != Rgb{}) lights.push_back({"surroundings", Surroundings{radiance}, value.place()});
 }
 
+/// A few balls are as round as float vertices make them; hundreds share the memory of one hundred.
+void share_triangles(std::vector<Shape>& shapes) {
+  constexpr double kTriangles = 8e6, kFinestTriangles = 81920;
+  const auto for_each_curved = [&](const auto& use) {
+    for (Shape& shape : shapes) {
+      if (auto* sphere = std::get_if<SphereShape>(&shape.source)) use(sphere->fineness);
+      if (auto* torus = std::get_if<TorusShape>(&shape.source)) use(torus->fineness);
+    }
+  };
+  double triangles = 0;
+  for_each_curved([&](int&) { triangles += kFinestTriangles; });
+  int fineness = kFinest;
+  for (; fineness > kCoarsest && triangles > kTriangles; triangles /= 4) --fineness;
+  for_each_curved([&](int& of_shape) { of_shape = fineness; });
+}
+
 Scene read_scene(const Document& document) {
   const ObjectReader reader(Value(document, document.root, ""), "scene");
   Scene scene;
@@ -84,6 +100,7 @@ Scene read_scene(const Document& document) {
   scene.shapes = read_named<Shape>(
       reader.find("shapes"), "shape",
       [&](const Value& value, const std::string& name) { return read_shape(value, name, context); });
+  share_triangles(scene.shapes);
   scene.lights = read_named<Light>(
       reader.find("lights"), "light",
       [&](const Value& value, const std::string& name) { return read_light(value, name, mm_per_unit); });

@@ -11,11 +11,13 @@ struct AddSource {
   void operator()(const MeshFile& mesh) const {
     key.add(mesh.path).add(read_mesh_bytes(mesh.path)).add(mesh.fill_holes).add(mesh.fit_size.value_or(0));
   }
-  void operator()(const SphereShape& s) const { key.add(s.center).add(s.radius); }
+  void operator()(const SphereShape& s) const { key.add(s.center).add(s.radius).add(s.fineness); }
   void operator()(const BoxShape& s) const { key.add(s.low).add(s.high); }
   void operator()(const QuadShape& s) const { key.add(s.corner).add(s.u).add(s.v); }
   void operator()(const SlabShape& s) const { key.add(s.center).add(s.width).add(s.depth).add(s.thickness); }
-  void operator()(const TorusShape& s) const { key.add(s.center).add(s.major_radius).add(s.minor_radius); }
+  void operator()(const TorusShape& s) const {
+    key.add(s.center).add(s.major_radius).add(s.minor_radius).add(s.fineness);
+  }
 };
 
 }  // namespace

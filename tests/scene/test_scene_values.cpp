@@ -28,6 +28,23 @@ TEST(SceneValues, EmptySceneHasDefaults) {
   EXPECT_EQ(scene.file, "test.json");
 }
 
+// Claim: built-in curved shapes take at most 8 million triangles together, until each has the fewest. Fails if
+// each of 300 balls is as fine as a lone one (4.5 GB).
+TEST(SceneValues, ManyBallsAreCoarserThanFew) {
+  const auto fineness_of = [](int balls) {
+    std::string shapes;
+    for (int i = 0; i < balls; ++i) shapes += R"({"sphere": {"radius": 1}}, )";
+    const Scene scene = parse(R"({"shapes": [)" + shapes + R"({"torus": {"major_radius": 2, "minor_radius": 1}}]})");
+    const int of_torus = std::get<TorusShape>(scene.shapes.back().source).fineness;
+    EXPECT_EQ(std::get<SphereShape>(scene.shapes.front().source).fineness, of_torus);
+    return of_torus;
+  };
+  EXPECT_EQ(fineness_of(96), kFinest);
+  EXPECT_EQ(fineness_of(97), kFinest - 1);
+  EXPECT_EQ(fineness_of(299), kFinest - 1);
+  EXPECT_EQ(fineness_of(2000), kCoarsest);
+}
+
 // Claim: the presets hold the numbers of Jensen et al. 2001. Source: their figure 5; two whole rows and a sum
 // over all of them, typed anew from the table in channel order. Fails if sigma_a and sigma_s_prime change
 // places.
