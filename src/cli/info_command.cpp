@@ -9,7 +9,9 @@ namespace opaline {
 void info_command(const InfoArguments& arguments) {
   const Scene scene = load_scene(arguments.scene, arguments.overrides);
   const World world = make_world(scene);
-  print_plan(arguments.log, scene, make_plan(scene, world));
+  const Plan plan = make_plan(scene, world);
+  print_plan(arguments.log, scene, plan);
+  print_plates(arguments.log, scene, compare_plates(scene, world, plan));
   if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
 }
 

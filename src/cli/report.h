@@ -10,6 +10,7 @@
 #include "cli/log.h"
 #include "opaline/core/stopwatch.h"
 #include "opaline/render/plan.h"
+#include "opaline/render/plate_model.h"
 #include "opaline/session/measured_error.h"
 #include "opaline/session/target_error.h"
 #include "opaline/session/time_budget.h"
@@ -18,6 +19,9 @@ namespace opaline {
 
 /// What the scene requires and why, then the plan's warnings; nothing but the warnings with --quiet.
 void print_plan(const Log& log, const Scene& scene, const Plan& plan);
+
+/// The model's own error in thin plates, two lines each.
+void print_plates(const Log& log, const Scene& scene, const std::vector<PlateModel>& plates);
 
 /// What was kept from before and what was not, a line each, and a warning unless it is empty; with --quiet
 /// the warning alone.

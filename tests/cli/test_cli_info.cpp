@@ -29,6 +29,22 @@ TEST(CliInfo, PlanAsTextAndJson) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
+// Claim: the model's error in a thin plate is said, beside random walks; not where a plate is thick, or a body is
+// none. Fails if: the truth is left out, or a ball is taken for a plate.
+TEST(CliInfo, ModelErrorOfPlates) {
+  const std::string plate = std::string(OPALINE_SCENES_DIR) + "/backlit-slab.json";
+  const Outcome thin = run_program({"info", plate});
+  EXPECT_TRUE(contains(thin.out, "model error slab is a plate 1.85 mm thick: 3.08 1.85 2.64 mean free paths"))
+      << thin.out;
+  EXPECT_TRUE(contains(thin.out, "random walks, the truth: ")) << thin.out;
+  const nlohmann::json event = event_of(events_of(run_program({"info", plate, "--log", "json"}).out), "plate");
+  EXPECT_GT(event["profile"]["back"][1], .8);
+  EXPECT_LT(event["random_walks"]["back"][1], .5);
+  const Outcome thick = run_program({"info", plate, "--set", "media.jade.subsurface_radius=.1"});
+  EXPECT_FALSE(contains(thick.out, "model error")) << thick.out;
+  EXPECT_FALSE(contains(run_program({"info", SceneFolder().scene}).out, "model error"));
+}
+
 // Claim: a plan's warnings are on stderr, or events. Source: plan.h. Fails if: warnings are dropped.
 TEST(CliInfo, WarningsAreSaid) {
   const SceneFolder folder;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/diffusion/slab_walks.h"
+
+#include <cmath>
+
+#include "opaline/core/random.h"
+#include "opaline/diffusion/fresnel.h"
+
+namespace opaline {
+namespace {
+
+/// Numbers of one walk.
+class WalkNumbers {
+ public:
+  explicit WalkNumbers(std::uint64_t walk) : walk_(hash_bits(3003, walk)) {}
+  double next() { return unit_double(hash_bits(walk_, count_++)); }
+
+ private:
+  std::uint64_t walk_, count_ = 0;
+};
+
+/// Cosine inside of light that comes from everywhere and enters.
+double entering_cosine(double eta, WalkNumbers& numbers) {
+  for (;;) {
+    const double cosine = std::sqrt(1 - numbers.next());
+    if (numbers.next() >= fresnel_transmittance(cosine, eta)) continue;
+    const double sine = std::sqrt(1 - cosine * cosine) / eta;
+    return std::sqrt(std::max(0.0, 1 - sine * sine));
+  }
+}
+
+enum class End { absorbed, back, through };
+
+End walk_through_slab(double reduced_albedo, double thickness, double eta, WalkNumbers& numbers) {
+  double depth = 0, cosine = entering_cosine(eta, numbers);
+  for (;;) {
+    depth -= std::log(1 - numbers.next()) * cosine;
+    while (depth < 0 || depth > thickness) {
+      // Seen from inside, "outside" is the plate.
+      if (numbers.next() >= fresnel_reflectance(std::abs(cosine), 1 / eta))
+        return depth < 0 ? End::back : End::through;
+      depth = depth < 0 ? -depth : 2 * thickness - depth;
+      cosine = -cosine;
+    }
+    if (numbers.next() >= reduced_albedo) return End::absorbed;
+    cosine = 1 - 2 * numbers.next();
+  }
+}
+
+}  // namespace
+
+SlabLight slab_by_walks(double reduced_albedo, double optical_thickness, double eta, std::size_t walks) {
+  std::size_t back = 0, through = 0;
+  for (std::size_t walk = 0; walk < walks; ++walk) {
+    WalkNumbers numbers(walk);
+    const End end = walk_through_slab(reduced_albedo, optical_thickness, eta, numbers);
+    back += end == End::back ? 1 : 0;
+    through += end == End::through ? 1 : 0;
+  }
+  return {double(back) / double(walks), double(through) / double(walks)};
+}
+
+SlabLight slab_by_profile(const ChannelProfile& profile, double thickness) {
+  const double total = total_diffuse_reflectance(profile);
+  return {total, total - diffuse_reflectance_within(profile, thickness)};
+}
+
+}  // namespace opaline
