@@ -30,7 +30,7 @@ constexpr float half_max = 65504.0f;
 
 /// ZIP compresses 16 rows together. A strip has many of them, for all threads, as far as memory is not felt.
 constexpr int block_rows = 16, most_blocks = 32;
-constexpr std::size_t strip_bytes = std::size_t(16) << 20;
+constexpr std::size_t strip_bytes = std::size_t(8) << 20;
 
 /// The file under OpenEXR's writer. It remembers the first failure, since the writer's destructor, which
 /// writes last, does not tell.

@@ -41,4 +41,11 @@ Ray CameraRays::ray(int x, int y, int sample) const {
   return {Vec3f(position_), Vec3f(forward_ + right_ * across + down_ * below)};
 }
 
+CameraRays::FilmPlace CameraRays::film_place(const Vec3d& point) const {
+  const Vec3d towards = point - position_;
+  const double depth = dot(towards, forward_);
+  return {center_x_ + dot(towards, right_) / (dot(right_, right_) * depth),
+          center_y_ + dot(towards, down_) / (dot(down_, down_) * depth), depth};
+}
+
 }  // namespace opaline

@@ -19,6 +19,13 @@ class CameraRays {
   /// x, y: pixel in the whole picture; sample in [0, samples_per_pixel).
   Ray ray(int x, int y, int sample) const;
 
+  /// Where a point of the world is seen: pixels from the picture's top left, and the depth Z, <= 0 behind the camera,
+  /// where x and y mean nothing.
+  struct FilmPlace {
+    double x, y, depth;
+  };
+  FilmPlace film_place(const Vec3d& point) const;
+
  private:
   Vec3d position_, forward_, right_, down_;  // right_ and down_: one pixel on the film plane at depth 1
   double center_x_, center_y_;

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+
+#include "opaline/geometry/world.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// Pixels of the rendered part that may see something, at least as many as do: by a mesh of 64 x 64 cells over it,
+/// from the corners of all triangles. All where lights or surroundings are seen, or something reaches behind the camera.
+std::size_t seen_pixels(const Scene& scene, const World& world);
+
+}  // namespace opaline
