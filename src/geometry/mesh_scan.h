@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A first pass over a mesh file's bytes, before OpenMesh sees them. OpenMesh 9 drops vertices that are not
-// numbers (which shifts every later index), faces with bad indices and continued lines without an error,
-// trusts the counts of a header, and reads coordinates as float. So a scan checks every count against the
+// OBJ, which is read in one pass, and a first pass over the bytes of the other mesh files, before OpenMesh sees
+// them. OpenMesh 9 drops vertices that are not numbers (which shifts every later index) and faces with bad
+// indices without an error, trusts the counts of a header, and reads coordinates as float. So a scan checks every count against the
 // file's length, every coordinate and every index; keeps coordinates in double; and blanks in the bytes what
 // OpenMesh would stumble over. read_mesh then compares what OpenMesh returned with the scan.
 #pragma once
@@ -14,6 +14,7 @@
 
 #include "opaline/core/error.h"
 #include "opaline/core/vec3.h"
+#include "source_mesh.h"
 
 namespace opaline {
 
@@ -26,14 +27,16 @@ struct MeshScan {
   std::uint64_t corners = 0;     ///< CornerHash over the faces; STL: 0
   std::uint64_t faces = 0;       ///< the same with where each face ends; STL: 0
   bool vertex_normals = false;   ///< OpenMesh should deliver vertex normals
-  bool corner_normals = false;   ///< they belong to a face's corners (OBJ)
   bool binary = false;           ///< OpenMesh should read binary STL
   std::vector<std::string> warnings;
 };
 
-/// The scans of the four formats; `bytes` is the whole file and is edited as said above.
+/// bytes: the whole file; its continued lines are joined.
+/// error Error{bad_input} naming the file and the line
+SourceMesh read_obj(const std::string& path, std::string& bytes);
+
+/// The scans of the other formats; `bytes` is the whole file and is edited as said above.
 /// error Error{bad_input} naming the file, and the line where the format has lines
-MeshScan scan_obj(const std::string& path, std::string& bytes);
 MeshScan scan_ply(const std::string& path, std::string& bytes);
 MeshScan scan_stl(const std::string& path, std::string& bytes);
 MeshScan scan_off(const std::string& path, std::string& bytes);

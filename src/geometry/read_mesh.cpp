@@ -24,13 +24,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// read: all by itself, or scan: and OpenMesh reads.
 struct Format {
   const char* extension;
+  SourceMesh (*read)(const std::string&, std::string&);
   MeshScan (*scan)(const std::string&, std::string&);
 };
 
-constexpr std::array<Format, 4> formats{
-    {{"obj", scan_obj}, {"ply", scan_ply}, {"stl", scan_stl}, {"off", scan_off}}};
+constexpr std::array<Format, 4> formats{{{"obj", read_obj, nullptr},
+                                         {"ply", nullptr, scan_ply},
+                                         {"stl", nullptr, scan_stl},
+                                         {"off", nullptr, scan_off}}};
 
 const Format& format_of(const std::string& path) {
   std::string extension = fs::path(path).extension().string();
@@ -130,6 +134,13 @@ SourceMesh with_faces_of(MeshScan scan, const SourceMesh& before) {
           .warnings = std::move(scan.warnings)};
 }
 
+/// Indices of edges must fit 32 bits, OpenMesh's are signed.
+void require_indexable(const std::string& path, std::size_t vertices, std::size_t triangles) {
+  constexpr std::size_t limit = std::size_t(1) << 30;
+  if (vertices > limit || triangles > limit)
+    throw bad_file(path, "the mesh is too large", "at most 2^30 vertices and triangles");
+}
+
 }  // namespace
 
 std::string read_mesh_bytes(const std::string& path) {
@@ -154,11 +165,13 @@ std::string read_mesh_bytes(const std::string& path) {
 SourceMesh read_mesh(const std::string& path, const SourceMesh* before) {
   const Format& format = format_of(path);
   std::string bytes = read_mesh_bytes(path);
+  if (format.read != nullptr) {
+    SourceMesh mesh = format.read(path, bytes);
+    require_indexable(path, mesh.positions.size(), mesh.triangles.size());
+    return mesh;
+  }
   MeshScan scan = format.scan(path, bytes);
-  constexpr std::size_t limit = std::size_t(1)
-                                << 30;  // indices of edges must fit 32 bits, OpenMesh's are signed
-  if (scan.positions.size() > limit || scan.triangles > limit)
-    throw bad_file(path, "the mesh is too large", "at most 2^30 vertices and triangles");
+  require_indexable(path, scan.positions.size(), scan.triangles);
   if (before != nullptr && has_faces_of(scan, *before)) return with_faces_of(std::move(scan), *before);
   SoupImporter importer(scan);
   if (!read_with_openmesh(bytes, format, scan, importer))

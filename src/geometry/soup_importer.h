@@ -76,16 +76,10 @@ class SoupImporter final : public OpenMesh::IO::BaseImporter {
   void add_texture_information(int, std::string) override {}
 
  private:
-  std::uint32_t variant(std::uint32_t vertex, const Vec3f& normal);
-
-  bool vertex_normals_, corner_normals_;
+  bool vertex_normals_;
   SourceMesh mesh_;
   std::size_t vertices_ = 0, collapsed_ = 0;
   CornerHash hash_;
-  // OBJ gives normals to corners: a vertex met with several normals gets a copy for each, chained here
-  std::vector<std::uint32_t> next_variant_;
-  std::vector<std::pair<std::uint32_t, Vec3f>> pending_;  // corner normals of the face to come
-  VHandles scratch_;
 };
 
 }  // namespace opaline

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wavefront OBJ: v, vn and f are read; what else a file says is counted and said.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_set>
+#include <utility>
+
+#include "mesh_scan.h"
+#include "text_cursor.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::array<std::string_view, 12> silent{"vt", "vp",  "g",      "o",        "s",        "usemtl",
+                                                  "mg", "lod", "mtllib", "c_interp", "d_interp", "vc"};
+
+constexpr std::int64_t kNoNormal = -1;
+
+/// Faces give normals to their corners: a vertex met with several gets a copy for each, behind all vertices.
+class VertexVariants {
+ public:
+  explicit VertexVariants(SourceMesh& mesh) : mesh_(mesh), next_(mesh.positions.size(), kUnmet) {
+    mesh.normals.resize(mesh.positions.size());
+  }
+
+  /// The copy of the vertex that has this normal.
+  std::uint32_t of(std::uint32_t vertex, const Vec3f& normal) {
+    if (next_[vertex] == kUnmet) {
+      next_[vertex] = kLast;
+      mesh_.normals[vertex] = normal;
+      return vertex;
+    }
+    std::uint32_t at = vertex;
+    while (mesh_.normals[at] != normal && next_[at] != kLast) at = next_[at];
+    if (mesh_.normals[at] == normal) return at;
+    next_[at] = std::uint32_t(mesh_.positions.size());
+    next_.push_back(kLast);
+    mesh_.normals.push_back(normal);
+    mesh_.positions.push_back(Vec3d(mesh_.positions[vertex]));
+    return next_[at];
+  }
+
+ private:
+  static constexpr std::uint32_t kUnmet = 0xffffffff, kLast = 0xfffffffe;
+
+  SourceMesh& mesh_;
+  std::vector<std::uint32_t> next_;  // of a vertex's copies
+};
+
+class ObjReader {
+ public:
+  ObjReader(const std::string& path, std::string& bytes) : path_(path), bytes_(bytes) {}
+
+  SourceMesh run() {
+    if (bytes_.find('\0') != bytes_.npos)
+      throw bad_file(path_, "this is not an OBJ file", "text", "binary data");
+    join_continued_lines();
+    for (TextCursor at(bytes_); !at.at_end(); at.next_line()) statement(at);
+    finish();
+    return std::move(mesh_);
+  }
+
+ private:
+  struct Corner {
+    std::int64_t vertex, normal;  // from 0; kNoNormal
+  };
+
+  /// A backslash at the end of a line continues it.
+  void join_continued_lines() {
+    for (std::size_t at = bytes_.find('\\'); at != bytes_.npos; at = bytes_.find('\\', at + 1)) {
+      const std::size_t newline = bytes_.compare(at + 1, 1, "\r") == 0 ? at + 2 : at + 1;
+      if (newline >= bytes_.size() || bytes_[newline] != '\n') continue;
+      std::fill(bytes_.begin() + std::ptrdiff_t(at), bytes_.begin() + std::ptrdiff_t(newline) + 1, ' ');
+      joined_.push_back(newline);
+    }
+  }
+
+  int line(const TextCursor& at) const {
+    return at.line() + int(std::lower_bound(joined_.begin(), joined_.end(), at.offset()) - joined_.begin());
+  }
+
+  void statement(TextCursor& at) {
+    const std::string_view keyword = at.word();
+    if (keyword.empty() || keyword[0] == '#') return;
+    if (keyword == "v") return vertex(at);
+    if (keyword == "vn") return normal(at);
+    if (keyword == "f") return face(at);
+    if (std::find(silent.begin(), silent.end(), keyword) == silent.end() && unread_++ == 0) {
+      first_unread_ = quoted(keyword);
+      first_unread_line_ = line(at);
+    }
+    if (first_material_line_ == 0 && (keyword == "mtllib" || keyword == "usemtl"))
+      first_material_line_ = line(at);
+  }
+
+  Vec3d three_numbers(TextCursor& at, const char* what) {
+    Vec3d value;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::string_view word = at.word();
+      if (!parse_number(word, value[i]))
+        throw bad_line(path_, line(at), std::string("bad ") + what, "three numbers", quoted(word));
+    }
+    return value;
+  }
+
+  void vertex(TextCursor& at) {
+    const Vec3d position = three_numbers(at, "vertex");
+    check_.check(position, mesh_.positions.size(), line(at));
+    mesh_.positions.push_back(position);
+  }
+
+  /// One that is not finite, or huge, is none.
+  void normal(TextCursor& at) {
+    const Vec3d value = three_numbers(at, "normal");
+    const bool good = is_finite(value) && max_component(component_max(value, -value)) < coordinate_limit;
+    normals_.push_back(good ? Vec3f(value) : Vec3f());
+  }
+
+  /// One index of a corner, made zero-based; negative ones count back from the latest.
+  std::int64_t index(std::string_view text, std::size_t count, const char* what, const TextCursor& at) const {
+    std::int64_t value = 0;
+    if (!parse_integer(text, value) || value == 0 || value < -std::int64_t(count))
+      throw bad_line(path_, line(at), std::string("bad ") + what + " index in a face",
+                     "1 to the number of them, or -1 to -" + std::to_string(count), quoted(text));
+    return value > 0 ? value - 1 : std::int64_t(count) + value;
+  }
+
+  /// "v", "v/vt", "v//vn" or "v/vt/vn".
+  Corner corner(std::string_view text, const TextCursor& at) {
+    const std::size_t slash = text.find('/');
+    const std::int64_t vertex = index(text.substr(0, slash), mesh_.positions.size(), "vertex", at);
+    remember_highest(highest_vertex_, vertex, at);
+    if (slash == text.npos) return {vertex, kNoNormal};
+    const std::size_t second = text.find('/', slash + 1);
+    if (second == text.npos || second + 1 == text.size()) return {vertex, kNoNormal};
+    const std::int64_t normal = index(text.substr(second + 1), normals_.size(), "normal", at);
+    remember_highest(highest_normal_, normal, at);
+    return {vertex, normal};
+  }
+
+  struct Highest {
+    std::int64_t index = -1;
+    int line = 0;
+  };
+
+  void remember_highest(Highest& highest, std::int64_t index, const TextCursor& at) const {
+    if (index > highest.index) highest = {index, line(at)};
+  }
+
+  void face(TextCursor& at) {
+    corners_.clear();
+    for (std::string_view word = at.word(); !word.empty() && word[0] != '#'; word = at.word())
+      corners_.push_back(corner(word, at));
+    if (corners_.size() < 3)
+      throw bad_line(path_, line(at), "bad face", "at least three corners", std::to_string(corners_.size()));
+    keep_first_of_equal_corners();
+    if (corners_.size() < 3) {
+      ++mesh_.collapsed;
+      return;
+    }
+    for (std::size_t i = 2; i < corners_.size(); ++i) add_triangle({corners_[0], corners_[i - 1], corners_[i]});
+  }
+
+  /// The normals of its corners wait until all vertices are known.
+  void add_triangle(const std::array<Corner, 3>& corners) {
+    const auto& [a, b, c] = corners;
+    const std::size_t before = mesh_.triangles.size();
+    mesh_.triangles.push_back({std::uint32_t(a.vertex), std::uint32_t(b.vertex), std::uint32_t(c.vertex)});
+    if (corner_normals_.empty() && std::max({a.normal, b.normal, c.normal}) == kNoNormal) return;
+    corner_normals_.resize(before, {kNoNormal, kNoNormal, kNoNormal});
+    corner_normals_.push_back({a.normal, b.normal, c.normal});
+  }
+
+  void keep_first_of_equal_corners() {
+    constexpr std::size_t kFew = 16;  // to compare each with each
+    std::size_t kept = 0;
+    seen_.clear();
+    for (const Corner& corner : corners_) {
+      const auto end = corners_.begin() + std::ptrdiff_t(kept);
+      const bool is_new = corners_.size() <= kFew
+                              ? std::find_if(corners_.begin(), end, [&](const Corner& c) {
+                                  return c.vertex == corner.vertex;
+                                }) == end
+                              : seen_.insert(corner.vertex).second;
+      if (is_new) corners_[kept++] = corner;
+    }
+    corners_.resize(kept);
+  }
+
+  void finish() {
+    require_faces(path_, mesh_.positions.size(), mesh_.triangles.size() + mesh_.collapsed);
+    check_.throw_if_any(path_);
+    check_range(highest_vertex_, mesh_.positions.size(), "vertex");
+    check_range(highest_normal_, normals_.size(), "normal");
+    if (unread_ > 0)
+      mesh_.warnings.push_back(
+          path_ + ":" + std::to_string(first_unread_line_) + ": " + std::to_string(unread_) +
+          " statements that are no part of a polygon mesh are" + " left out, the first is " + first_unread_);
+    if (first_material_line_ > 0)
+      mesh_.warnings.push_back(path_ + ":" + std::to_string(first_material_line_) +
+                               ": materials and textures (mtllib, usemtl) are not read: the scene file says "
+                               "what a shape is made of");
+    if (!corner_normals_.empty()) give_normals();
+  }
+
+  void give_normals() {
+    corner_normals_.resize(mesh_.triangles.size(), {kNoNormal, kNoNormal, kNoNormal});
+    VertexVariants variants(mesh_);
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (const std::int64_t normal = corner_normals_[t][i]; normal != kNoNormal)
+          mesh_.triangles[t][i] = variants.of(mesh_.triangles[t][i], normals_[std::size_t(normal)]);
+  }
+
+  void check_range(const Highest& highest, std::size_t count, const char* what) const {
+    if (highest.index < std::int64_t(count)) return;
+    throw bad_line(path_, highest.line, std::string(what) + " index out of range in a face",
+                   "at most " + std::to_string(count), std::to_string(highest.index + 1));
+  }
+
+  const std::string& path_;
+  std::string& bytes_;
+  SourceMesh mesh_;
+  VertexCheck check_;
+  std::vector<std::size_t> joined_;  // offsets of the newlines taken out
+  std::vector<Vec3f> normals_;
+  std::vector<std::array<std::int64_t, 3>> corner_normals_;  // of triangles, up to the last that has one
+  std::vector<Corner> corners_;                              // of the face at hand
+  std::unordered_set<std::int64_t> seen_;
+  std::size_t unread_ = 0;
+  Highest highest_vertex_, highest_normal_;
+  std::string first_unread_;
+  int first_unread_line_ = 0, first_material_line_ = 0;
+};
+
+}  // namespace
+
+SourceMesh read_obj(const std::string& path, std::string& bytes) {
+  return ObjReader(path, bytes).run();
+}
+
+}  // namespace opaline
