@@ -124,7 +124,7 @@ void print_plates(const Log& log, const Scene& scene, const std::vector<PlateMod
     }
     const Rgb& optical = plate.optical_thickness;
     print_row("model error",
-              fmt::format("{} is a plate {:.3g} mm thick: {:.3g} {:.3g} {:.3g} mean free paths (R G B)",
+              fmt::format("{} is as thick as a plate of {:.3g} mm: {:.3g} {:.3g} {:.3g} mean free paths (R G B)",
                           plate.body, plate.thickness, optical.x, optical.y, optical.z));
     const auto group = std::ranges::find(scene.shapes, plate.body, &Shape::name);
     const ProfileKind kind = group != scene.shapes.end() && group->medium

@@ -85,6 +85,21 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
   group.spacing = std::sqrt(group.area / double(group.samples));
 }
 
+/// A body that is thinner than its samples are apart, on the whole: they stand in rows, and miss what light does across.
+void warn_of_thin_bodies(const World& world, const GroupPlan& group, std::vector<std::string>& warnings) {
+  double volume = 0;
+  for (const std::uint32_t m : group.meshes) {
+    if (world.reports[m].open_edges > 0) return;
+    volume += enclosed_volume(world.meshes[m]) * world.unit * world.unit * world.unit;
+  }
+  const double thickness = 2 * volume / group.area;
+  if (!(thickness < group.spacing)) return;
+  warnings.push_back(fmt::format(
+      "{}: it is {:.3g} mm thick in the mean and its samples are {:.3g} mm apart: they cannot tell its sides apart; "
+      "take {:.2g} samples (settings.samples, settings.max_samples)",
+      group.name, thickness, group.spacing, group.area / (thickness * thickness)));
+}
+
 void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan& group,
                          std::vector<std::string>& warnings) {
   for (const Light& light : scene.lights) {
@@ -232,6 +247,7 @@ Plan make_plan(const Scene& scene, const World& world) {
     choose_samples(scene, group, plan.warnings);
     if (scene.settings.method != Method::hierarchical) continue;
     warn_of_near_lights(scene, world, group, plan.warnings);
+    warn_of_thin_bodies(world, group, plan.warnings);
     // Measured at 1 and 10 million: samples, weights and tree while its nodes are written.
     plan.bytes += group.samples * (191 + 4 * scene.lights.size());
     if (scene.settings.evaluator == EvaluatorKind::surface_cache)

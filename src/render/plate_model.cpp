@@ -15,16 +15,6 @@ constexpr double kThick = 10;
 constexpr double kFlat = 200;
 constexpr std::size_t kWalks = 20000;  // standard error of a share: .35 % at most
 
-/// By the divergence theorem, about a corner of its own; in units of the world.
-double volume(const Mesh& mesh) {
-  double six_volumes = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3d &p = mesh.positions[a], &first = mesh.positions[mesh.triangles[0][0]];
-    six_volumes += dot(p - first, cross(mesh.positions[b] - first, mesh.positions[c] - first));
-  }
-  return std::abs(six_volumes) / 6;
-}
-
 PlateModel compare_plate(const GroupPlan& group, double thickness, const DiffuseProfile& medium) {
   PlateModel plate{group.name, thickness, {}, {}, {}};
   for (std::size_t c = 0; c < 3; ++c) {
@@ -46,7 +36,7 @@ std::vector<PlateModel> compare_plates(const Scene& scene, const World& world, c
   for (const GroupPlan& group : plan.groups) {
     if (group.meshes.size() != 1) continue;
     const double unit = world.unit, area = group.area,
-                 thickness = 2 * volume(world.meshes[group.meshes[0]]) * unit * unit * unit / area;
+                 thickness = 2 * enclosed_volume(world.meshes[group.meshes[0]]) * unit * unit * unit / area;
     const DiffuseProfile medium = make_diffuse_profile(scene.media[group.medium]);
     double longest = 0;
     for (std::size_t c = 0; c < 3; ++c)

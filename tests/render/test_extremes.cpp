@@ -2,6 +2,7 @@
 // The extremes that a whole picture can show: one row each, line, what is expected, how near.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "support/scenes.h"
@@ -172,6 +173,23 @@ TEST(Extremes, ScaleTroubleIsSaid) {
   EXPECT_NE(warning_of(Rgb(1e5)).find("mm_per_unit"), std::string::npos);
   EXPECT_NE(warning_of(Rgb(1e-4)).find("mm_per_unit"), std::string::npos);
   EXPECT_EQ(warning_of(Rgb(2)), "");
+}
+
+// Claim: samples farther apart than a body is thick are said, with how many it takes; an open surface has no
+// thickness. By hand: a wire of radius r, 2 r^2 pi / 2 r pi = r thick; a ball of 10 mm is 6.7 mm thick. Fails if: a cap
+// on the samples serves a body in silence that it cannot serve.
+TEST(Extremes, BodiesThinnerThanTheirSamplesAreSaid) {
+  Scene scene = lit_sphere();
+  const auto thin = [&] {
+    const Plan plan = make_plan(scene, make_world(scene));
+    return std::ranges::count_if(plan.warnings, [](const std::string& warning) {
+      return warning.find("it is 0.001 mm thick") != std::string::npos &&
+             warning.find("take 3.9e+06 samples") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(thin(), 0);
+  scene.shapes[0].source = TorusShape{{}, 100, .001};
+  EXPECT_EQ(thin(), 1);
 }
 
 // Claim: samples do not depend on the camera. Source: what went wrong in earlier renderers (a peer's samples

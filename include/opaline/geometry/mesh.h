@@ -34,6 +34,9 @@ struct CheckedMesh {
 /// Total area of the triangles, mm^2.
 double surface_area(const Mesh& mesh);
 
+/// Of a closed mesh, in cubes of its own unit, >= 0; by the divergence theorem about one of its corners.
+double enclosed_volume(const Mesh& mesh);
+
 struct Bounds {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
 };
