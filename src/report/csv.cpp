@@ -30,6 +30,12 @@ std::string quoted(const std::string& text) {
   return '"' + between + '"';
 }
 
+/// One cell, whatever commas are in it: what stands behind one may look like a formula.
+std::string note_line(const std::string& key, const std::string& value) {
+  const std::string note = "# " + key + ": " + value;
+  return (note.find_first_of(",\"") == std::string::npos ? note : quoted(note)) + '\n';
+}
+
 std::string line_of(const std::vector<std::string>& cells) {
   std::string line;
   for (std::size_t i = 0; i < cells.size(); ++i) line += (i > 0 ? "," : "") + quoted(cells[i]);
@@ -42,17 +48,27 @@ class CsvReader {
   CsvReader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
   bool at_end() const { return at_ >= text_.size(); }
-  bool at_note() const { return !at_end() && text_[at_] == '#'; }
+  bool at_note() const {
+    const std::string_view rest = text_.substr(std::min(at_, text_.size()));
+    return rest.starts_with('#') || rest.starts_with("\"# ");
+  }
 
   std::pair<std::string, std::string> note() {
-    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-    std::string_view line = text_.substr(at_ + 1, end - at_ - 1);
-    if (line.starts_with(' ')) line.remove_prefix(1);
-    at_ = end + 1;
+    std::string line;
+    if (text_[at_] == '"') {
+      line = written_cell().substr(1);
+      at_ = std::min(text_.find('\n', at_), text_.size());
+    } else {
+      const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+      line = text_.substr(at_ + 1, end - at_ - 1);
+      at_ = end;
+    }
+    if (line.starts_with(' ')) line.erase(0, 1);
+    ++at_;
     ++line_;
     const std::size_t colon = line.find(": ");
-    if (colon == std::string_view::npos) return {std::string(line), {}};
-    return {std::string(line.substr(0, colon)), std::string(line.substr(colon + 2))};
+    if (colon == std::string::npos) return {line, {}};
+    return {line.substr(0, colon), line.substr(colon + 2)};
   }
 
   std::vector<std::string> row() {
@@ -104,7 +120,7 @@ class CsvReader {
 
 std::string to_csv(const CsvTable& table) {
   std::string text;
-  for (const auto& [key, value] : table.notes) text += "# " + key + ": " + value + '\n';
+  for (const auto& [key, value] : table.notes) text += note_line(key, value);
   text += line_of(table.names) + line_of(table.units);
   for (const std::vector<std::string>& row : table.rows) text += line_of(row);
   return text;

@@ -29,13 +29,15 @@ TEST(Csv, RoundTrip) {
 }
 
 // Claim: a text that a spreadsheet would run as a formula is written behind an apostrophe and read without
-// it; figures with a sign stay figures. Source: csv.h. Fails if: a scene named =1+1.json opens as 2, or -1.5
-// as text.
+// it; figures with a sign stay figures; a note is one cell. Source: csv.h. Fails if: a scene named =1+1.json opens as 2,
+// or -1.5 as text, or a note's comma makes two cells.
 TEST(Csv, NamesAreNoFormulas) {
   const std::vector<std::string> cells{"=1+1.json", "+a",   "-a",   "@a",   "\t=a",
                                        "'=a",       "-1.5", "-inf", "it's", "'"};
-  const CsvTable table{{}, std::vector<std::string>(cells.size(), "n"), cells, {cells}};
+  const CsvTable table{{{"command", "bench a,=1+1"}}, std::vector<std::string>(cells.size(), "n"), cells, {cells}};
   const std::string text = to_csv(table);
+  EXPECT_TRUE(text.starts_with("\"# command: bench a,=1+1\"\n")) << text;
+  EXPECT_EQ(parse_csv(text, "test.csv").notes, table.notes);
   EXPECT_TRUE(text.ends_with("'=1+1.json,'+a,'-a,'@a,'\t=a,''=a,-1.5,-inf,it's,'\n")) << text;
   EXPECT_EQ(parse_csv(text, "test.csv").rows, table.rows);
 }
