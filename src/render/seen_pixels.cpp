@@ -2,7 +2,6 @@
 #include "render/seen_pixels.h"
 
 #include <algorithm>
-#include <array>
 #include <bitset>
 #include <cmath>
 #include <limits>
@@ -18,30 +17,32 @@ namespace {
 constexpr int kCells = 64;    // along each side
 constexpr double kApart = 3;  // pixels around a triangle: the filter's radius, and rounding
 
+/// The cells around a place of the picture; outside of the part -1 or kCells.
+struct CellBox {
+  int x0, x1, y0, y1;
+};
+
+int cell(double at, int low, int high) {
+  return int(std::clamp(std::floor((at - low) / (high - low) * kCells), -1.0, double(kCells)));
+}
+
+CellBox cells_around(const CameraRays::FilmPlace& place, const Rectangle& part) {
+  return {cell(place.x - kApart, part.x0, part.x1), cell(place.x + kApart, part.x0, part.x1),
+          cell(place.y - kApart, part.y0, part.y1), cell(place.y + kApart, part.y0, part.y1)};
+}
+
 class SeenCells {
  public:
-  explicit SeenCells(const Rectangle& part) : part_(part) {}
-
-  /// The cells of the box around three places of the picture.
-  void add(const std::array<CameraRays::FilmPlace, 3>& corners) {
-    const auto [x0, x1] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
-    const auto [y0, y1] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
-    if (!(x1 + kApart > part_.x0 && x0 - kApart < part_.x1 && y1 + kApart > part_.y0 && y0 - kApart < part_.y1))
-      return;
-    for (int row = cell(y0 - kApart, part_.y0, part_.y1); row <= cell(y1 + kApart, part_.y0, part_.y1); ++row)
-      for (int column = cell(x0 - kApart, part_.x0, part_.x1); column <= cell(x1 + kApart, part_.x0, part_.x1);
-           ++column)
-        seen_[std::size_t(row * kCells + column)] = true;
+  void add(const CellBox& a, const CellBox& b, const CellBox& c) {
+    const int x0 = std::max(0, std::min({a.x0, b.x0, c.x0})), x1 = std::min(kCells - 1, std::max({a.x1, b.x1, c.x1})),
+              y0 = std::max(0, std::min({a.y0, b.y0, c.y0})), y1 = std::min(kCells - 1, std::max({a.y1, b.y1, c.y1}));
+    for (int y = y0; y <= y1; ++y)
+      for (int x = x0; x <= x1; ++x) seen_[std::size_t(y * kCells + x)] = true;
   }
 
   double share() const { return double(seen_.count()) / (kCells * kCells); }
 
  private:
-  static int cell(double at, int low, int high) {
-    return int(std::clamp(std::floor((at - low) / (high - low) * kCells), 0.0, kCells - 1.0));
-  }
-
-  Rectangle part_;
   std::bitset<std::size_t(kCells* kCells)> seen_;
 };
 
@@ -52,15 +53,16 @@ std::size_t seen_pixels(const Scene& scene, const World& world) {
   const std::size_t all = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0);
   if (std::ranges::any_of(scene.lights, [](const Light& light) { return !is_delta(light); })) return all;
   const CameraRays rays(scene.camera, scene.film, world);
-  SeenCells cells(part);
-  std::vector<CameraRays::FilmPlace> places;
+  SeenCells cells;
+  std::vector<CellBox> around;  // each vertex
   for (const Mesh& mesh : world.meshes) {
-    places.clear();
+    around.clear();
     for (const Vec3d& position : mesh.positions) {
-      places.push_back(rays.film_place(position));
-      if (!(places.back().depth > 0)) return all;
+      const CameraRays::FilmPlace place = rays.film_place(position);
+      if (!(place.depth > 0)) return all;
+      around.push_back(cells_around(place, part));
     }
-    for (const auto& [a, b, c] : mesh.triangles) cells.add({places[a], places[b], places[c]});
+    for (const auto& [a, b, c] : mesh.triangles) cells.add(around[a], around[b], around[c]);
   }
   return std::size_t(std::ceil(cells.share() * double(all)));
 }
