@@ -25,6 +25,14 @@ using namespace opaline;
 
 constexpr double kTargets[] = {.05, .02, .01, .005}, kCheckedTarget = .02;
 
+double seconds_alone(const Scene& scene) {
+  Session session;
+  const Stopwatch watch;
+  session.edit(scene);
+  session.render();
+  return watch.cost({}).cpu_seconds;
+}
+
 Image truth_of(Scene scene) {
   Settings& settings = scene.settings;
   settings.samples = 400000;
@@ -45,6 +53,7 @@ CalibrationRow calibrate(const NamedScene& named, double target, const Image& tr
   row.choosing_seconds = watch.cost({}).cpu_seconds;
   const Image picture = session.render().image;
   row.seconds = watch.cost({}).cpu_seconds;
+  row.alone_seconds = seconds_alone(session.scene());
   row.predicted = chosen.predicted;
   row.measured = probe_difference(picture, truth);
   row.samples = chosen.samples;

@@ -8,8 +8,8 @@
 
 namespace opaline {
 
-/// Pixels of the rendered part that may see something, at least as many as do: by a mesh of 64 x 64 cells over it,
-/// from the corners of all triangles. All where lights or surroundings are seen, or something reaches behind the camera.
+/// Pixels of the rendered part that may see something, at least as many as do: by cells of 16 pixels
+/// or a 64th of its side, from the corners of all triangles. All where lights or surroundings are seen, or something reaches behind the camera.
 std::size_t seen_pixels(const Scene& scene, const World& world);
 
 }  // namespace opaline
