@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/geometry/world.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/check_world.h"
@@ -36,8 +37,21 @@ void check_shape(const World& world, const Shape& shape, std::size_t index) {
   }
 }
 
-double unit_of(double diagonal) {
-  return diagonal > 0 ? std::exp2(10 * std::floor(std::ilogb(diagonal) / 10.0)) : 1;
+double power_of_1024(double length) {
+  return length > 0 ? std::exp2(10 * std::floor(std::ilogb(length) / 10.0)) : 1;
+}
+
+/// Between the least and the largest translucent body: derivatives of their profiles have up to the eighth power of a
+/// length in them. Of the scene where nothing is translucent.
+double unit_of(const Scene& scene, std::span<const Bounds> boxes, double diagonal) {
+  double least = INFINITY, largest = 0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const double size = length(boxes[i].high - boxes[i].low);
+    if (!scene.shapes[i].medium || !(size > 0)) continue;
+    least = std::min(least, size);
+    largest = std::max(largest, size);
+  }
+  return power_of_1024(largest > 0 ? std::sqrt(least) * std::sqrt(largest) : diagonal);
 }
 
 }  // namespace
@@ -76,7 +90,7 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
     all.high = component_max(all.high, world.boxes[i].high);
   }
   const double diagonal = length(all.high - all.low);
-  world.unit = unit_of(diagonal);
+  world.unit = unit_of(scene, world.boxes, diagonal);
   world.diagonal = diagonal / world.unit;
   world.origin = stable_middle(all, diagonal);
   for (std::size_t i = 0; i < count; ++i) {

@@ -155,5 +155,26 @@ TEST(Scale, CamerasAndLightsOutOfReachAreRefused) {
             std::string::npos);
 }
 
+// Claim: bodies keep their picture inside of a shell 3e7 times as large, whose light they do not see. Tolerance: the
+// world's middle moves, and floats round otherwise, 1e-3 of the brightest pixel. Fails if: lengths are told in units of
+// the shell; the bodies' profiles then have derivatives that floats do not hold (NaN).
+TEST(Scale, BodiesInsideOfAHugeShell) {
+  Scene scene = plain_scene(ProfileKind::normalized_diffusion);
+  scene.shapes.pop_back();  // the floor
+  scene.lights.resize(1);
+  const Image alone = picture(scene);
+  Shape shell;
+  shell.name = "shell";
+  shell.source = SphereShape{{10, -20, 30}, 1e9};
+  shell.reflectance = {};
+  scene.shapes.push_back(shell);
+  const Image inside = picture(scene);
+  const std::size_t channels = alone.channels.size();
+  float brightest = 0;
+  for (std::size_t i = 0; i < alone.pixels.size(); i += channels) brightest = std::max(brightest, alone.pixels[i]);
+  for (std::size_t i = 0; i < alone.pixels.size(); i += channels)
+    ASSERT_NEAR(inside.pixels[i], alone.pixels[i], 1e-3 * double(brightest)) << i / channels;
+}
+
 }  // namespace
 }  // namespace opaline::test
