@@ -118,6 +118,7 @@ bool are_samples_of(const SurfaceSamples& samples, const SampledSurface& surface
 
 bool is_light_of(const LightTransfer& transfer, std::size_t samples) {
   return transfer.weights.size() == samples && is_amount(transfer.relative_error) &&
+         std::isfinite(transfer.edge_shift) &&
          std::ranges::all_of(transfer.weights, [](float weight) { return is_amount(weight); });
 }
 

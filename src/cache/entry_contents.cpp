@@ -164,13 +164,15 @@ std::optional<SurfaceSamples> get_samples(const CheckedEntry& entry, const Sampl
 void put_light(Hdf5Writer& file, const LightTransfer& transfer) {
   file.put("weights", std::span(transfer.weights));
   file.put("relative_error", transfer.relative_error);
+  file.put("edge_shift", transfer.edge_shift);
 }
 
 std::optional<LightTransfer> get_light(const CheckedEntry& entry, std::size_t samples) {
   auto weights = entry.get<float>("weights");
   const std::optional<double> error = entry.number("relative_error");
-  if (!weights || !error) return {};
-  LightTransfer transfer{std::move(*weights), *error};
+  const std::optional<double> shift = entry.number("edge_shift");
+  if (!weights || !error || !shift) return {};
+  LightTransfer transfer{std::move(*weights), *error, *shift};
   if (!is_light_of(transfer, samples)) return {};
   return transfer;
 }

@@ -11,7 +11,7 @@ namespace {
 
 // Raised when the header changes, or the members of a struct that an entry holds; stages have versions of
 // their own, in their keys.
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 constexpr std::string_view kMagic = "opaline cache entry, format ";
 constexpr std::string_view kPayload = "payload ";
 

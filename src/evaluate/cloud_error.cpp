@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evaluate/near_samples.h"
+#include "evaluate/point_sums.h"
 #include "opaline/sampling/sample_surface.h"
 
 namespace opaline {
@@ -23,28 +25,12 @@ constexpr float kCrease = 0.7f;
 constexpr double kAtCreases = 1.6, kManyCreases = 0.02, kLeast = 0.03, kMost = 10, kRough = 4;
 // Of the tolerance: the nodes' mean error, at least and at most.
 constexpr double kLeastHierarchy = 0.005, kMostHierarchy = 0.15;
+// Of what solid angles suggest: the mean error of the nodes of `classic`, at least and at most.
+constexpr double kLeastFlattened = 0.02, kMostFlattened = 4;
 // As much at stake is looked at more closely beside shadow edges (NearFieldSampler).
 constexpr float kRefined = 0.02f;
 // Darker than this part of the brightest, errors are absolute.
 constexpr float kDark = 1e-3f;
-
-RgbF irradiance_of(const TreeSample& s) {
-  return RgbF{s.flux[0], s.flux[1], s.flux[2]} / s.area;
-}
-
-/// Calls use(sample) for all within a distance of a point.
-template <class Use>
-void for_each_near(const Octree& tree, const Vec3f& p, float distance, const Use& use) {
-  for (std::uint32_t i = 0; i < tree.nodes.size();) {
-    const OctreeNode& node = tree.nodes[i];
-    const Vec3f d = p - node.center;
-    const Vec3f gap = component_max(Vec3f{std::abs(d.x), std::abs(d.y), std::abs(d.z)} - node.half, Vec3f{});
-    const bool is_near = dot(gap, gap) < distance * distance;
-    if (is_near && node.leaf)
-      for (std::uint32_t s = node.first; s < node.first + node.count; ++s) use(s);
-    i = is_near && !node.leaf ? i + 1 : node.skip;
-  }
-}
 
 struct Roughness {
   RgbF residual{}, square{};  // sums of squares
@@ -110,6 +96,29 @@ struct Differences {
   double wider = 0, finer = 0, expected = 0;
 };
 
+/// By the walk of `classic`; their errors are those of its nodes alone.
+std::vector<Exitance> classic_sums(const CloudErrorInput& input, const Trials& trials) {
+  return evaluate({.octree = input.octree,
+                   .kernel = input.kernel,
+                   .queries = trials.queries,
+                   .irradiance = trials.irradiance,
+                   .evaluator = EvaluatorKind::classic,
+                   .max_solid_angle = input.max_solid_angle,
+                   .cloud = {.scale = {}, .other_sheets = 0}});
+}
+
+/// How far `classic` sums are off finer ones, over what they expect of their nodes alone; 1 without nodes.
+float flattened_part(const std::vector<Exitance>& fine, const std::vector<Exitance>& classic, std::size_t c) {
+  double off = 0, expected = 0;
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    const float m = fine[i].exitance[c];
+    if (!(m > 0)) continue;
+    off += double(std::abs(classic[i].exitance[c] - m) / m);
+    expected += double(classic[i].error[c] / m) / double(kMeanDeviation);
+  }
+  return expected > 0 ? float(std::clamp(off / expected, kLeastFlattened, kMostFlattened)) : 1;
+}
+
 Differences differences(const std::vector<Exitance>& fine, const std::vector<Exitance>& coarse,
                         const std::vector<Exitance>& wide, const std::vector<bool>& refined, std::size_t c) {
   float brightest = 0;
@@ -153,6 +162,8 @@ CloudError tell_cloud_error(const CloudErrorInput& input) {
   const std::vector<Exitance> coarse =
       fine_tolerance < input.tolerance ? sums(input.kernel, input.tolerance) : fine;
   const std::vector<Exitance> wide = sums(input.kernel_of(kWider * spacing), fine_tolerance);
+  const std::vector<Exitance> classic =
+      input.evaluator == EvaluatorKind::classic ? classic_sums(input, trials) : std::vector<Exitance>{};
   std::vector<bool> refined;
   for (std::size_t i = 0; i < fine.size(); ++i)
     refined.push_back(is_refined(input.kernel, fine[i], trials.irradiance[i]));
@@ -170,6 +181,7 @@ CloudError tell_cloud_error(const CloudErrorInput& input) {
     const double least = std::max({kLeast, creases, std::min(1.0, kRough * double(result.roughness[c]))});
     if (input.kernel.split && d.expected > 0)
       result.scale[c] = float(std::clamp(d.wider / d.expected, least, kMost));
+    if (!classic.empty()) result.flattened[c] = flattened_part(fine, classic, c);
     if (fine_tolerance < input.tolerance)
       result.hierarchy[c] =
           float(std::clamp(d.finer / double(fine.size()) / input.tolerance, kLeastHierarchy, kMostHierarchy));

@@ -12,7 +12,9 @@ struct CloudErrorInput {
   const Octree& octree;
   const SplitKernel& kernel;
   std::function<SplitKernel(double spacing)> kernel_of;  ///< the same for another spacing
+  EvaluatorKind evaluator = EvaluatorKind::dual_tree;    ///< as EvaluateInput's
   double tolerance = 0.005;
+  double max_solid_angle = 0.05;
   InstructionSet instruction_set = InstructionSet::automatic;
 };
 

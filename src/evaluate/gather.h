@@ -64,7 +64,7 @@ class Gather {
       sums.spread[c] = spread[c];
       sums.squares[c] = squares[c];
       sums.sheets[c] = sheets[c];
-      sums.hierarchy[c] = kFlattened * flattened[c];
+      sums.hierarchy[c] = kFlattened * input_.cloud.flattened[c] * flattened[c];
       sums.near_flux[c] = near_flux[c];
       sums.near_squares[c] = near_squares[c];
     }
@@ -87,8 +87,9 @@ class Gather {
       if (r2 < near2_) k = _mm_mul_ps(k, _mm_set1_ps(add_near(i, r2, flux)));
       const __m128 contribution = _mm_mul_ps(k, flux);
       if (r2 < near2_ && !same_sheet(octree_.normals[i], query_.normal)) {
-        const __m128 part = _mm_mul_ps(contribution, _mm_set1_ps(1 - far_weight(std::sqrt(r2 / near2_))));
-        sheets_ = _mm_add_ps(sheets_, _mm_mul_ps(part, part));
+        const float moved2 = moved_distance2({dx, dy, dz}, octree_.normals[i], near2_);
+        const __m128 change = _mm_mul_ps(_mm_sub_ps(k, kernel_.table(moved2)), flux);
+        sheets_ = _mm_add_ps(sheets_, _mm_mul_ps(change, change));
       }
       sum = _mm_add_ps(sum, contribution);
       squares = _mm_add_ps(squares, _mm_mul_ps(contribution, contribution));

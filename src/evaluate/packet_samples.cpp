@@ -10,16 +10,18 @@ namespace opaline {
 namespace {
 
 // A sample of another sheet within h has no near field: its kernel is whole.
-void add_near_part(const EvaluateInput& input, float near2, const TreeSample& s, const Packet& packet,
+void add_near_part(const EvaluateInput& input, float near2, std::uint32_t sample, const Packet& packet,
                    std::size_t lane, PacketSums& sums) {
+  const TreeSample& s = input.octree.samples[sample];
   const Vec3f d = Vec3f{s.x, s.y, s.z} - Vec3f{packet.x[lane], packet.y[lane], packet.z[lane]};
   const float r2 = dot(d, d), missing = 1 - far_weight(std::sqrt(r2 / near2));
-  alignas(16) float kernel[4];
+  alignas(16) float kernel[4], moved[4];
   _mm_store_ps(kernel, input.kernel.table(r2));
+  _mm_store_ps(moved, input.kernel.table(moved_distance2(d, input.octree.normals[sample], near2)));
   for (std::size_t c = 0; c < 3; ++c) {
-    const float part = kernel[c] * missing * s.flux[c];
-    sums.exitance[c][lane] += part;
-    sums.sheets[c][lane] += part * part;
+    const float change = (kernel[c] - moved[c]) * s.flux[c];
+    sums.exitance[c][lane] += kernel[c] * missing * s.flux[c];
+    sums.sheets[c][lane] += change * change;
   }
 }
 
@@ -62,8 +64,7 @@ void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneK
   if (!input.kernel.split) return;
   for (std::size_t i = 0; i < count; ++i)
     for (std::uint32_t bits = wholes[i][1]; bits != 0; bits &= bits - 1)
-      add_near_part(input, lanes.near2, input.octree.samples[wholes[i][0]], packet,
-                    std::size_t(__builtin_ctz(bits)), sums);
+      add_near_part(input, lanes.near2, wholes[i][0], packet, std::size_t(__builtin_ctz(bits)), sums);
 }
 
 void set_exitance(const EvaluateInput& input, const PacketSums& from, std::span<const std::uint32_t> queries,

@@ -22,7 +22,7 @@ struct PointSums {
   std::array<F, 3> far{};      ///< far kernel times flux
   std::array<F, 3> spread{};   ///< squares of the samples' contributions around the mean of their neighbours
   std::array<F, 3> squares{};  ///< of the samples' contributions
-  std::array<F, 3> sheets{};   ///< of what samples of other sheets within h bring beyond the far kernel
+  std::array<F, 3> sheets{};   ///< of what samples of other sheets within h change by when they move
   std::array<F, 3> hierarchy{};  ///< error of the nodes taken as points
   /// Samples of the same sheet within h, weighted by (1 - r^2/h^2)^2: area, flux, flux^2 / area.
   F near_area{};
@@ -84,26 +84,36 @@ std::array<F, 3> surface_share(const SplitKernel& kernel, F near_area) {
   return share;
 }
 
+// A normal distribution's standard deviation over its mean deviation.
+inline constexpr float kMeanDeviation = 1.2533f;
+// A sample stands off its cell's middle by this fraction of the distance over which neighbours differ.
+inline constexpr float kOffset = 0.2f;
+
+/// The squared distance of a sample of another sheet once it is moved by its offset along its sheet, in no
+/// direction in particular. apart: from the point to the sample; near2: h^2, 6.25 squared spacings
+inline float moved_distance2(const Vec3f& apart, const Vec3f& normal, float near2) {
+  const float r2 = dot(apart, apart), across = dot(apart, normal),
+              along2 = std::max(0.0f, r2 - across * across);
+  const float offset = kOffset * std::sqrt(near2) / 2.5f;
+  return r2 + std::sqrt(2 * along2) * offset + offset * offset;
+}
+
 /// Standard error of channel c, in flux units. near: the part of the kernel that rests on the interpolated
 /// irradiance; variance: of the irradiance around the point.
 template <class F>
 F estimated_error(const PointSums<F>& sums, std::size_t c, F near, F variance, const CloudError& cloud) {
-  // A sample stands off its cell's middle by a fraction of the distance over which neighbours differ.
-  constexpr float kOffset = 0.2f;
   // Of an irradiance that varies around the point, what its mean misses.
   constexpr float kVariation = 0.2f;
   // Of an irradiance that neighbours do not foretell, what its sample says of the whole cell.
   constexpr float kRough = 0.8f;
-  // Of what a sample that faces the point from another sheet brings, what its cell does not.
-  constexpr float kSheets = 0.4f;
   const F local =
       kOffset * kOffset * larger(F{}, sums.spread[c]) + kVariation * kVariation * near * near * variance;
-  const float scale = cloud.scale[c], rough = kRough * cloud.roughness[c],
-              sheets = kSheets * cloud.other_sheets;
+  const float scale = cloud.scale[c], rough = kRough * cloud.roughness[c], sheets = cloud.other_sheets;
   // Samples within nodes are not in the sum of squares.
   const F squares = sums.squares[c] + cloud.far_squares[c] * sums.far[c] * sums.far[c];
-  return root(scale * scale * local + rough * rough * squares + sheets * sheets * sums.sheets[c] +
-              sums.hierarchy[c] * sums.hierarchy[c]);
+  const F shift = kMeanDeviation * cloud.light_shift[c] * sums.far[c];
+  return root(shift * shift + scale * scale * local + rough * rough * squares +
+              sheets * sheets * sums.sheets[c] + sums.hierarchy[c] * sums.hierarchy[c]);
 }
 
 /// given: entered irradiance at the query, or null to interpolate every channel.

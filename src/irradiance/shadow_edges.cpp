@@ -155,6 +155,13 @@ void average(const IrradianceInput& input, std::uint32_t light, std::span<const 
   }
 }
 
+double relative_shift(double shift, std::span<const SurfaceSample> samples, std::span<const float> weights) {
+  double sum = 0;
+  for (std::size_t i = 0; shift != 0 && i < samples.size(); ++i)
+    sum += double(samples[i].area) * double(weights[i]);
+  return sum > 0 ? shift / sum : 0;
+}
+
 }  // namespace
 
 void refine_shadow_edges(const IrradianceInput& input, std::span<const std::vector<float>> unblocked,
@@ -180,8 +187,15 @@ void refine_shadow_edges(const IrradianceInput& input, std::span<const std::vect
     for (std::uint32_t l = 0; l < transfers.size(); ++l) average(input, l, marks[l], points, refined[chunk]);
     advance(input.monitor, 0);
   });
+  std::vector<double> shifts(transfers.size());
   for (const std::vector<Refined>& part : refined)
-    for (const Refined& r : part) transfers[r.light].weights[r.sample] = r.weight;
+    for (const Refined& r : part) {
+      float& weight = transfers[r.light].weights[r.sample];
+      shifts[r.light] += double(input.samples[r.sample].area) * double(r.weight - weight);
+      weight = r.weight;
+    }
+  for (std::size_t l = 0; l < transfers.size(); ++l)
+    transfers[l].edge_shift = relative_shift(shifts[l], input.samples, transfers[l].weights);
 }
 
 }  // namespace opaline

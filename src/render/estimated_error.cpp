@@ -33,10 +33,15 @@ double mean_relative(const Pixels& lit) {
   const auto p99 = sorted.begin() + std::ptrdiff_t(double(sorted.size() - 1) * 0.99);
   std::ranges::nth_element(sorted, p99);
   const double floor = 1e-3 * *p99;
-  double sum = 0;
-  for (std::size_t i = 0; i < lit.error.size(); ++i) sum += lit.error[i] / std::max(lit.diffuse[i], floor);
   // Standard errors; a normal distribution's mean deviation is sqrt(2/pi) of that.
-  return sum / double(lit.error.size()) * std::sqrt(2 * std::numbers::inv_pi);
+  const double deviation = std::sqrt(2 * std::numbers::inv_pi);
+  double sum = 0;
+  for (std::size_t i = 0; i < lit.error.size(); ++i) {
+    // Where there is less than what is in doubt, all of it is.
+    const double bright = std::max(lit.diffuse[i], floor);
+    sum += std::min(deviation * lit.error[i], bright) / bright;
+  }
+  return sum / double(lit.error.size());
 }
 
 }  // namespace

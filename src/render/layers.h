@@ -19,6 +19,7 @@ struct PixelSample {
   RgbF albedo{}, irradiance{};
   RgbF error{};           ///< of diffuse, much the same for all rays of a pixel
   RgbF noise{};           ///< variance of diffuse that is each ray's own
+  RgbF bias{};            ///< signed error of diffuse that rays of a pixel share
   float translucent = 0;  ///< 1 on a translucent surface
   Vec3f normal{}, position{};
   float depth = 0;
@@ -45,7 +46,8 @@ inline std::vector<std::string> layer_names(Method method) {
 inline RgbF pixel_error(const PixelSample& sum, float all) {
   RgbF error = sum.error * all;
   for (std::size_t c = 0; c < 3; ++c)
-    if (sum.noise[c] > 0) error[c] = std::sqrt(error[c] * error[c] + sum.noise[c] * all * all);
+    if (sum.noise[c] > 0)
+      error[c] = std::sqrt(error[c] * error[c] + (sum.noise[c] + sum.bias[c] * sum.bias[c]) * all * all);
   return error;
 }
 
@@ -83,6 +85,7 @@ inline void add_sample(PixelSample& sum, const PixelSample& s) {
   sum.irradiance += s.irradiance;
   sum.error += s.error;
   sum.noise += s.noise;
+  sum.bias += s.bias;
   sum.translucent += s.translucent;
   sum.normal += s.normal;
   sum.position += s.position;

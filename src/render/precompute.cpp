@@ -2,6 +2,7 @@
 #include "opaline/render/precompute.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "evaluate/cloud_error.h"
@@ -74,12 +75,44 @@ SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& su
                            settings.near_irradiance);
 }
 
-CloudError cloud_error(const TranslucentGroup& group, const World& world, const Settings& settings) {
+namespace {
+
+// Few rays: more do not differ by half of the light by chance (shadow_edges.cpp).
+constexpr int kFewRays = 8;
+
+// LightTransfer::edge_shift of all lights together, as far as it is due to chance.
+std::array<float, 3> light_shift(const TranslucentGroup& group, const Scene& scene) {
+  std::array<double, 3> shift{}, sum{};
+  for (std::size_t l = 0; l < group.transfers.size(); ++l) {
+    const LightTransfer& transfer = group.transfers[l];
+    double light = 0;
+    for (std::size_t i = 0; i < transfer.weights.size(); ++i)
+      light += double(group.surface.samples[i].area) * double(transfer.weights[i]);
+    const bool chance = !is_delta(scene.lights[l]) && scene.settings.light_samples < kFewRays;
+    const Rgb colour = emission(scene.lights[l]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum[c] += colour[c] * light;
+      shift[c] += chance ? colour[c] * light * transfer.edge_shift : 0;
+    }
+  }
+  std::array<float, 3> relative{};
+  for (std::size_t c = 0; c < 3; ++c) relative[c] = sum[c] > 0 ? float(std::abs(shift[c]) / sum[c]) : 0;
+  return relative;
+}
+
+}  // namespace
+
+CloudError cloud_error(const TranslucentGroup& group, const World& world, const Scene& scene) {
+  const Settings& settings = scene.settings;
   const auto kernel = [&](double spacing) {
     return make_split_kernel(group.profile, spacing, world.diagonal, settings.near_field,
                              settings.near_irradiance);
   };
-  return tell_cloud_error({group.octree, group.kernel, kernel, settings.tolerance, settings.instruction_set});
+  CloudError error =
+      tell_cloud_error({group.octree, group.kernel, kernel, settings.evaluator, settings.tolerance,
+                        settings.max_solid_angle, settings.instruction_set});
+  error.light_shift = light_shift(group, scene);
+  return error;
 }
 
 Precompute precompute(const PrecomputeInput& input) {
@@ -105,7 +138,7 @@ Precompute precompute(const PrecomputeInput& input) {
 
     const Stopwatch octree_watch;
     group.octree = gather_flux(group.surface.samples, group.irradiance);
-    group.cloud = cloud_error(group, input.world, input.scene.settings);
+    group.cloud = cloud_error(group, input.world, input.scene);
     add_cost(octree, octree_watch.cost({}));
     result.groups.push_back(std::move(group));
   }

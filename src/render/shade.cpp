@@ -2,11 +2,14 @@
 #include "render/shade.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
+#include "evaluate/crease_error.h"
 #include "evaluate/surface_patch.h"
 #include "opaline/diffusion/fresnel.h"
 #include "render/direct_exitance.h"
+#include "render/selection_bias.h"
 
 namespace opaline {
 namespace {
@@ -73,6 +76,14 @@ bool needs_irradiance(const TranslucentGroup& group) {
   return group.surface_cache ? group.surface_cache->needs_irradiance() : group.kernel.needs_irradiance();
 }
 
+// What a near field misses beside creases, over the exitance, as a standard deviation.
+RgbF crease_deviation(const TranslucentGroup& group, const RenderInput& input) {
+  const Vec3f eye(into_world(input.world, input.scene.camera.position));
+  const std::array<float, 3> error =
+      crease_error({group.octree, group.kernel, group.profile, eye, input.scene.settings.instruction_set});
+  return RgbF{error[0], error[1], error[2]} * std::sqrt(float(std::numbers::pi) / 2);
+}
+
 }  // namespace
 
 Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers) : input_(input) {
@@ -86,6 +97,7 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
   for (const TranslucentGroup& group : input.groups) {
     near_fields_.emplace_back();
     if (needs_irradiance(group)) near_fields_.back().emplace(group);
+    creases_.push_back(crease_deviation(group, input));
   }
   for (std::size_t m = 0; m < input.world.meshes.size(); ++m) {
     Appearance appearance = appearance_of(input, entry_samplers, m);
@@ -155,10 +167,14 @@ Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<
                           const Pass& pass, HeldView::Surface* held) const {
   if (kind.group != nullptr) return evaluated(kind, surfaces, rays, held);
   if (kind.entries != nullptr)
-    return {
-        direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}), {}, {}, {}};
+    return {direct_exitance({*kind.entries, lighting_of(surfaces, kind.eta), pass.entry_samples}),
+            {},
+            {},
+            {},
+            {}};
   PointIrradianceInput lighting = lighting_of(surfaces, kind.eta);
-  if (input_.scene.settings.method != Method::hierarchical) return {{}, irradiance(lighting, held), {}, {}};
+  if (input_.scene.settings.method != Method::hierarchical)
+    return {{}, irradiance(lighting, held), {}, {}, {}};
   Lit lit;
   lit.error.resize(surfaces.points.size());
   if (has_visible_lights()) lit.noise.resize(surfaces.points.size());
@@ -191,14 +207,20 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces, std::s
   }
   const auto& near_field = near_fields_[std::size_t(&group - input_.groups.data())];
   const bool keeps = held != nullptr && input_.view->keeps_near_field && input_.view->has_room;
-  if (near_field)
-    near_field->refine(lighting, lit.irradiance, exitance, lit.noise, keeps ? &held->near_field : nullptr);
+  if (near_field) {
+    const std::vector<RgbF> noise = lit.noise;
+    const std::vector<std::uint32_t> refined = near_field->refine(
+        lighting, lit.irradiance, exitance, lit.noise, keeps ? &held->near_field : nullptr);
+    if (has_visible_lights() && !refined.empty())
+      lit.bias = selection_bias({group.kernel.own_irradiance, lit.irradiance, exitance, noise, refined});
+  }
   const bool traced = !lit.irradiance.empty();
+  const RgbF& creases = creases_[std::size_t(&group - input_.groups.data())];
   for (std::vector<RgbF>* values : {&lit.exitance, &lit.error, &lit.irradiance})
     values->reserve(exitance.size());
   for (const Exitance& e : exitance) {
     lit.exitance.push_back(e.exitance);
-    lit.error.push_back(e.error);
+    lit.error.push_back(component_min(e.error + e.exitance * creases, e.exitance));
     if (!traced) lit.irradiance.push_back(e.irradiance);
   }
   return lit;
@@ -241,6 +263,7 @@ void Shader::write(const Surfaces& surfaces, const Lit& lit, std::span<const Tra
     if (!lit.irradiance.empty()) sample.irradiance = lit.irradiance[i];
     if (!lit.error.empty()) sample.error = lit.error[i] * radiance;
     if (!lit.noise.empty()) sample.noise = lit.noise[i] * (radiance * radiance);
+    if (!lit.bias.empty()) sample.bias = lit.bias[i] * radiance;
     sample.translucent = appearance.translucent ? 1.0f : 0.0f;
     sample.normal = point.normal;
     sample.position = Vec3f(out_of_world(input_.world, Vec3d(point.position)));

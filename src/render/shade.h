@@ -63,6 +63,7 @@ class Shader {
     std::vector<RgbF> exitance;           // empty: albedo x irradiance
     std::vector<RgbF> irradiance, error;  // empty: not known
     std::vector<RgbF> noise;              // variance of the exitance at each point by itself; empty: none
+    std::vector<RgbF> bias;               // that the noise gives the exitance; empty: none
   };
 
   std::vector<Surfaces> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
@@ -87,7 +88,8 @@ class Shader {
   std::vector<Light> emitters_;  // those with an area
   RgbF surroundings_{};
   std::vector<std::optional<NearFieldSampler>> near_fields_;  // one a group; none where samples tell all
-  std::vector<Appearance> appearances_;                       // one a mesh
+  std::vector<RgbF> creases_;  // one a group: systematic error of the picture's near fields, relative
+  std::vector<Appearance> appearances_;  // one a mesh
   std::vector<Kind> kinds_;
 };
 

@@ -322,7 +322,7 @@ void Session::assemble() {
   for (Part& part : parts_)
     groups_.push_back({part.plan, part.profile, std::move(part.surface), std::move(part.transfers),
                        std::move(part.irradiance), std::move(part.octree), std::move(*part.kernel)});
-  for (TranslucentGroup& group : groups_) group.cloud = cloud_error(group, *world_, scene_.settings);
+  for (TranslucentGroup& group : groups_) group.cloud = cloud_error(group, *world_, scene_);
 }
 
 void Session::decide(const Part& part, const std::string& text) {

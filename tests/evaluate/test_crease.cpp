@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Across an edge of 90 degrees.
+#include "evaluate/crease_error.h"
 #include "support/clouds.h"
 #include "support/quadrature.h"
 
@@ -86,6 +87,53 @@ TEST(Crease, AgainstTheExactSum) {
       EXPECT_LE(over * profile.total.x, 1);
     }
   }
+}
+
+// Claim: crease_error tells the mean error that flat near fields leave on a cube under E = 1, to a factor of
+// 1.6. Source: the exact sum over the six faces, within h of the middle of an edge, times the part of the
+// surface that lies so near an edge. Tolerance: 32 trials, and walls taken for endless. Fails if: walls bring
+// what a border leaves out (an error of none), or trials are not weighted.
+TEST(Crease, IsToldByTheEstimate) {
+  const Cloud cloud(BoxShape{Vec3d(-10), Vec3d(10)}, 20000, 0, NormalMode::faceted);
+  const Octree octree = cloud.tree(RgbF(1));
+  const double h = 2.5 * cloud.surface.spacing();
+  const Line places = line(h);
+  for (const double ratio : {1., 4.}) {
+    const DiffuseProfile profile =
+        make_diffuse_profile(grey_medium(ratio * cloud.surface.spacing(), .01, 1.3));
+    const SplitKernel kernel = cloud.kernel(profile);
+    const std::vector<Exitance> values = brute_force(octree, kernel, places.queries);
+    double off = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      off += std::abs(double(values[i].exitance.x) /
+                          expected_at(profile.channels[0], 10 - std::abs(places.distance[i]), .3) -
+                      1);
+    const double measured = off / double(values.size()) * 4 * h / kSide,
+                 told = double(crease_error({octree, kernel, profile, Vec3f(1e3f, 1e3f, 1e3f)})[0]);
+    report("mean free path " + std::to_string(ratio) + " spacings, measured %", 100 * measured);
+    report("mean free path " + std::to_string(ratio) + " spacings, told %", 100 * told);
+    EXPECT_GT(told, measured / 1.6);
+    EXPECT_LT(told, measured * 1.6);
+  }
+}
+
+// Claim: beside a border and a wall at right angles on it the near field is whole: what a border cuts off at
+// no distance is half, and so is what a wall brings; a wall h away brings nothing. Source: symmetry.
+// Tolerance: rounding. Fails if: a ring's mass counts twice or not at all.
+TEST(Crease, HalvesOfTheNearField) {
+  const NearRings rings(make_diffuse_profile(grey_medium(1, .01, 1.3)), 2.5);
+  EXPECT_NEAR(rings.beyond_border(0)[0], .5, 1e-9);
+  EXPECT_NEAR(rings.on_wall(0)[0], .5, 1e-9);
+  EXPECT_EQ(rings.on_wall(2.5)[0], 0);
+  // Chords across the fold are shorter than the way round it.
+  for (const double d : {.25, .5, 1.}) EXPECT_GT(rings.on_wall(d)[0], rings.beyond_border(d)[0]);
+}
+
+// A cloud of a sphere has no creases.
+TEST(Crease, NoneOnASphere) {
+  const Cloud cloud(SphereShape{Vec3d(0), 10}, 2000);
+  const DiffuseProfile profile = make_diffuse_profile(grey_medium(1, .01, 1.3));
+  EXPECT_EQ(crease_error({cloud.tree(RgbF(1)), cloud.kernel(profile), profile, Vec3f(100)})[0], 0);
 }
 
 // Claim: 20,000 samples agree with 400,000 along the line across the edge. Source: convergence: h shrinks 4.5

@@ -84,6 +84,9 @@ struct CloudError {
   /// Error over what the contributions and the irradiance of neighbours differ by, in units of what is usual.
   std::array<float, 3> scale{1, 1, 1};
   std::array<float, 3> hierarchy{.1f, .1f, .1f};  ///< mean error of the tree's nodes over the tolerance
+  /// `classic`: what nodes taken as points leave out over what their solid angles suggest.
+  std::array<float, 3> flattened{1, 1, 1};
+  std::array<float, 3> light_shift{};  ///< systematic relative error of the irradiance
   float other_sheets = 1;  ///< 0: without the samples of other sheets within h
 };
 

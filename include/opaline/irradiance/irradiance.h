@@ -32,6 +32,10 @@ struct LightTransfer {
   /// RMS over the samples of the estimated standard error, over the mean; 0 for point and
   /// directional lights, and for a single light sample, which cannot tell.
   double relative_error = 0;
+  /// What the means over the cells beside shadow edges changed of the light in all: area times weight, summed
+  /// over the samples, relative. Neighbours that each have few rays differ by chance, too, and then the means
+  /// are a biased choice.
+  double edge_shift = 0;
 };
 
 /// One transfer per light. Cosines and Ft use the shading normal; which side a light is on, the geometric

@@ -68,8 +68,8 @@ Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF>
 SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,
                          const Settings& settings);
 
-/// Of a group with its tree and kernel.
-CloudError cloud_error(const TranslucentGroup& group, const World& world, const Settings& settings);
+/// Of a group with its transfers, tree and kernel.
+CloudError cloud_error(const TranslucentGroup& group, const World& world, const Scene& scene);
 
 /// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free
 /// path is below the sample spacing, `render` traces shadow rays for the irradiance at its points; this
