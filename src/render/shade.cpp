@@ -220,7 +220,7 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces, std::s
     values->reserve(exitance.size());
   for (const Exitance& e : exitance) {
     lit.exitance.push_back(e.exitance);
-    lit.error.push_back(component_min(e.error + e.exitance * creases, e.exitance));
+    lit.error.push_back(e.error + e.exitance * creases);
     if (!traced) lit.irradiance.push_back(e.irradiance);
   }
   return lit;
