@@ -79,8 +79,8 @@ void share_triangles(std::vector<Shape>& shapes) {
   };
   double triangles = 0;
   for_each_curved([&](int&) { triangles += kFinestTriangles; });
-  int fineness = kFinest;
-  for (; fineness > kCoarsest && triangles > kTriangles; triangles /= 4) --fineness;
+  int fineness = kMostFineness;
+  for (; fineness > kLeastFineness && triangles > kTriangles; triangles /= 4) --fineness;
   for_each_curved([&](int& of_shape) { of_shape = fineness; });
 }
 

@@ -39,10 +39,10 @@ TEST(SceneValues, ManyBallsAreCoarserThanFew) {
     EXPECT_EQ(std::get<SphereShape>(scene.shapes.front().source).fineness, of_torus);
     return of_torus;
   };
-  EXPECT_EQ(fineness_of(96), kFinest);
-  EXPECT_EQ(fineness_of(97), kFinest - 1);
-  EXPECT_EQ(fineness_of(299), kFinest - 1);
-  EXPECT_EQ(fineness_of(2000), kCoarsest);
+  EXPECT_EQ(fineness_of(96), kMostFineness);
+  EXPECT_EQ(fineness_of(97), kMostFineness - 1);
+  EXPECT_EQ(fineness_of(299), kMostFineness - 1);
+  EXPECT_EQ(fineness_of(2000), kLeastFineness);
 }
 
 // Claim: the presets hold the numbers of Jensen et al. 2001. Source: their figure 5; two whole rows and a sum

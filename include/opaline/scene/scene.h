@@ -73,13 +73,13 @@ struct MeshFile {
 
 /// Of a built-in curved shape: 4^fineness times as many triangles. 6 leaves .00005 of a sphere's area out, and each one
 /// less four times that.
-constexpr int kFinest = 6, kCoarsest = 4;
+constexpr int kMostFineness = 6, kLeastFineness = 4;
 
 // Built-in shapes; lengths in mm. `Slab` is a box named for its use: x and z extent, thickness along y.
 struct SphereShape {
   Vec3d center{};
   double radius = 1;
-  int fineness = kFinest;  ///< kCoarsest to kFinest
+  int fineness = kMostFineness;  ///< kLeastFineness to kMostFineness
   friend bool operator==(const SphereShape&, const SphereShape&) = default;
 };
 struct BoxShape {
@@ -98,7 +98,7 @@ struct SlabShape {
 struct TorusShape {  ///< axis along y
   Vec3d center{};
   double major_radius = 1, minor_radius = 0.25;
-  int fineness = kFinest;  ///< kCoarsest to kFinest
+  int fineness = kMostFineness;  ///< kLeastFineness to kMostFineness
   friend bool operator==(const TorusShape&, const TorusShape&) = default;
 };
 
