@@ -19,9 +19,9 @@ constexpr double kEvaluationShare = 0.6, kInterpolationShare = 0.4;
 // the part that interpolation still misses (measured, test_surface_cache).
 constexpr float kRiseError = 0.6f, kRest = 0.4f;
 // In near-field radii, over which the far kernel varies: patches longer than kReach could hide what lies
-// between their vertices; nodes closer than kMostFineness see the noise of the samples; a
+// between their vertices; nodes closer than kFinest see the noise of the samples; a
 // shadow's edge, as the near field blurs it, shows at vertices closer than kBlur.
-constexpr double kReach = 2, kMostFineness = 0.25, kBlur = 0.5;
+constexpr double kReach = 2, kFinest = 0.25, kBlur = 0.5;
 
 // Two vertices between which the light that depends on the irradiance at the place itself changes by more
 // than twice this part of all light may have a shadow's edge between them.
@@ -257,7 +257,7 @@ class Builder {
 
   // Keeps the lattice, or doubles it if its nodes were ill predicted by those of the one before.
   bool wants_more(Refined& r) {
-    const bool may_grow = longest_side(r.patch) > float(kMostFineness) * input_.kernel.radius * float(r.segments);
+    const bool may_grow = longest_side(r.patch) > float(kFinest) * input_.kernel.radius * float(r.segments);
     if (may_grow && is_ill_predicted(r)) {
       r.segments *= 2;
       return true;
