@@ -81,15 +81,16 @@ namespace {
 constexpr int kFewRays = 8;
 
 // LightTransfer::edge_shift of all lights together, as far as it is due to chance.
-std::array<float, 3> light_shift(const TranslucentGroup& group, const Scene& scene) {
+std::array<float, 3> light_shift(const TranslucentGroup& group, const World& world, const Scene& scene) {
+  const std::vector<Light> lights = recentred_lights(scene, world);  // as the weights are
   std::array<double, 3> shift{}, sum{};
   for (std::size_t l = 0; l < group.transfers.size(); ++l) {
     const LightTransfer& transfer = group.transfers[l];
     double light = 0;
     for (std::size_t i = 0; i < transfer.weights.size(); ++i)
       light += double(group.surface.samples[i].area) * double(transfer.weights[i]);
-    const bool chance = !is_delta(scene.lights[l]) && scene.settings.light_samples < kFewRays;
-    const Rgb colour = emission(scene.lights[l]);
+    const bool chance = !is_delta(lights[l]) && scene.settings.light_samples < kFewRays;
+    const Rgb colour = emission(lights[l]);
     for (std::size_t c = 0; c < 3; ++c) {
       sum[c] += colour[c] * light;
       shift[c] += chance ? colour[c] * light * transfer.edge_shift : 0;
@@ -111,7 +112,7 @@ CloudError cloud_error(const TranslucentGroup& group, const World& world, const 
   CloudError error =
       tell_cloud_error({group.octree, group.kernel, kernel, settings.evaluator, settings.tolerance,
                         settings.max_solid_angle, settings.instruction_set});
-  error.light_shift = light_shift(group, scene);
+  error.light_shift = light_shift(group, world, scene);
   return error;
 }
 

@@ -176,7 +176,8 @@ std::string entry_of(const EntryName& name, const std::string& listing, const st
 // or wraps.
 TEST(CacheForged, Listing) {
   const EntryName name{"light", kKey};
-  const std::string bytes(4 * kCount + 8, '\0'), error = "relative_error 1 x 8 at 3424\n";
+  const std::string bytes(4 * kCount + 16, '\0'),
+      error = "relative_error 1 x 8 at 3424\nedge_shift 1 x 8 at 3432\n";
   const ScratchFolder folder;
   const auto is_found = [&](const std::string& listing) {
     put_bytes(folder.file(file_name(name)), entry_of(name, listing, bytes));
@@ -185,7 +186,7 @@ TEST(CacheForged, Listing) {
   };
   EXPECT_TRUE(is_found("weights 600 x 4 at 1024\n" + error));
   for (const char* weights : {
-           "weights 600 x 4 at 1040\n",
+           "weights 600 x 4 at 1048\n",
            "weights 600 x 4 at 0\n",
            "weights 600 x 4 at 18446744073709551615\n",
            "weights 600 x 4 at 18446744073709550616\n",

@@ -270,13 +270,15 @@ TEST(Moving, AnchoredFrames) {
   EXPECT_TRUE(same_pixels(forth[1], cold_picture(other)));
 }
 
-// Claim: samples go along where the world's unit of length changes with them, as when another object leaves
-// for far away: no sample is placed anew, and the picture is as near to the cold one as after any move (2 %,
+// Claim: samples go along where the world's unit of length changes with them, as when a planet below
+// turns opaque: no sample is placed anew, and the picture is as near to the cold one as after any move (2 %,
 // RigidObject). Back again, it is the first picture. Fails if: carried positions, areas or radii stay in the
 // unit of the world they came from, or the picture's rays and lights do.
 TEST(Moving, IntoAWorldOfAnotherUnit) {
   Scene near = two_balls(), far = near;
-  far.shapes[2].to_world = {{20, 0, 0}, {0, 1, 0}, {0, 0, 20}, {}};
+  near.shapes.push_back(translucent("planet", SphereShape{{0, -5e4, 0}, 4e4}, 1));
+  far.shapes.push_back(near.shapes.back());
+  far.shapes.back().medium.reset();
   Session session;
   const Image first = picture_of(session, near);
   const Image picture = picture_of(session, far);
