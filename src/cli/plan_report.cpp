@@ -90,54 +90,51 @@ Json plan_json(const Scene& scene, const Plan& plan) {
   return json;
 }
 
-/// Of three channels: "83 79 75".
-std::string percentages(const std::array<SlabLight, 3>& light, double SlabLight::*share) {
-  return fmt::format("{:.3g} {:.3g} {:.3g}", 100 * light[0].*share, 100 * light[1].*share,
-                     100 * light[2].*share);
+/// Of three channels: "83 79 -"; none where a channel is left out.
+template <class Figure>
+std::string three(const PlateModel& plate, const Figure& figure) {
+  std::string text;
+  for (const auto& channel : plate.channels)
+    text += (text.empty() ? "" : " ") + (channel ? fmt::format("{:.3g}", figure(*channel)) : "-");
+  return text;
 }
 
 Json plate_json(const PlateModel& plate) {
-  const auto shares = [](const std::array<SlabLight, 3>& light) {
-    Json back = Json::array(), through = Json::array();
-    for (const SlabLight& channel : light) {
-      back.push_back(channel.back);
-      through.push_back(channel.through);
-    }
-    return Json{{"back", back}, {"through", through}};
+  const auto shares = [](const SlabLight& light) {
+    return Json{{"back", light.back}, {"through", light.through}};
   };
-  const Rgb& optical = plate.optical_thickness;
-  return {{"body", plate.body},
-          {"thickness_mm", plate.thickness},
-          {"mean_free_paths", {optical.x, optical.y, optical.z}},
-          {"profile", shares(plate.profile)},
-          {"random_walks", shares(plate.walks)}};
+  Json channels = Json::array();
+  for (const auto& channel : plate.channels)
+    channels.push_back(channel ? Json{{"mean_free_paths", channel->optical_thickness},
+                                      {"profile", shares(channel->profile)},
+                                      {"random_walks", shares(channel->walks)}}
+                               : Json());
+  return {{"body", plate.body}, {"thickness_mm", plate.thickness}, {"channels", channels}};
+}
+
+void print_plate(const PlateModel& plate) {
+  using Channel = PlateChannel;
+  print_row("model error",
+            fmt::format("{} is as thick as a plate of {:.3g} mm: {} mean free paths (R G B)", plate.body,
+                        plate.thickness, three(plate, [](const Channel& c) { return c.optical_thickness; })));
+  print_row("", fmt::format("of diffuse light that enters, {} sends back {} % and lets through {} %;",
+                            plate.kind == ProfileKind::dipole ? "the dipole" : "normalized diffusion",
+                            three(plate, [](const Channel& c) { return 100 * c.profile.back; }),
+                            three(plate, [](const Channel& c) { return 100 * c.profile.through; })));
+  print_row("", fmt::format("random walks, the truth: {} % and {} %",
+                            three(plate, [](const Channel& c) { return 100 * c.walks.back; }),
+                            three(plate, [](const Channel& c) { return 100 * c.walks.through; })));
 }
 
 }  // namespace
 
-void print_plates(const Log& log, const Scene& scene, const std::vector<PlateModel>& plates) {
+void print_plates(const Log& log, const std::vector<PlateModel>& plates) {
   if (log.quiet) return;
-  for (const PlateModel& plate : plates) {
-    if (log.format == LogFormat::json) {
+  for (const PlateModel& plate : plates)
+    if (log.format == LogFormat::json)
       print_event(log, "plate", plate_json(plate));
-      continue;
-    }
-    const Rgb& optical = plate.optical_thickness;
-    print_row("model error",
-              fmt::format("{} is as thick as a plate of {:.3g} mm: {:.3g} {:.3g} {:.3g} mean free paths (R G B)",
-                          plate.body, plate.thickness, optical.x, optical.y, optical.z));
-    const auto group = std::ranges::find(scene.shapes, plate.body, &Shape::name);
-    const ProfileKind kind = group != scene.shapes.end() && group->medium
-                                 ? scene.media[*group->medium].profile
-                                 : ProfileKind::dipole;
-    print_row("", fmt::format("of diffuse light that enters, {} sends back {} % and lets through {} %;",
-                              kind == ProfileKind::dipole ? "the dipole" : "normalized diffusion",
-                              percentages(plate.profile, &SlabLight::back),
-                              percentages(plate.profile, &SlabLight::through)));
-    print_row("", fmt::format("random walks, the truth: {} % and {} %",
-                              percentages(plate.walks, &SlabLight::back),
-                              percentages(plate.walks, &SlabLight::through)));
-  }
+    else
+      print_plate(plate);
 }
 
 void print_plan(const Log& log, const Scene& scene, const Plan& plan) {

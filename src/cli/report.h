@@ -20,8 +20,8 @@ namespace opaline {
 /// What the scene requires and why, then the plan's warnings; nothing but the warnings with --quiet.
 void print_plan(const Log& log, const Scene& scene, const Plan& plan);
 
-/// The model's own error in thin plates, two lines each.
-void print_plates(const Log& log, const Scene& scene, const std::vector<PlateModel>& plates);
+/// The model's own error in thin plates, three lines each.
+void print_plates(const Log& log, const std::vector<PlateModel>& plates);
 
 /// What was kept from before and what was not, a line each, and a warning unless it is empty; with --quiet
 /// the warning alone.

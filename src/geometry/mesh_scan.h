@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OBJ, which is read in one pass, and a first pass over the bytes of the other mesh files, before OpenMesh sees
-// them. OpenMesh 9 drops vertices that are not numbers (which shifts every later index) and faces with bad
-// indices without an error, trusts the counts of a header, and reads coordinates as float. So a scan checks every count against the
-// file's length, every coordinate and every index; keeps coordinates in double; and blanks in the bytes what
-// OpenMesh would stumble over. read_mesh then compares what OpenMesh returned with the scan.
+// OBJ, which is read in one pass, and a first pass over the bytes of the other mesh files, before OpenMesh
+// sees them. OpenMesh 9 drops vertices that are not numbers (which shifts every later index) and faces with
+// bad indices without an error, trusts the counts of a header, and reads coordinates as float. So a scan
+// checks every count against the file's length, every coordinate and every index; keeps coordinates in
+// double; and blanks in the bytes what OpenMesh would stumble over. read_mesh then compares what OpenMesh
+// returned with the scan.
 #pragma once
 
 #include <cstddef>

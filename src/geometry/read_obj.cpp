@@ -37,7 +37,7 @@ class VertexVariants {
     next_[at] = std::uint32_t(mesh_.positions.size());
     next_.push_back(kLast);
     mesh_.normals.push_back(normal);
-    mesh_.positions.push_back(Vec3d(mesh_.positions[vertex]));
+    mesh_.positions.push_back(mesh_.positions[vertex]);
     return next_[at];
   }
 

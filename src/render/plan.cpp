@@ -85,15 +85,20 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
   group.spacing = std::sqrt(group.area / double(group.samples));
 }
 
-/// A body that is thinner than its samples are apart, on the whole: they stand in rows, and miss what light does across.
-void warn_of_thin_bodies(const World& world, const GroupPlan& group, std::vector<std::string>& warnings) {
+double mean_thickness(const World& world, const GroupPlan& group) {
   double volume = 0;
   for (const std::uint32_t m : group.meshes) {
-    if (world.reports[m].open_edges > 0) return;
+    if (world.reports[m].open_edges > 0) return 0;
     volume += enclosed_volume(world.meshes[m]) * world.unit * world.unit * world.unit;
   }
-  const double thickness = 2 * volume / group.area;
-  if (!(thickness < group.spacing)) return;
+  return 2 * volume / group.area;
+}
+
+/// A body that is thinner than its samples are apart, on the whole: they stand in rows, and miss what light
+/// does across.
+void warn_of_thin_body(const GroupPlan& group, std::vector<std::string>& warnings) {
+  const double thickness = group.thickness;
+  if (!(thickness > 0 && thickness < group.spacing)) return;
   warnings.push_back(fmt::format(
       "{}: it is {:.3g} mm thick in the mean and its samples are {:.3g} mm apart: they cannot tell its sides apart; "
       "take {:.2g} samples (settings.samples, settings.max_samples)",
@@ -135,12 +140,18 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
       it = std::ranges::find_if(groups, [&](const GroupPlan& g) { return g.shared && g.name == name; });
     if (it == groups.end()) {
       groups.push_back(
-          {name, !shape.group.empty(), {}, *shape.medium, 0, smallest_mean_free_path(profile), 0, 0, {}});
+          {.name = name,
+           .shared = !shape.group.empty(),
+           .meshes = {},
+           .medium = *shape.medium,
+           .smallest_mean_free_path = smallest_mean_free_path(profile),
+           .reason = {}});
       it = groups.end() - 1;
     }
     it->meshes.push_back(std::uint32_t(i));
     it->area += surface_area(world.meshes[i]) * world.unit * world.unit;
   }
+  for (GroupPlan& group : groups) group.thickness = mean_thickness(world, group);
   return groups;
 }
 
@@ -247,7 +258,7 @@ Plan make_plan(const Scene& scene, const World& world) {
     choose_samples(scene, group, plan.warnings);
     if (scene.settings.method != Method::hierarchical) continue;
     warn_of_near_lights(scene, world, group, plan.warnings);
-    warn_of_thin_bodies(world, group, plan.warnings);
+    warn_of_thin_body(group, plan.warnings);
     // Measured at 1 and 10 million: samples, weights and tree while its nodes are written.
     plan.bytes += group.samples * (191 + 4 * scene.lights.size());
     if (scene.settings.evaluator == EvaluatorKind::surface_cache)

@@ -38,9 +38,16 @@ TEST(CliInfo, ModelErrorOfPlates) {
       << thin.out;
   EXPECT_TRUE(contains(thin.out, "random walks, the truth: ")) << thin.out;
   const nlohmann::json event = event_of(events_of(run_program({"info", plate, "--log", "json"}).out), "plate");
-  EXPECT_GT(event["profile"]["back"][1], .8);
-  EXPECT_LT(event["random_walks"]["back"][1], .5);
-  const Outcome thick = run_program({"info", plate, "--set", "media.jade.subsurface_radius=.1"});
+  EXPECT_GT(event["channels"][1]["profile"]["back"], .8);
+  EXPECT_LT(event["channels"][1]["random_walks"]["back"], .5);
+  // In a group of its own name, with a channel that is thick.
+  const Outcome grouped = run_program({"info", plate, "--set", "shapes.slab.group=\"leaf\"", "--set",
+                                       "media.jade.subsurface_radius=[1, 0.1, 1]", "--set",
+                                       "media.jade.profile=\"normalized_diffusion\""});
+  EXPECT_TRUE(contains(grouped.out, "leaf is as thick as a plate of 1.85 mm: 3.08 - 2.64 mean free paths"))
+      << grouped.out;
+  EXPECT_TRUE(contains(grouped.out, "normalized diffusion sends back")) << grouped.out;
+  const Outcome thick = run_program({"info", plate, "--set", "media.jade.subsurface_radius=0.1"});
   EXPECT_FALSE(contains(thick.out, "model error")) << thick.out;
   EXPECT_FALSE(contains(run_program({"info", SceneFolder().scene}).out, "model error"));
 }

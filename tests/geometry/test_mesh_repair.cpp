@@ -20,9 +20,8 @@ std::set<std::array<std::uint32_t, 3>> triangle_set(const Mesh& mesh) {
   return set;
 }
 
-// Claim: a closed mesh wound inward becomes the one wound outward, counted and said. Source: the physics notes
-// section 6, "flipped winding -> same picture, said". Tolerance: none. Fails if: the sign of the volume is
-// not looked at.
+// Claim: a closed mesh wound inward becomes the one wound outward, counted and said. Source: check_mesh.h.
+// Tolerance: none. Fails if: the sign of the volume is not looked at.
 TEST(MeshRepair, FlippedWindingGivesTheSameMesh) {
   const CheckedMesh good = load(cube()), bad = load(flipped(cube()));
   EXPECT_EQ(triangle_set(bad.mesh), triangle_set(good.mesh));
@@ -107,7 +106,7 @@ TEST(MeshRepair, CavityIsKept) {
 }
 
 // Claim: doubles, also those wound the other way or with vertices of their own, and triangles without area
-// are dropped and counted; the closed cube is left. Source: the physics notes section 6. Tolerance: none. Fails if:
+// are dropped and counted; the closed cube is left. Source: check_mesh.h. Tolerance: none. Fails if:
 // duplicates are looked for before equal positions are welded, or the area test is a difference of indices
 // alone.
 TEST(MeshRepair, DoublesAndTrianglesWithoutAreaAreDropped) {
@@ -156,7 +155,7 @@ TEST(MeshRepair, SliverLeavesNoHole) {
   EXPECT_DOUBLE_EQ(surface_area(mesh.mesh), 24);
 }
 
-// Claim: open and non-manifold meshes are taken and said, a Moebius strip too. Source: the physics notes section 6.
+// Claim: open and non-manifold meshes are taken and said, a Moebius strip too. Source: check_mesh.h.
 // Tolerance: none. Fails if: edges with one, or more than two, triangles are not counted.
 TEST(MeshRepair, OpenAndNonManifoldAreSaid) {
   Soup open = cube();

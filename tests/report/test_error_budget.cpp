@@ -14,8 +14,8 @@ Settings settings_with(const std::vector<std::string>& overrides) {
   return parse_scene("{}", "empty.json", overrides).settings;
 }
 
-// Claim: the five parts of the issue; the two pictures of a part differ in what it names and in nothing else:
-// samples 16 times as many (and the cap with them; light samples so that as many rays are traced), light
+// Claim: the five parts of the error (the table in README.md); the two pictures of a part differ in what it
+// names and in nothing else: samples 16 times as many (and the cap with them; light samples so that as many rays are traced), light
 // samples, the exact sum, the near field, the cache. By hand. Fails if: a part's own setting is misspelt (a
 // scene refuses it), or a second one slips in.
 TEST(ErrorBudget, OneSettingApart) {

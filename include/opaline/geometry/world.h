@@ -26,7 +26,7 @@ struct World {
   /// The middle of everything, rounded to a power of two of 1/8 to 1/4 of the diagonal: where one object
   /// moves a little, the others keep their bits.
   Vec3d origin{};       ///< mm
-  double unit = 1;      ///< mm; the power of 1024 for which translucent bodies, or else the scene, are 1 to 1024 units large
+  double unit = 1;      ///< mm; a power of 1024: translucent bodies, or else the scene, are 1 to 1024 units large
   double diagonal = 0;  ///< of the bounding box of everything, units; 0 for an empty scene
 };
 

@@ -18,6 +18,7 @@ struct GroupPlan {
   std::vector<std::uint32_t> meshes;  ///< indices into World::meshes
   std::size_t medium = 0;             ///< index into Scene::media
   double area = 0;                    ///< mm^2
+  double thickness = 0;               ///< mean, mm: twice the volume over the area; 0 if a mesh is open
   double smallest_mean_free_path = 0; ///< over the channels that scatter, mm
   double spacing = 0;                 ///< sqrt(area / samples), mm
   std::size_t samples = 0;

@@ -11,8 +11,8 @@
 
 namespace opaline {
 
-/// As text: "# key: value" a note, quoted if it has a comma, a line of names, a line of units, a line a row; cells quoted where they
-/// must be (RFC 4180), lines end in \n.
+/// As text: "# key: value" a note, quoted if it has a comma, a line of names, a line of units, a line a row;
+/// cells quoted where they must be (RFC 4180), lines end in \n.
 struct CsvTable {
   std::vector<std::pair<std::string, std::string>> notes;  ///< no line breaks; no ": " in a key
   std::vector<std::string> names, units;                   ///< a column each
