@@ -4,9 +4,11 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "opaline/geometry/world.h"
 
@@ -42,6 +44,18 @@ struct RayScene::Handles {
     if (scene != nullptr) rtcReleaseScene(scene);
     if (device != nullptr) rtcReleaseDevice(device);
   }
+};
+
+// One cache line holds two of them: a hit's interpolation reads three.
+struct alignas(32) RayScene::Vertex {
+  Vec3f position, normal;
+};
+
+struct RayScene::MeshView {
+  std::vector<Vertex> vertices;  // shared with Embree, whose own buffers begin at any 16 bytes
+  const std::array<std::uint32_t, 3>* triangles;  // Embree's buffer
+  bool faceted;
+  float offset;
 };
 
 /// Throws Error{run_failed} where the device ran out of memory.

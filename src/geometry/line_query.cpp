@@ -65,4 +65,40 @@ void LineQuery::find(const Ray& ray, std::vector<Hit>& crossings) const {
   rtcIntersect1(handle_->scene, &context.context, reinterpret_cast<RTCRayHit*>(&traced));
 }
 
+std::vector<LineQuery::Triangle> LineQuery::triangles_in(const RayScene& rays, const Vec3f& low, float side) {
+  struct Search {
+    const std::vector<RayScene::MeshView>& meshes;
+    Vec3f low, high;
+    std::vector<std::uint64_t> found;
+    std::array<Vec3f, 3> corners(std::uint32_t mesh, std::uint32_t triangle) const {
+      const auto& [a, b, c] = meshes[mesh].triangles[triangle];
+      const auto& vertices = meshes[mesh].vertices;
+      return {vertices[a].position, vertices[b].position, vertices[c].position};
+    }
+  } search{rays.meshes_, low, low + Vec3f(side), {}};
+  const auto collect = [](RTCPointQueryFunctionArguments* candidate) {
+    Search& to = *static_cast<Search*>(candidate->userPtr);
+    const auto [a, b, c] = to.corners(candidate->geomID, candidate->primID);
+    if (min_component(component_max(a, component_max(b, c)) - to.low) >= 0 &&
+        min_component(to.high - component_min(a, component_min(b, c))) >= 0)
+      to.found.push_back(std::uint64_t(candidate->geomID) << 32 | candidate->primID);
+    return false;  // the radius stays
+  };
+  const Vec3f middle = low + Vec3f(side / 2);
+  constexpr float kHalfDiagonal = 0.8661f;
+  RTCPointQuery query{middle.x, middle.y, middle.z, 0, side * kHalfDiagonal};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(rays.handles_->scene, &query, &context, collect, &search);
+  std::ranges::sort(search.found);
+  search.found.erase(std::ranges::unique(search.found).begin(), search.found.end());
+  std::vector<Triangle> triangles;
+  triangles.reserve(search.found.size());
+  for (const std::uint64_t id : search.found) {
+    const auto mesh = std::uint32_t(id >> 32), triangle = std::uint32_t(id);
+    triangles.push_back({mesh, triangle, search.corners(mesh, triangle)});
+  }
+  return triangles;
+}
+
 }  // namespace opaline

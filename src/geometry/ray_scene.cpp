@@ -36,18 +36,6 @@ void count(RayCounter& counter, std::size_t rays, const Trace& trace) {
 
 }  // namespace
 
-// One cache line holds two of them: a hit's interpolation reads three.
-struct alignas(32) RayScene::Vertex {
-  Vec3f position, normal;
-};
-
-struct RayScene::MeshView {
-  std::vector<Vertex> vertices;  // shared with Embree, whose own buffers begin at any 16 bytes
-  const std::array<std::uint32_t, 3>* triangles;  // Embree's buffer
-  bool faceted;
-  float offset;
-};
-
 namespace {
 
 constexpr std::size_t kBatch = 256;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "evaluate/query_order.h"
 #include "evaluate/surface_patch.h"
 #include "opaline/core/parallel.h"
 #include "opaline/core/random.h"
@@ -16,9 +17,9 @@ namespace {
 // Above this share of the irradiance at the point itself (SplitKernel::own_irradiance) the near field's rms
 // radius is under a fifth of h, less than two segments of the finest lattice.
 constexpr float kSharp = 0.8f;
-// What lattices need not resolve, over the tolerance, of the exitance: bumps of the mesh, that its own
-// vertices tell, and what a few shadow rays beside a shadow's edge leave open.
-constexpr float kBumps = 1, kEdgeNoise = 2;
+// The share of the exitance that must be at stake before shadow rays beside a shadow's edge are worth their
+// time: less than in a picture, for every step that is left between two places is one to interpolate.
+constexpr float kWorth = 0.005f;
 
 std::uint64_t key_of(const Vec3f& p) {
   std::array<std::uint32_t, 3> bits;
@@ -36,20 +37,37 @@ bool can_hold_own_light(const World& world, const TranslucentGroup& group) {
 }
 
 OwnLight::OwnLight(const PrecomputeInput& input, const TranslucentGroup& group)
-    : input_(input), group_(group), lights_(recentred_lights(input.scene, input.world)), near_field_(group) {}
+    : input_(input),
+      group_(group),
+      lights_(recentred_lights(input.scene, input.world)),
+      near_field_(group, kWorth) {}
 
+// In chunks of neighbours, who share what is found of their near fields.
 void OwnLight::add(std::span<const SurfacePoint> points, std::span<Exitance> exitance,
                    std::span<PlaceDoubt> doubts) const {
-  parallel_chunks(points.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
-    const std::size_t n = end - begin;
-    add_to_chunk(points.subspan(begin, n), exitance.subspan(begin, n), doubts.subspan(begin, n));
+  std::vector<Query> queries;
+  for (const SurfacePoint& point : points) queries.push_back({point.position, point.normal});
+  const std::vector<std::uint32_t> order = chunk_order(queries);
+  parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    const auto chosen = std::span(order).subspan(begin, end - begin);
+    std::vector<SurfacePoint> chunk_points;
+    std::vector<Exitance> chunk_exitance;
+    std::vector<PlaceDoubt> chunk_doubts(chosen.size());
+    for (const std::uint32_t i : chosen) {
+      chunk_points.push_back(points[i]);
+      chunk_exitance.push_back(exitance[i]);
+    }
+    add_to_chunk(chunk_points, chunk_exitance, chunk_doubts);
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      exitance[chosen[k]] = chunk_exitance[k];
+      doubts[chosen[k]] = chunk_doubts[k];
+    }
   });
 }
 
 void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exitance> exitance,
                             std::span<PlaceDoubt> doubts) const {
   const Settings& settings = input_.scene.settings;
-  const float tolerance = float(settings.tolerance);
   std::vector<std::uint64_t> keys;
   for (const SurfacePoint& point : points) keys.push_back(key_of(point.position));
   std::vector<RgbF> variance(points.size());
@@ -67,12 +85,12 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
     exitance[i].exitance += own_part(share, exitance[i], own[i]);
     const RgbF& v = variance[i];
     const RgbF noise = own_part(share, exitance[i], RgbF{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)});
-    doubts[i] = {noise * 2 + exitance[i].exitance * (kBumps * tolerance)};
+    doubts[i] = {noise * 2};
     variance[i] = noise * noise;
   }
   lighting.variance = {};
   for (const std::uint32_t i : near_field_.refine(lighting, own, exitance, variance))
-    doubts[i] = {doubts[i].noise + exitance[i].exitance * (kEdgeNoise * tolerance), true};
+    doubts[i].beside_edge = true;
   for (std::size_t i = 0; i < points.size(); ++i) {
     exitance[i].irradiance = own[i];
     for (std::size_t c = 0; c < 3; ++c)

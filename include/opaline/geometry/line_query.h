@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that a line crosses.
+// Everything that a line crosses, or that is in a cube.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -22,6 +23,14 @@ class LineQuery {
   /// Replaces `crossings` by every triangle that the ray meets between near and far, whichever side it shows,
   /// each once, in no particular but a fixed order.
   void find(const Ray& ray, std::vector<Hit>& crossings) const;
+
+  struct Triangle {
+    std::uint32_t mesh, triangle;
+    std::array<Vec3f, 3> corners;
+  };
+  /// Every triangle of any mesh whose bounding box meets the cube from `low` to `low` + side, in the order of
+  /// their numbers. Needs no query of one's own.
+  static std::vector<Triangle> triangles_in(const RayScene& rays, const Vec3f& low, float side);
 
  private:
   struct Handle;

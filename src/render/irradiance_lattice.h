@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Irradiance at places spread evenly over a surface, found cell by cell where somebody asks for it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "opaline/geometry/line_query.h"
+#include "opaline/irradiance/irradiance.h"
+
+namespace opaline {
+
+/// The places are where lines parallel to the axes cross the surface, one line in each square of a grid.
+/// Every triangle is crossed by the lines of the axis nearest to its normal n alone, so a place stands for
+/// spacing^2 / |n_axis| of the surface, wherever it lies and whoever sees it. All threads share the cells;
+/// what is in one depends on nothing but its key and the scene.
+class IrradianceLattice {
+ public:
+  struct Key {
+    std::array<std::int64_t, 3> corner;  ///< in cells
+    std::uint32_t level;                 ///< each halves the spacing's square
+    bool per_light;
+    friend bool operator==(const Key&, const Key&) = default;
+  };
+  struct Cell {
+    std::vector<SurfacePoint> points;
+    std::vector<float> areas;                ///< that each point stands for, mm^2
+    std::vector<std::vector<RgbF>> entered;  ///< by all lights; then, if asked for, by each in white
+  };
+
+  /// in    spacing: of the lines of level 0, mm
+  IrradianceLattice(std::vector<bool> is_own_mesh, double spacing);
+
+  double spacing(std::uint32_t level) const;
+  /// Of the cells that are within reach, mm, of any of some points.
+  std::vector<Key> keys_near(std::span<const SurfacePoint> points, std::span<const std::uint32_t> chosen,
+                             double reach, std::uint32_t level, bool per_light) const;
+  /// in    lighting: its points are not looked at; the same at each call but for them
+  const Cell& cell(const Key& key, const PointIrradianceInput& lighting);
+
+ private:
+  struct Hash {
+    std::size_t operator()(const Key& key) const;
+  };
+  struct Shard {
+    std::mutex mutex;
+    std::unordered_map<Key, Cell, Hash> cells;
+  };
+  Cell make_cell(const Key& key, const PointIrradianceInput& lighting) const;
+  struct Crossings;
+  void add_crossings(const RayScene& rays, const LineQuery::Triangle& triangle, Crossings& crossings) const;
+
+  std::vector<bool> is_own_mesh_;
+  double spacing_;
+  std::array<Shard, 64> shards_;
+};
+
+}  // namespace opaline

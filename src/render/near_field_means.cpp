@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/near_field_means.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace opaline {
+
+NearFieldMeans::NearFieldMeans(const NearKernel& kernel, std::span<const SurfacePoint> points,
+                               std::span<const std::uint32_t> chosen, std::span<const int> drawn,
+                               std::size_t kinds)
+    : kernel_(kernel),
+      count_(chosen.size()),
+      end_((count_ + kAtOnce - 1) / kAtOnce * kAtOnce),
+      sums_(kinds),
+      close_entered_(kinds) {
+  for (std::size_t m = 0; m < count_; ++m) {
+    const auto& [position, normal, geometric, offset] = points[chosen[m]];
+    x_[m] = position.x, y_[m] = position.y, z_[m] = position.z;
+    nx_[m] = normal.x, ny_[m] = normal.y, nz_[m] = normal.z;
+    if (!drawn.empty()) drawn_[m] = float(drawn[m]);
+    Box& box = boxes_[m / kGroup];
+    box.low = m % kGroup == 0 ? position : component_min(box.low, position);
+    box.high = m % kGroup == 0 ? position : component_max(box.high, position);
+  }
+}
+
+// The kernels of all points at a place; 0 where it faces away from the point.
+void NearFieldMeans::find_densities(const SurfacePoint& place) {
+  constexpr float kOutside = NearKernel::kRings;
+  const float rings = kOutside / kernel_.radius;
+  const float px = place.position.x, py = place.position.y, pz = place.position.z;
+  const float gx = place.geometric.x, gy = place.geometric.y, gz = place.geometric.z;
+  for (std::size_t m = 0; m < end_; ++m) {
+    const float dx = x_[m] - px, dy = y_[m] - py, dz = z_[m] - pz;
+    // Without a branch, so that compilers take several points at once.
+    const float r = std::sqrt(dx * dx + dy * dy + dz * dz) * rings, within = r < kOutside ? r : kOutside;
+    ring_[m] = int(nx_[m] * gx + ny_[m] * gy + nz_[m] * gz > 0 ? within : kOutside);
+  }
+  for (std::size_t m = 0; m < end_; ++m) here_[m] = kernel_.densities[std::size_t(ring_[m])];
+}
+
+void NearFieldMeans::add_drawn(std::span<const SurfacePoint> places,
+                               std::span<const std::span<const RgbF>> entered) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    find_densities(places[i]);
+    std::array<Densities, kAtOnce> sums{};
+    for (std::size_t m = 0; m < end_; m += kAtOnce)
+      for (std::size_t k = 0; k < kAtOnce; ++k) sums[k] += here_[m + k] * drawn_[m + k];
+    const float expected = (sums[0] + sums[1] + (sums[2] + sums[3]))[3];  // places per mm^2 here
+    if (!(expected > 0)) continue;
+    const Densities inverse = Densities{} + 1 / expected;
+    for (std::size_t m = 0; m < count_; ++m) {
+      here_[m] *= inverse;
+      weights_[m] += here_[m];
+    }
+    for (std::size_t l = 0; l < entered.size(); ++l) {
+      const RgbF& e = entered[l][i];
+      const Densities irradiance{e.x, e.y, e.z, 0};
+      for (std::size_t m = 0; m < count_; ++m) sums_[l][m] += here_[m] * irradiance;
+    }
+  }
+}
+
+void NearFieldMeans::add_lattice(std::span<const SurfacePoint> places, std::span<const float> areas,
+                                 std::span<const std::vector<RgbF>> entered) {
+  const float reach = kernel_.reach;
+  close_.resize(places.size());
+  for (std::size_t first = 0; first < count_; first += kGroup) {
+    const Box& box = boxes_[first / kGroup];
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const Vec3f& p = places[i].position;
+      const Vec3f gap = component_max(component_max(box.low - p, p - box.high), Vec3f());
+      close_[count] = std::uint32_t(i);
+      count += dot(gap, gap) <= reach * reach ? 1 : 0;
+    }
+    if (count == 0) continue;
+    take_close(std::span(close_).first(count), places, areas, entered);
+    for (std::size_t m = first; m < std::min(first + kGroup, count_); ++m) add_close(m);
+  }
+}
+
+void NearFieldMeans::take_close(std::span<const std::uint32_t> close, std::span<const SurfacePoint> places,
+                                std::span<const float> areas, std::span<const std::vector<RgbF>> entered) {
+  const std::size_t n = close.size();
+  for (std::vector<float>& coordinates : close_coordinates_) coordinates.resize(n);
+  close_areas_.resize(n);
+  close_rings_.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& [position, normal, geometric, offset] = places[close[k]];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      close_coordinates_[axis][k] = position[axis];
+      close_coordinates_[axis + 3][k] = geometric[axis];
+    }
+    close_areas_[k] = Densities{} + areas[close[k]];
+  }
+  for (std::size_t l = 0; l < entered.size(); ++l) {
+    close_entered_[l].resize(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      const RgbF e = entered[l][close[k]] * areas[close[k]];
+      close_entered_[l][k] = Densities{e.x, e.y, e.z, 0};
+    }
+  }
+}
+
+// Adds the places close to its group to what one point sees.
+void NearFieldMeans::add_close(std::size_t point) {
+  constexpr float kOutside = NearKernel::kRings;
+  const float rings = kOutside / kernel_.radius;
+  const float x = x_[point], y = y_[point], z = z_[point], nx = nx_[point], ny = ny_[point], nz = nz_[point];
+  const float *px = close_coordinates_[0].data(), *py = close_coordinates_[1].data(),
+              *pz = close_coordinates_[2].data();
+  const float *gx = close_coordinates_[3].data(), *gy = close_coordinates_[4].data(),
+              *gz = close_coordinates_[5].data();
+  int* const ring = close_rings_.data();
+  const std::size_t n = close_rings_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const float dx = x - px[i], dy = y - py[i], dz = z - pz[i];
+    const float r = std::sqrt(dx * dx + dy * dy + dz * dz) * rings, within = r < kOutside ? r : kOutside;
+    ring[i] = int(nx * gx[i] + ny * gy[i] + nz * gz[i] > 0 ? within : kOutside);
+  }
+  const Densities* const table = kernel_.densities.data();
+  Densities weights{};
+  for (std::size_t i = 0; i < n; ++i) weights += table[ring[i]] * close_areas_[i];
+  weights_[point] += weights;
+  for (std::size_t l = 0; l < close_entered_.size(); ++l) {
+    Densities sum{};
+    for (std::size_t i = 0; i < n; ++i) sum += table[ring[i]] * close_entered_[l][i];
+    sums_[l][point] += sum;
+  }
+}
+
+RgbF NearFieldMeans::mean(std::size_t kind, std::size_t point) const {
+  RgbF mean(std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t c = 0; c < 3; ++c)
+    if (weights_[point][c] > 0) mean[c] = sums_[kind][point][c] / weights_[point][c];
+  return mean;
+}
+
+}  // namespace opaline
