@@ -30,7 +30,7 @@ constexpr std::uint32_t kFinest = 4;
 // Points use the lattice if they are this close to each other, over the kernel's rms distance, and so many of
 // a batch are marked that they can share a cell's cost. Points closer than kFineGrained are many more than
 // cells.
-constexpr double kClose = 0.5, kFineGrained = 0.25;
+constexpr double kClose = 0.28, kFineGrained = 0.25;
 constexpr std::size_t kDense = 96;
 constexpr double kFarthest =
     8;  // that the kernel may reach, over its rms distance: farther takes too many cells
