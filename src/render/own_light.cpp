@@ -17,6 +17,10 @@ namespace {
 // Above this share of the irradiance at the point itself (SplitKernel::own_irradiance) the near field's rms
 // radius is under a fifth of h, less than two segments of the finest lattice.
 constexpr float kSharp = 0.8f;
+// What lattices need not resolve, over the tolerance, of the exitance: bumps of the mesh, that its own
+// vertices tell, and what a few shadow rays beside a shadow's edge leave open. Without them a cache of the
+// bunny costs 1.7 times as much, and p99 of the error on its ear falls from 1.7 to 1.6 %.
+constexpr float kBumps = 1, kEdgeNoise = 2;
 // The share of the exitance that must be at stake before shadow rays beside a shadow's edge are worth their
 // time: less than in a picture, for every step that is left between two places is one to interpolate.
 constexpr float kWorth = 0.005f;
@@ -68,6 +72,7 @@ void OwnLight::add(std::span<const SurfacePoint> points, std::span<Exitance> exi
 void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exitance> exitance,
                             std::span<PlaceDoubt> doubts) const {
   const Settings& settings = input_.scene.settings;
+  const float tolerance = float(settings.tolerance);
   std::vector<std::uint64_t> keys;
   for (const SurfacePoint& point : points) keys.push_back(key_of(point.position));
   std::vector<RgbF> variance(points.size());
@@ -85,12 +90,12 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
     exitance[i].exitance += own_part(share, exitance[i], own[i]);
     const RgbF& v = variance[i];
     const RgbF noise = own_part(share, exitance[i], RgbF{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)});
-    doubts[i] = {noise * 2};
+    doubts[i] = {noise * 2 + exitance[i].exitance * (kBumps * tolerance)};
     variance[i] = noise * noise;
   }
   lighting.variance = {};
   for (const std::uint32_t i : near_field_.refine(lighting, own, exitance, variance))
-    doubts[i].beside_edge = true;
+    doubts[i] = {doubts[i].noise + exitance[i].exitance * (kEdgeNoise * tolerance), true};
   for (std::size_t i = 0; i < points.size(); ++i) {
     exitance[i].irradiance = own[i];
     for (std::size_t c = 0; c < 3; ++c)
