@@ -28,6 +28,7 @@ class IrradianceLattice {
     friend bool operator==(const Key&, const Key&) = default;
   };
   struct Cell {
+    Vec3f low, high;  ///< corners of the box around the points
     std::vector<SurfacePoint> points;
     std::vector<float> areas;                ///< that each point stands for, mm^2
     std::vector<std::vector<RgbF>> entered;  ///< by all lights; then, if asked for, by each in white

@@ -63,46 +63,46 @@ void NearFieldMeans::add_drawn(std::span<const SurfacePoint> places,
   }
 }
 
-void NearFieldMeans::add_lattice(std::span<const SurfacePoint> places, std::span<const float> areas,
-                                 std::span<const std::vector<RgbF>> entered) {
-  const float reach = kernel_.reach;
-  close_.resize(places.size());
+void NearFieldMeans::add_lattice(std::span<const IrradianceLattice::Cell* const> cells) {
   for (std::size_t first = 0; first < count_; first += kGroup) {
-    const Box& box = boxes_[first / kGroup];
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const Vec3f& p = places[i].position;
-      const Vec3f gap = component_max(component_max(box.low - p, p - box.high), Vec3f());
-      close_[count] = std::uint32_t(i);
-      count += dot(gap, gap) <= reach * reach ? 1 : 0;
-    }
-    if (count == 0) continue;
-    take_close(std::span(close_).first(count), places, areas, entered);
+    for (std::vector<float>& coordinates : close_coordinates_) coordinates.clear();
+    close_areas_.clear();
+    for (std::vector<Densities>& entered : close_entered_) entered.clear();
+    for (const IrradianceLattice::Cell* cell : cells) take_close(*cell, boxes_[first / kGroup]);
+    close_rings_.resize(close_areas_.size());
     for (std::size_t m = first; m < std::min(first + kGroup, count_); ++m) add_close(m);
   }
 }
 
-void NearFieldMeans::take_close(std::span<const std::uint32_t> close, std::span<const SurfacePoint> places,
-                                std::span<const float> areas, std::span<const std::vector<RgbF>> entered) {
-  const std::size_t n = close.size();
+// Copies the places of a cell that are within reach of a box.
+void NearFieldMeans::take_close(const IrradianceLattice::Cell& cell, const Box& box) {
+  const float square = kernel_.reach * kernel_.reach;
+  const auto gap = [&box](const Vec3f& low, const Vec3f& high) {
+    const Vec3f apart = component_max(component_max(box.low - high, low - box.high), Vec3f());
+    return dot(apart, apart);
+  };
+  if (cell.points.empty() || gap(cell.low, cell.high) > square) return;
+  std::size_t n = close_areas_.size();
+  for (std::vector<float>& coordinates : close_coordinates_) coordinates.resize(n + cell.points.size());
+  close_areas_.resize(n + cell.points.size());
+  for (std::vector<Densities>& entered : close_entered_) entered.resize(n + cell.points.size());
+  for (std::size_t i = 0; i < cell.points.size(); ++i) {
+    const auto& [position, normal, geometric, offset] = cell.points[i];
+    if (gap(position, position) > square) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      close_coordinates_[axis][n] = position[axis];
+      close_coordinates_[axis + 3][n] = geometric[axis];
+    }
+    close_areas_[n] = Densities{} + cell.areas[i];
+    for (std::size_t l = 0; l < close_entered_.size(); ++l) {
+      const RgbF& e = cell.entered[l][i];
+      close_entered_[l][n] = Densities{e.x, e.y, e.z, 0};
+    }
+    ++n;
+  }
   for (std::vector<float>& coordinates : close_coordinates_) coordinates.resize(n);
   close_areas_.resize(n);
-  close_rings_.resize(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto& [position, normal, geometric, offset] = places[close[k]];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      close_coordinates_[axis][k] = position[axis];
-      close_coordinates_[axis + 3][k] = geometric[axis];
-    }
-    close_areas_[k] = Densities{} + areas[close[k]];
-  }
-  for (std::size_t l = 0; l < entered.size(); ++l) {
-    close_entered_[l].resize(n);
-    for (std::size_t k = 0; k < n; ++k) {
-      const RgbF e = entered[l][close[k]] * areas[close[k]];
-      close_entered_[l][k] = Densities{e.x, e.y, e.z, 0};
-    }
-  }
+  for (std::vector<Densities>& entered : close_entered_) entered.resize(n);
 }
 
 // Adds the places close to its group to what one point sees.
@@ -123,13 +123,17 @@ void NearFieldMeans::add_close(std::size_t point) {
   }
   const Densities* const table = kernel_.densities.data();
   Densities weights{};
-  for (std::size_t i = 0; i < n; ++i) weights += table[ring[i]] * close_areas_[i];
-  weights_[point] += weights;
   for (std::size_t l = 0; l < close_entered_.size(); ++l) {
+    weights = Densities{};
     Densities sum{};
-    for (std::size_t i = 0; i < n; ++i) sum += table[ring[i]] * close_entered_[l][i];
+    for (std::size_t i = 0; i < n; ++i) {
+      const Densities weight = table[ring[i]] * close_areas_[i];
+      weights += weight;
+      sum += weight * close_entered_[l][i];
+    }
     sums_[l][point] += sum;
   }
+  weights_[point] += weights;
 }
 
 RgbF NearFieldMeans::mean(std::size_t kind, std::size_t point) const {

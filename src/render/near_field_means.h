@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "render/irradiance_lattice.h"
 #include "render/near_kernel.h"
 
 namespace opaline {
@@ -27,10 +28,8 @@ class NearFieldMeans {
   /// from  balance heuristic: Veach & Guibas 1995, sec. 3
   /// in    entered: irradiance at the places, per kind of light
   void add_drawn(std::span<const SurfacePoint> places, std::span<const std::span<const RgbF>> entered);
-  /// Adds places that each stand for so much of the surface, mm^2; none beyond the kernel's reach need be
-  /// among them.
-  void add_lattice(std::span<const SurfacePoint> places, std::span<const float> areas,
-                   std::span<const std::vector<RgbF>> entered);
+  /// Adds the places of cells; none beyond the kernel's reach need be among them. Call it once.
+  void add_lattice(std::span<const IrradianceLattice::Cell* const> cells);
 
   /// Of a point of the set; NaN where no place is near.
   RgbF mean(std::size_t kind, std::size_t point) const;
@@ -45,8 +44,7 @@ class NearFieldMeans {
     Vec3f low, high;
   };
   void find_densities(const SurfacePoint& place);
-  void take_close(std::span<const std::uint32_t> close, std::span<const SurfacePoint> places,
-                  std::span<const float> areas, std::span<const std::vector<RgbF>> entered);
+  void take_close(const IrradianceLattice::Cell& cell, const Box& box);
   void add_close(std::size_t point);
 
   const NearKernel& kernel_;
@@ -57,8 +55,7 @@ class NearFieldMeans {
   std::array<Densities, kMostPoints> here_{};  // of the place last looked at
   std::array<Densities, kMostPoints> weights_{};
   std::vector<std::array<Densities, kMostPoints>> sums_;
-  // Places close to a group, coordinate by coordinate; what each stands for, and that times its irradiance.
-  std::vector<std::uint32_t> close_;
+  // Places close to a group, coordinate by coordinate; what each stands for, and its irradiance.
   std::array<std::vector<float>, 6> close_coordinates_;
   std::vector<Densities> close_areas_;
   std::vector<std::vector<Densities>> close_entered_;

@@ -16,6 +16,7 @@ namespace {
 // The share of the exitance that is usually at stake where shadow rays are worth their time. Fine-grained
 // points share their rays with so many others that less is enough.
 constexpr float kUsual = 0.06f, kWorthShared = 0.005f;
+constexpr float kFinestAt = 0.1f;  // stake from which on the lattice is as fine as the points allow
 // Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
 // field of each less evenly; and how many each of many neighbours brings at least.
 constexpr int kAlone = 24, kTogether = 96, kEach = 3;
@@ -25,13 +26,13 @@ constexpr float kErrorLeft = 0.4f;  // of what the interpolated irradiance was o
 
 // Spacing of the lattice: at its coarsest, over the kernel's rms distance; over the points'; the finest
 // level.
-constexpr double kCoarsest = 0.5, kPerPoint = 0.9;
+constexpr double kCoarsest = 0.5, kPerPoint = 1;
 constexpr std::uint32_t kFinest = 4;
 // Points use the lattice if they are this close to each other, over the kernel's rms distance, and so many of
 // a batch are marked that they can share a cell's cost. Points closer than kFineGrained are many more than
 // cells.
-constexpr double kClose = 0.28, kFineGrained = 0.25;
-constexpr std::size_t kDense = 96;
+constexpr double kClose = 0.5, kFineGrained = 0.25;
+constexpr std::size_t kDense = 32;
 constexpr double kFarthest =
     8;  // that the kernel may reach, over its rms distance: farther takes too many cells
 // Variance of a mean over the lattice where a shadow's edge leaves a share f of the kernel in the light, over
@@ -119,11 +120,11 @@ void NearFieldSampler::look_up(const Found& found, std::span<std::uint32_t> open
     sort_into_groups(points, chosen);
     const std::uint32_t level = level_of(found, chosen, finest);
     NearFieldMeans means(near_, points, chosen, {}, found.kinds());
+    std::vector<const IrradianceLattice::Cell*> cells;
     for (const IrradianceLattice::Key& key :
-         lattice_->keys_near(points, chosen, double(near_.reach), level, found.held != nullptr)) {
-      const IrradianceLattice::Cell& cell = lattice_->cell(key, found.lighting);
-      means.add_lattice(cell.points, cell.areas, cell.entered);
-    }
+         lattice_->keys_near(points, chosen, double(near_.reach), level, found.held != nullptr))
+      cells.push_back(&lattice_->cell(key, found.lighting));
+    means.add_lattice(cells);
     const auto step = float(lattice_->spacing(level) / near_.root_mean_square);
     replace_all(found, chosen, means, kLatticeVariance * step * step * step);
   }
@@ -199,12 +200,12 @@ std::optional<std::uint32_t> NearFieldSampler::finest_level(double apart, std::s
 
 // The deviation of a mean over the lattice is about as its spacing to the power of 3/2: levels for a set are
 // so much coarser than the finest that the error of the exitance is the same wherever less is at stake than
-// usual.
+// kFinestAt.
 std::uint32_t NearFieldSampler::level_of(const Found& found, std::span<const std::uint32_t> set,
                                          std::uint32_t finest) const {
   float most = std::numeric_limits<float>::min();
   for (const std::uint32_t i : set) most = std::max(most, at_stake(found.own[i], found.exitance[i]));
-  const float coarser = std::max(0.0f, 4.0f / 3 * std::log2(kUsual / most));
+  const float coarser = std::max(0.0f, 4.0f / 3 * std::log2(kFinestAt / most));
   return finest - std::min(finest, std::uint32_t(coarser));
 }
 

@@ -30,7 +30,7 @@ class NearFieldSampler {
  public:
   /// group: not without meshes; it must outlive the sampler.
   /// worth: the share of the exitance that must be at stake before shadow rays are worth their time
-  explicit NearFieldSampler(const TranslucentGroup& group, float worth = 0.02f);
+  explicit NearFieldSampler(const TranslucentGroup& group, float worth = 0.015f);
 
   /// Corrects the exitance of the points beside shadow edges.
   /// in    lighting: of the points; own: their irradiance

@@ -12,7 +12,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kBeyondReach = 0.008;  // of a kernel
+constexpr double kBeyondReach = 0.02;  // of a kernel
 
 }  // namespace
 

@@ -25,7 +25,7 @@ struct NearKernel {
   std::array<Densities, kRings + 1> densities{};  ///< ring by ring; 0 beyond h
   std::array<double, kRings + 1> within{};  ///< the part of the channels' mean within a ring's inner edge
   double root_mean_square = 0;              ///< distance under the channels' mean, mm
-  float reach = 0;                          ///< within which all but .8 % of each channel's kernel lies, mm
+  float reach = 0;                          ///< within which all but 2 % of each channel's kernel lies, mm
 };
 
 }  // namespace opaline
