@@ -15,7 +15,8 @@
 
 #include "cli/display_server.h"
 #include "scene/json_tree.h"
-#include "scene/schema.h"
+#include "opaline/scene/nearest_name.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline {
 namespace {
