@@ -143,6 +143,24 @@ TEST(Scale, BrightnessTimesPowersOfTwo) {
   }
 }
 
+// Claim: the estimated noise of `direct` does not depend on the lights' brightness either. Fails if: squares
+// are summed as floats (until_error then ended at once in dim light, and never in bright light).
+TEST(Scale, NoiseOfDirectAtAnyBrightness) {
+  Scene scene = plain_scene(ProfileKind::dipole);
+  scene.settings.method = Method::direct;
+  scene.settings.entry_samples = 64;
+  const auto noise = [](const Scene& lit) {
+    const World world = make_world(lit);
+    const RayScene rays(world);
+    const Plan plan = make_plan(lit, world);
+    DirectState state;
+    return render_direct({lit, world, rays, plan}, state).relative_error;
+  };
+  const double plain = noise(scene);
+  EXPECT_GT(plain, 0);
+  for (const double k : {0x1p-90, 0x1p-70, 0x1p70, 0x1p80}) EXPECT_EQ(noise(brighter(scene, k)), plain) << k;
+}
+
 // Claim: the same holds of the samples' places, areas and the exitance at points that a caller gives in mm.
 // Tolerance none. Fails if: radiant_exitance does not bring its points into the world's unit.
 TEST(Scale, ExitanceAtPointsInMillimetres) {
