@@ -30,8 +30,8 @@ struct DirectInput {
 };
 
 struct DirectResult {
-  /// Layers R G B A, diffuse, specular, albedo, N, P, Z, and variance: of the diffuse radiance's mean, 0
-  /// or infinite where a float does not hold it.
+  /// Layers R G B A, diffuse, specular, albedo, N, P, Z, and variance: of the diffuse radiance's mean,
+  /// infinite or 0 where a float does not hold it (radiances beyond 1e19 or below 1e-18).
   RenderResult picture;
   std::size_t entry_samples = 0;  ///< a pixel
   double relative_error = 0;      ///< see relative_noise; infinite after a single pass
