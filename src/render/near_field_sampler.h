@@ -29,7 +29,7 @@ class NearFieldSampler {
   /// out   exitance: as evaluated with it, one a point; noise: its variance, one a point, replaced at those
   ///       beside shadow edges; returns which points these were
   std::vector<std::uint32_t> refine(const PointIrradianceInput& lighting, std::span<const RgbF> own,
-                                    std::span<Exitance> exitance, std::span<RgbF> noise,
+                                    std::span<Exitance> exitance, std::span<Rgb> noise,
                                     HeldView::NearField* held = nullptr) const;
 
  private:
@@ -48,8 +48,8 @@ class NearFieldSampler {
   double drawn_distance(double u) const;
   void add_held(const HeldView::NearField& held, const PointIrradianceInput& lighting,
                 std::span<const RgbF> own, std::span<const std::uint32_t> points,
-                std::span<Exitance> exitance, std::span<RgbF> noise) const;
-  void replace_mixed(const RgbF& own, const RgbF& mean, Exitance& e, RgbF& noise) const;
+                std::span<Exitance> exitance, std::span<Rgb> noise) const;
+  void replace_mixed(const RgbF& own, const RgbF& mean, Exitance& e, Rgb& noise) const;
   Means means_of(std::span<const SurfacePoint> points, std::span<const std::uint32_t> marked,
                  std::span<const int> drawn, std::span<const SurfacePoint> places,
                  std::span<const std::span<const RgbF>> entered) const;
