@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <filesystem>
 
@@ -23,6 +24,8 @@ namespace {
 
 using namespace opaline;
 
+// As large as the pictures that people wait for: choosing costs the same for each.
+constexpr std::array<int, 2> kResolution{512, 512};
 constexpr double kTargets[] = {.05, .02, .01, .005}, kCheckedTarget = .02;
 
 double seconds_alone(const Scene& scene) {
@@ -62,7 +65,6 @@ CalibrationRow calibrate(const NamedScene& named, double target, const Image& tr
     row.direct = checked.error;
     row.direct_error = checked.standard_error;
   }
-  row.fewest = double(chosen.samples) < kFewestTargetSamples + 10;  // each group rounds up
   return row;
 }
 
@@ -70,8 +72,7 @@ std::vector<NamedScene> scenes_of(int argc, char** argv, const std::string& fold
   if (argc < 3) return calibration_scenes(folder);
   std::vector<NamedScene> scenes;
   for (int i = 2; i < argc; ++i) {
-    const std::vector<std::string> small{"film.resolution=[128,128]", "film.samples_per_pixel=1",
-                                         "film.filter=box"};
+    const std::vector<std::string> small{"film.samples_per_pixel=1", "film.filter=box"};
     scenes.push_back({std::filesystem::path(argv[i]).stem().string(), load_scene(argv[i], small)});
     for (Shape& shape : scenes.back().scene.shapes) shape.reflectance = {};
   }
@@ -92,6 +93,7 @@ int main(int argc, char** argv) try {
   for (NamedScene& named : scenes_of(argc, argv, folder))
     for (const ProfileKind profile : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
       for (Medium& medium : named.scene.media) medium.profile = profile;
+      named.scene.film.resolution = kResolution;
       const Image truth = truth_of(named.scene);
       for (const double target : kTargets) {
         rows.push_back(calibrate(named, target, truth));

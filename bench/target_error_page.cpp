@@ -26,9 +26,9 @@ std::string scatter(std::span<const CalibrationRow> rows) {
       "aria-label=\"Measured against "
       "predicted error\">\n",
       kSide + kMargin, kSide);
-  for (const double ratio : {.05, .1, .2, 1. / 3, .5, 1., 2.}) {
+  for (const double ratio : {.05, .1, .2, .5, 1., 2.}) {
     const double y = kSide - kMargin - place(ratio), x = kMargin + place(ratio);
-    const char* kind = std::abs(ratio - 1) < .01 || std::abs(ratio - 1. / 3) < .01 ? "target" : "grid";
+    const char* kind = std::abs(ratio - 1) < .01 ? "target" : "grid";
     svg += fmt::format("<line class=\"{}\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>\n", kind,
                        kMargin, kSide, y, y);
     svg += fmt::format("<text class=\"tick-y\" x=\"{}\" y=\"{:.1f}\">{:.2g}</text>\n", kMargin - 8, y + 4,
@@ -38,10 +38,10 @@ std::string scatter(std::span<const CalibrationRow> rows) {
   }
   for (const CalibrationRow& row : rows)
     svg += fmt::format(
-        "<circle class=\"series-{}\" fill=\"{}\" stroke=\"var(--c)\" r=\"4\" cx=\"{:.1f}\" "
+        "<circle class=\"series-{}\" fill=\"var(--c)\" r=\"4\" cx=\"{:.1f}\" "
         "cy=\"{:.1f}\"><title>{}"
         "</title></circle>\n",
-        row.profile == ProfileKind::dipole ? 1 : 3, row.fewest ? "none" : "var(--c)",
+        row.profile == ProfileKind::dipole ? 1 : 3,
         kMargin + place(row.predicted / row.target), kSide - kMargin - place(row.measured / row.target),
         escaped(as_line(row)));
   return svg + fmt::format(
@@ -56,52 +56,48 @@ std::string scatter(std::span<const CalibrationRow> rows) {
 std::string as_line(const CalibrationRow& row) {
   return fmt::format(
       "{}, {}: target {:.3g} %, predicted {:.3g} %, measured {:.3g} %, {} samples, {:.2f} s, {:.2f} s of "
-      "it choosing, {:.2f} times the picture alone{}{}{}",
+      "it choosing, {:.2f} times the picture alone{}{}",
       row.scene, profile_name(row), 100 * row.target, 100 * row.predicted, 100 * row.measured, row.samples,
       row.seconds, row.choosing_seconds, row.overhead(),
       row.direct > 0
           ? fmt::format(", by direct {:.2g} % +- {:.1g} %", 100 * row.direct, 100 * row.direct_error)
           : "",
-      row.is_kept() ? "" : ", ABOVE", row.is_too_good() ? ", BELOW A THIRD" : "");
+      row.is_kept() ? "" : ", ABOVE");
 }
 
 std::string verdict_of(std::span<const CalibrationRow> rows) {
-  const auto kept = std::ranges::count_if(rows, &CalibrationRow::is_kept),
-             good = std::ranges::count_if(rows, &CalibrationRow::is_too_good),
-             fewest = std::ranges::count_if(rows, &CalibrationRow::fewest);
+  const auto kept = std::ranges::count_if(rows, &CalibrationRow::is_kept);
   std::vector<double> overheads;
   for (const CalibrationRow& row : rows) overheads.push_back(row.overhead());
   std::ranges::sort(overheads);
   return fmt::format(
-      "{} of {} pairs within the target ({:.1f} %), {} below a third of it with more than the fewest "
-      "samples; {} had the fewest; with the choice a picture costs {:.2f} times what it costs alone in the median, "
-      "90 % under {:.2f}, {:.2f} at most",
-      kept, rows.size(), 100 * double(kept) / double(rows.size()), good, fewest, overheads[rows.size() / 2],
+      "{} of {} pairs within the target ({:.1f} %); with the choice a picture costs {:.2f} times what it costs "
+      "alone in the median, 90 % under {:.2f}, {:.2f} at most",
+      kept, rows.size(), 100 * double(kept) / double(rows.size()), overheads[rows.size() / 2],
       overheads[rows.size() * 9 / 10], overheads.back());
 }
 
 CsvTable calibration_table(std::span<const CalibrationRow> rows) {
   CsvTable table{{{"verdict", verdict_of(rows)}},
                  {"scene", "profile", "target", "predicted", "measured", "direct", "direct_standard_error",
-                  "samples", "fewest_samples", "choosing_cpu", "cpu", "cpu_alone"},
-                 {"", "", "1", "1", "1", "1", "1", "1", "", "s", "s", "s"},
+                  "samples", "choosing_cpu", "cpu", "cpu_alone"},
+                 {"", "", "1", "1", "1", "1", "1", "1", "s", "s", "s"},
                  {}};
   for (const CalibrationRow& row : rows)
     table.rows.push_back({row.scene, profile_name(row), fmt::format("{}", row.target),
                           fmt::format("{:.6g}", row.predicted), fmt::format("{:.6g}", row.measured),
                           row.direct > 0 ? fmt::format("{:.3g}", row.direct) : "",
                           row.direct > 0 ? fmt::format("{:.2g}", row.direct_error) : "",
-                          fmt::format("{}", row.samples), row.fewest ? "yes" : "no",
-                          fmt::format("{:.4f}", row.choosing_seconds), fmt::format("{:.4f}", row.seconds), fmt::format("{:.4f}", row.alone_seconds)});
+                          fmt::format("{}", row.samples), fmt::format("{:.4f}", row.choosing_seconds),
+                          fmt::format("{:.4f}", row.seconds), fmt::format("{:.4f}", row.alone_seconds)});
   return table;
 }
 
 std::string calibration_page(std::span<const CalibrationRow> rows) {
   const CsvTable table = calibration_table(rows);
   std::string body = fmt::format(
-      "<p class=\"answer\">{}.</p>\n<figure>{}<figcaption>Between the two marked heights the "
-      "promise is kept. Blue: dipole, orange: normalized diffusion; hollow: the fewest "
-      "samples were enough. Point at a mark for its scene.</figcaption></figure>\n<table>"
+      "<p class=\"answer\">{}.</p>\n<figure>{}<figcaption>Below the marked height the promise "
+      "is kept. Blue: dipole, orange: normalized diffusion. Point at a mark for its scene.</figcaption></figure>\n<table>"
       "<thead><tr>",
       escaped(verdict_of(rows)), scatter(rows));
   for (std::size_t c = 0; c < table.names.size(); ++c)

@@ -16,13 +16,11 @@ struct CalibrationRow {
   ProfileKind profile = ProfileKind::dipole;
   double target = 0, predicted = 0, measured = 0;
   std::size_t samples = 0;
-  bool fewest = false;                  ///< the cheapest rung: there is nothing less to choose
   double direct = 0, direct_error = 0;  ///< measured against `direct`, and its standard error; 0: not done
   double choosing_seconds = 0, seconds = 0;  ///< CPU of the choice, and with the picture
   double alone_seconds = 0;                  ///< of the picture with what was chosen, by itself
 
   bool is_kept() const { return measured <= target; }
-  bool is_too_good() const { return measured < target / 3 && !fewest; }
   double overhead() const { return seconds / alone_seconds; }
 };
 

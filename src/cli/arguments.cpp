@@ -18,7 +18,8 @@
 #include "cli/quality.h"
 #include "opaline/core/error.h"
 #include "scene/json_tree.h"
-#include "scene/schema.h"
+#include "opaline/scene/nearest_name.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline {
 namespace {

@@ -7,6 +7,7 @@
 #include "cli/help_texts.h"
 #include "cli/option_helpers.h"
 #include "cli/option_values.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline {
 namespace {
@@ -25,6 +26,25 @@ void add_frames_option(CLI::App& app, Options& options) {
       ->type_name("FRAMES");
 }
 
+/// The scene's documentation without its Markdown.
+std::string plain_text(std::string_view markdown) {
+  std::string text;
+  for (const char c : markdown)
+    if (c != '`' && c != '"') text += c;
+  return text;
+}
+
+/// An option that stands for a key of film or settings, with its documentation and, for a whole number, range.
+template <class T>
+CLI::Option* add_key(CLI::App& app, const char* name, T& value, std::string_view path) {
+  const std::size_t dot = path.find('.');
+  const KeyInfo& info = key_info(path.substr(0, dot), path.substr(dot + 1));
+  CLI::Option* option = app.add_option(
+      name, value, fmt::format("{} (default {})", plain_text(info.meaning), plain_text(info.default_value)));
+  if (info.type == ValueType::whole_number) option->transform(whole_number(info.range));
+  return option;
+}
+
 }  // namespace
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {
@@ -38,43 +58,19 @@ void add_common_options(CLI::App& app, std::string& scene, Options& options) {
 }
 
 void add_picture_options(CLI::App& app, Options& options) {
-  const char* group = "Picture";
-  app.add_option("--spp", options.spp, "samples per pixel")
-      ->transform(whole_number(kSpp))
-      ->type_name("N")
-      ->group(group);
-  app.add_option("--resolution", options.resolution, "width and height, e.g. 640x480")
-      ->check(resolution_check())
-      ->type_name("WxH")
-      ->group(group);
-  app.add_option("--crop", options.crop, "only these pixels, from the top left; x1 and y1 excluded")
-      ->check(crop_check())
-      ->type_name("x0,y0,x1,y1")
-      ->group(group);
-  app.add_option("--exposure", options.exposure, "stops, PNG only")->type_name("STOPS")->group(group);
-  app.add_option(
-         "--method", options.method,
-         "hierarchical: light under the surface; lambert: plain paint, fast; direct: the reference, slow")
-      ->type_name("NAME")
-      ->group(group);
-  app.add_option(
-         "--evaluator", options.evaluator,
-         "dual_tree: to settings.tolerance; surface_cache: the same, interpolated; classic: as published; "
-         "brute_force: the exact sum, slow; default: automatic, one of the first two")
-      ->type_name("NAME")
-      ->group(group);
-  app.add_option("--entry-samples", options.entry_samples, "direct: places of entry for each pixel")
-      ->transform(whole_number(kEntrySamples))
-      ->type_name("N")
-      ->group(group);
-  app.add_option("--until-error", options.until_error, "direct: stop at this noise of the pixels, e.g. 0.5%")
-      ->check(positive_share_check())
-      ->type_name("PERCENT")
-      ->group(group);
-  app.add_option("--seed", options.seed, "of all random numbers")
-      ->transform(whole_number(kSeed))
-      ->type_name("N")
-      ->group(group);
+  const auto option = [&](const char* name, auto& value, const char* key, const char* type) {
+    return add_key(app, name, value, key)->type_name(type)->group("Picture");
+  };
+  option("--spp", options.spp, "film.samples_per_pixel", "N");
+  option("--resolution", options.resolution, "film.resolution", "WxH")->check(resolution_check());
+  option("--crop", options.crop, "film.crop", "x0,y0,x1,y1")->check(crop_check());
+  option("--exposure", options.exposure, "film.exposure", "STOPS");
+  option("--method", options.method, "settings.method", "NAME");
+  option("--evaluator", options.evaluator, "settings.evaluator", "NAME");
+  option("--entry-samples", options.entry_samples, "settings.entry_samples", "N");
+  option("--until-error", options.until_error, "settings.until_error", "PERCENT")
+      ->check(positive_share_check());
+  option("--seed", options.seed, "settings.seed", "N");
 }
 
 void add_render_options(CLI::App& app, RenderArguments& render, Options& options) {

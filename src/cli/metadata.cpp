@@ -9,10 +9,10 @@
 #include <fstream>
 #include <set>
 
-#include "cli/names.h"
 #include "cli/report.h"
 #include "geometry/read_mesh.h"
 #include "opaline/core/error.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline {
 namespace {
@@ -35,29 +35,13 @@ std::string mesh_bytes(const Shape& shape, const std::string& path) {
   }
 }
 
-Json settings_json(const Scene& scene, const World& world, std::span<const TranslucentGroup> translucent) {
-  const Settings& settings = scene.settings;
-  const Film& film = scene.film;
-  Json groups = Json::array();
+Json settings_in_use(const Scene& scene, const World& world, std::span<const TranslucentGroup> translucent) {
+  Json json = Json::parse(settings_json(scene));
+  for (const char* asked : {"samples", "sample_spacing"}) json.erase(asked);  // the groups say what came of it
   for (const TranslucentGroup& group : translucent)
-    groups.push_back({{"name", group.plan.name},
-                      {"samples", group.surface.samples.size()},
-                      {"spacing_mm", group.surface.spacing() * world.unit}});
-  Json json{{"method", name_of(settings.method)},
-            {"evaluator", name_of(settings.evaluator)},
-            {"tolerance", settings.tolerance},
-            {"max_solid_angle", settings.max_solid_angle},
-            {"near_field", settings.near_field},
-            {"light_samples", settings.light_samples},
-            {"max_samples", settings.max_samples},
-            {"entry_strategy", name_of(settings.entry_strategy)},
-            {"seed", settings.seed},
-            {"resolution", film.resolution},
-            {"samples_per_pixel", film.samples_per_pixel},
-            {"filter", name_of(film.filter)},
-            {"pixel_type", film.half ? "half" : "float"},
-            {"groups", groups}};
-  if (film.crop) json["crop"] = *film.crop;
+    json["groups"].push_back({{"name", group.plan.name},
+                              {"samples", group.surface.samples.size()},
+                              {"spacing_mm", group.surface.spacing() * world.unit}});
   return json;
 }
 
@@ -136,7 +120,7 @@ Metadata make_metadata(const RenderArguments& arguments, const std::string& hash
   Metadata metadata{{"opaline:version", OPALINE_VERSION}, {"opaline:scene", name}};
   if (!hash.empty()) metadata.emplace_back("opaline:scene_hash", hash);
   metadata.emplace_back("opaline:seed", std::to_string(scene.settings.seed));
-  metadata.emplace_back("opaline:settings", compact(settings_json(scene, world, translucent)));
+  metadata.emplace_back("opaline:settings", compact(settings_in_use(scene, world, translucent)));
   RenderArguments without_folder = arguments;
   without_folder.scene = name;
   metadata.emplace_back("opaline:command", command_of(without_folder));

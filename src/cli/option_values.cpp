@@ -14,8 +14,9 @@
 #include <vector>
 
 #include "cli/display_server.h"
+#include "opaline/scene/nearest_name.h"
+#include "opaline/scene/schema.h"
 #include "scene/json_tree.h"
-#include "scene/schema.h"
 
 namespace opaline {
 namespace {
@@ -24,17 +25,17 @@ constexpr std::array<std::string_view, 11> kLayerWords{"diffuse", "specular",   
                                                        "error",   "irradiance", "variance", "all", "none"};
 constexpr std::span kLayers = std::span(kLayerWords).first(9);
 
-constexpr WholeRange kSide{1, 65536}, kPixel{0, 65536};
+constexpr std::uint64_t kMostPixel = 65536;
 
-/// "640x480" -> "[640,480]"; empty if it is not `count` whole numbers in the range with the separator between
-/// them.
-std::string json_list(std::string_view text, char separator, std::size_t count, WholeRange range) {
+/// "640x480" -> "[640,480]"; empty if it is not `count` whole numbers from `least` to kMostPixel with the
+/// separator between them.
+std::string json_list(std::string_view text, char separator, std::size_t count, std::uint64_t least) {
   std::vector<std::uint64_t> numbers;
   const char *at = text.data(), *end = text.data() + text.size();
   while (numbers.size() < count) {
     std::uint64_t& number = numbers.emplace_back();
     const auto [next, error] = std::from_chars(at, end, number);
-    if (error != std::errc{} || number < range.low || number > range.high) return {};
+    if (error != std::errc{} || number < least || number > kMostPixel) return {};
     if (next == end) break;
     if (*next != separator) return {};
     at = next + 1;
@@ -57,11 +58,11 @@ CLI::Validator check(const char* expected, const IsGood& is_good) {
 }  // namespace
 
 std::string resolution_json(std::string_view text) {
-  return json_list(text, 'x', 2, kSide);
+  return json_list(text, 'x', 2, 1);
 }
 
 std::string crop_json(std::string_view text) {
-  return json_list(text, ',', 4, kPixel);
+  return json_list(text, ',', 4, 0);
 }
 
 std::optional<double> share_of(std::string_view text) {
@@ -90,14 +91,16 @@ CLI::Validator crop_check() {
                [](const std::string& text) { return !crop_json(text).empty(); });
 }
 
-CLI::Validator whole_number(WholeRange range) {
+CLI::Validator whole_number(const Range& range) {
+  constexpr std::uint64_t kMost = UINT64_MAX;
+  const auto low = std::uint64_t(range.low), high = range.high < 0x1p64 ? std::uint64_t(range.high) : kMost;
   return CLI::Validator(
       [=](std::string& text) {
         std::uint64_t number = 0;
         const char* end = text.data() + text.size();
         const auto [next, error] = std::from_chars(text.data(), end, number);
-        if (error != std::errc{} || next != end || number < range.low || number > range.high)
-          return fmt::format("expected a whole number from {} to {}, got {}", range.low, range.high, text);
+        if (error != std::errc{} || next != end || number < low || number > high)
+          return fmt::format("expected a whole number from {} to {}, got {}", low, high, text);
         text = std::to_string(number);
         return std::string();
       },

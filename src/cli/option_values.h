@@ -9,16 +9,11 @@
 #include <string_view>
 
 #include "opaline/image/picture_layers.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline {
 
-struct WholeRange {
-  std::uint64_t low, high;
-};
-
-// As the scene's check has them: here the message can name the option.
-inline constexpr WholeRange kSpp{1, 65536}, kSeed{0, UINT64_MAX}, kThreads{1, 4096},
-    kEntrySamples{1, 1000000000}, kRepeats{3, 1000};
+inline constexpr Range kThreads{1, 4096}, kRepeats{3, 1000};
 
 /// "640x480" -> "[640,480]", "0,0,16,16" -> "[0,0,16,16]"; empty if it is neither.
 std::string resolution_json(std::string_view text);
@@ -30,7 +25,7 @@ std::optional<double> share_of(std::string_view text);
 CLI::Validator resolution_check();
 CLI::Validator crop_check();
 /// CLI11 would let a number beyond 64 bits wrap or stop at the end, and take 010 for 8.
-CLI::Validator whole_number(WholeRange range);
+CLI::Validator whole_number(const Range& range);
 CLI::Validator share_check();
 /// Of (0, 1]. A number without % is below 1: who writes 1 means 1 %.
 CLI::Validator positive_share_check();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include "cli/names.h"
 #include "cli/report.h"
 #include "cli/units.h"
+#include "opaline/scene/names.h"
 
 namespace opaline {
 namespace {
@@ -30,7 +30,7 @@ std::string picture_text(const Film& film) {
 std::string lights_text(const std::vector<Light>& lights) {
   std::string text;
   for (const Light& light : lights) {
-    const std::string kind = name_of(light.source);
+    const std::string kind(name_of(light.source));
     text += (text.empty() ? "" : ", ") + light.name + (light.name == kind ? "" : " (" + kind + ")");
   }
   return text.empty() ? "none" : text;

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 
-#include "cli/names.h"
 #include "cli/render_outputs.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/scene/names.h"
 
 namespace opaline {
 namespace {
@@ -146,13 +146,13 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
   const Settings& settings = session.scene().settings;
   if (arguments.time_budget && settings.method == Method::lambert)
     throw bad_usage("--time-budget chooses how light under the surface is summed",
-                    "--method hierarchical or direct", name_of(settings.method));
+                    "--method hierarchical or direct", std::string(name_of(settings.method)));
   const bool hierarchical = settings.method == Method::hierarchical;
   if (!hierarchical && (arguments.target_error || arguments.verify))
     throw bad_usage(arguments.target_error ? "--target-error chooses how light under the surface is summed"
                                            : "--verify measures how light under the surface is summed",
                     "--method hierarchical; the noise of direct ends at --until-error",
-                    name_of(settings.method));
+                    std::string(name_of(settings.method)));
   if ((!arguments.target_error && !arguments.time_budget) || !hierarchical) return {};
   if (settings.evaluator == EvaluatorKind::classic)
     throw bad_usage(fmt::format("{} cannot tell the error of the classic traversal", option_of(arguments)),

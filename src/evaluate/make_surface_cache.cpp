@@ -128,7 +128,7 @@ class Builder {
       std::ranges::transform(cache_.vertices, values.begin(),
                              [&](const auto& v) { return whole(v.value)[c]; });
       std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(p99));
-      floor_[c] = std::max(1e-3f * values[p99], 1e-30f);
+      floor_[c] = 1e-3f * values[p99];
     }
   }
 

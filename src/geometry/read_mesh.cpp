@@ -16,7 +16,7 @@
 
 #include "geometry/mesh_size.h"
 #include "mesh_scan.h"
-#include "scene/schema.h"
+#include "opaline/scene/nearest_name.h"
 #include "soup_importer.h"
 
 namespace opaline {

@@ -14,7 +14,7 @@ namespace opaline {
 namespace {
 
 // The first and the second half of the low-discrepancy points, each such a set itself, estimate the error of
-// their mean: its variance is (difference of the halves' means)^2 times n0 n1 / n^2.
+// their mean: its standard error is the difference of the halves' means times sqrt(n0 n1) / n.
 class Halves {
  public:
   explicit Halves(int samples) : first_(samples / 2) {
@@ -23,9 +23,8 @@ class Halves {
     weight1_ = std::sqrt(n0 / n1);
   }
   std::size_t of(int sample) const { return sample < first_ ? 0 : 1; }
-  double variance(const std::array<double, 2>& sums) const {
-    const double difference = weight0_ * sums[0] - weight1_ * sums[1];
-    return difference * difference;
+  double deviation(const std::array<double, 2>& sums) const {
+    return std::abs(weight0_ * sums[0] - weight1_ * sums[1]);
   }
 
  private:
@@ -37,7 +36,7 @@ class Halves {
 // single ray has no halves. What a point is off the nearer of two neighbours by, when points that follow each
 // other lie together, is noise, or a little more: the halves' errors are scaled to it on the whole, and never
 // raised.
-void fit_to_neighbours(const std::vector<float>& weights, bool single, std::vector<float>& variances) {
+void fit_to_neighbours(const std::vector<float>& weights, bool single, std::vector<float>& deviations) {
   const std::size_t n = weights.size();
   if (n < 3) return;
   // Means of a normal distribution: the lesser of the two differences, and the absolute value.
@@ -46,13 +45,13 @@ void fit_to_neighbours(const std::vector<float>& weights, bool single, std::vect
   for (std::size_t i = 0; i < n; ++i) {
     const float before = weights[i > 0 ? i - 1 : i + 2], after = weights[i + 1 < n ? i + 1 : i - 2];
     const float lesser = std::min(std::abs(weights[i] - before), std::abs(weights[i] - after));
-    if (single) variances[i] = lesser * lesser;  // as often as not all light or none
+    if (single) deviations[i] = lesser;  // as often as not all light or none
     neighbours += double(lesser) / kLesser;
-    halves += std::sqrt(double(variances[i])) / kAbsolute;
+    halves += double(deviations[i]) / kAbsolute;
   }
   if (single || !(halves > neighbours)) return;
-  const float scale = float(neighbours * neighbours / (halves * halves));
-  for (float& variance : variances) variance *= scale;
+  const float scale = float(neighbours / halves);
+  for (float& deviation : deviations) deviation *= scale;
 }
 
 struct ErrorSums {
@@ -87,7 +86,8 @@ LightTransfer transfer_from(const IrradianceInput& input, const Light& light, st
                     for (std::size_t p = 0; p < sums.size(); ++p) {
                       const double sum = sums[p][0] + sums[p][1];
                       transfer.weights[begin + p] = float(sum);
-                      errors[chunk].variance += halves.variance(sums[p]);
+                      const double deviation = halves.deviation(sums[p]);
+                      errors[chunk].variance += deviation * deviation;
                       errors[chunk].sum += sum;
                     }
                     advance(input.monitor, end - begin);
@@ -130,7 +130,7 @@ PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light
   const std::size_t n = input.points.size(), batch_size = batch_points(input.light_samples);
   PointTransfers transfers;
   transfers.weights.resize(n);
-  if (!input.variance.empty()) transfers.variances.resize(n);
+  if (!input.variance.empty()) transfers.deviations.resize(n);
   ShadowBatch batch(input.rays, input.lights[light], input.eta, input.light_samples,
                     light_seed(input.seed, input.lights[light]));
   const Halves halves(batch.samples());
@@ -147,11 +147,11 @@ PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light
     batch.trace([&](std::size_t p, int s, float e, float) { sums[p][halves.of(s)] += double(e); });
     for (std::size_t p = 0; p < sums.size(); ++p) {
       transfers.weights[begin + p] = float(sums[p][0] + sums[p][1]);
-      if (!transfers.variances.empty()) transfers.variances[begin + p] = float(halves.variance(sums[p]));
+      if (!transfers.deviations.empty()) transfers.deviations[begin + p] = float(halves.deviation(sums[p]));
     }
   }
-  if (!transfers.variances.empty() && !is_delta(input.lights[light]))
-    fit_to_neighbours(transfers.weights, batch.samples() < 2, transfers.variances);
+  if (!transfers.deviations.empty() && !is_delta(input.lights[light]))
+    fit_to_neighbours(transfers.weights, batch.samples() < 2, transfers.deviations);
   return transfers;
 }
 
@@ -166,10 +166,12 @@ std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers,
   std::vector<RgbF> irradiance(input.points.size());
   for (std::size_t l = 0; l < input.lights.size(); ++l) {
     const RgbF colour(emission(input.lights[l]));
-    const auto& [weights, variances] = transfers[l];
+    const auto& [weights, deviations] = transfers[l];
     for (std::size_t i = 0; i < irradiance.size(); ++i) {
       irradiance[i] += colour * weights[i];
-      if (!input.variance.empty() && !variances.empty()) input.variance[i] += colour * colour * variances[i];
+      if (input.variance.empty() || deviations.empty()) continue;
+      const Rgb deviation(colour * deviations[i]);
+      input.variance[i] += deviation * deviation;
     }
   }
   return irradiance;

@@ -28,24 +28,6 @@ std::size_t most_passes(const Settings& settings, const Film& film) {
   return (samples + per_pass - 1) / per_pass;
 }
 
-// Mean of a pixel's passes and the variance of that mean.
-struct Estimate {
-  RgbF mean{}, variance{};
-};
-
-Estimate estimate(const DirectState& state, std::size_t pixel) {
-  Estimate result;
-  const float* sums = state.sums.data() + pixel * DirectState::kSums;
-  const double n = double(state.passes);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double mean = double(sums[c]) / n;
-    result.mean[c] = float(mean);
-    if (state.passes > 1)
-      result.variance[c] = float(std::max(0.0, double(sums[c + 3]) / n - mean * mean) / (n - 1));
-  }
-  return result;
-}
-
 class DirectRenderer {
  public:
   explicit DirectRenderer(const DirectInput& input)
@@ -72,7 +54,8 @@ class DirectRenderer {
       float* sums = state.sums.data() + p * DirectState::kSums;
       for (std::size_t c = 0; c < 3; ++c) {
         sums[c] += radiance[p][c];
-        sums[c + 3] += radiance[p][c] * radiance[p][c];
+        const double root = double(sums[c + 3]), value = double(radiance[p][c]);
+        sums[c + 3] = float(std::sqrt(root * root + value * value));
       }
     }
     ++state.passes;
@@ -88,9 +71,9 @@ class DirectRenderer {
       // As if each of the samples had sent out the mean; where the irradiance of other pictures is, the
       // variance.
       const auto samples = float(scene_.film.samples_per_pixel);
-      const Estimate passes = estimate(state, pixel);
+      const DirectEstimate passes = direct_estimate(state, pixel);
       sum.diffuse = passes.mean * samples;
-      sum.irradiance = passes.variance * sum.coverage;
+      sum.irradiance = RgbF(passes.variance) * sum.coverage;
       non_finite += store_pixel(sum, scene_.film.samples_per_pixel, Method::direct,
                                 result.image.pixels.data() + pixel * result.image.channels.size());
       ++queries;
@@ -137,6 +120,18 @@ std::size_t entry_samples_per_pass(const Film& film) {
   return std::size_t(entry_samples_per_ray(film)) * std::size_t(film.samples_per_pixel);
 }
 
+DirectEstimate direct_estimate(const DirectState& state, std::size_t pixel) {
+  DirectEstimate result;
+  const float* sums = state.sums.data() + pixel * DirectState::kSums;
+  const double n = double(state.passes);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double mean = double(sums[c]) / n, root = double(sums[c + 3]);
+    result.mean[c] = float(mean);
+    if (state.passes > 1) result.variance[c] = std::max(0.0, root * root / n - mean * mean) / (n - 1);
+  }
+  return result;
+}
+
 double relative_noise(const DirectState& state) {
   if (state.passes < 2) return std::numeric_limits<double>::infinity();
   const std::size_t pixels = state.sums.size() / DirectState::kSums;
@@ -144,14 +139,14 @@ double relative_noise(const DirectState& state) {
   std::size_t lit = 0;
   for (std::size_t p = 0; p < pixels; ++p)
     for (std::size_t c = 0; c < 3; ++c)
-      brightest[c] = std::max(brightest[c], double(estimate(state, p).mean[c]));
+      brightest[c] = std::max(brightest[c], double(direct_estimate(state, p).mean[c]));
   for (std::size_t p = 0; p < pixels; ++p) {
-    const Estimate pixel = estimate(state, p);
+    const DirectEstimate pixel = direct_estimate(state, p);
     if (pixel.mean == RgbF{}) continue;
     ++lit;
     for (std::size_t c = 0; c < 3; ++c) {
       const double mean = double(pixel.mean[c]), floor = 0.01 * brightest[c];
-      if (brightest[c] > 0) squares[c] += double(pixel.variance[c]) / (mean * mean + floor * floor);
+      if (brightest[c] > 0) squares[c] += pixel.variance[c] / (mean * mean + floor * floor);
     }
   }
   return lit == 0 ? 0 : std::sqrt(*std::ranges::max_element(squares) / double(lit));

@@ -15,7 +15,7 @@ constexpr const char* kScene = "opaline:direct_scene";
 
 Image empty_state_image(const Scene& scene) {
   return empty_image(rendered_part(scene.film), scene.film,
-                     {"sum.R", "sum.G", "sum.B", "squares.R", "squares.G", "squares.B"});
+                     {"sum.R", "sum.G", "sum.B", "root.R", "root.G", "root.B"});
 }
 
 std::string text_of(const Image& image, const std::string& key) {

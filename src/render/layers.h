@@ -18,7 +18,7 @@ struct PixelSample {
   float coverage = 0; ///< 1 on a surface
   RgbF albedo{}, irradiance{};
   RgbF error{};           ///< of diffuse, much the same for all rays of a pixel
-  RgbF noise{};           ///< variance of diffuse that is each ray's own
+  Rgb noise{};            ///< variance of diffuse that is each ray's own
   RgbF bias{};            ///< signed error of diffuse that rays of a pixel share
   float translucent = 0;  ///< 1 on a translucent surface
   Vec3f normal{}, position{};
@@ -46,8 +46,10 @@ inline std::vector<std::string> layer_names(Method method) {
 inline RgbF pixel_error(const PixelSample& sum, float all) {
   RgbF error = sum.error * all;
   for (std::size_t c = 0; c < 3; ++c)
-    if (sum.noise[c] > 0)
-      error[c] = std::sqrt(error[c] * error[c] + (sum.noise[c] + sum.bias[c] * sum.bias[c]) * all * all);
+    if (sum.noise[c] > 0) {
+      const double shared = double(sum.error[c]), bias = double(sum.bias[c]);
+      error[c] = float(std::sqrt(shared * shared + bias * bias + sum.noise[c])) * all;
+    }
   return error;
 }
 

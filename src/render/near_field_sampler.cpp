@@ -84,7 +84,7 @@ NearFieldSampler::NearFieldSampler(const TranslucentGroup& group, float worth)
 
 std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& lighting,
                                                     std::span<const RgbF> own, std::span<Exitance> exitance,
-                                                    std::span<RgbF> noise, HeldView::NearField* held) const {
+                                                    std::span<Rgb> noise, HeldView::NearField* held) const {
   const double apart = typical_distance(lighting.points);
   const float worth = apart < kFineGrained * near_.root_mean_square ? kWorthShared : worth_;
   std::vector<std::uint32_t> marked;
@@ -212,7 +212,7 @@ std::uint32_t NearFieldSampler::level_of(const Found& found, std::span<const std
 // Where the near fields of points were found before.
 void NearFieldSampler::add_held(const HeldView::NearField& held, const PointIrradianceInput& lighting,
                                 std::span<const RgbF> own, std::span<const std::uint32_t> points,
-                                std::span<Exitance> exitance, std::span<RgbF> noise) const {
+                                std::span<Exitance> exitance, std::span<Rgb> noise) const {
   for (const std::uint32_t i : points) {
     RgbF mean;
     for (std::size_t l = 0; l < lighting.lights.size(); ++l)
@@ -224,11 +224,12 @@ void NearFieldSampler::add_held(const HeldView::NearField& held, const PointIrra
 // Puts the near field's mean irradiance, NaN where it is not known, where `evaluate` took a mixture. noise:
 // the variance of a mean of places of which some have all the light there is, and others none.
 void NearFieldSampler::replace_mixed(const RgbF& own, const RgbF& mean, float variance, Exitance& e,
-                                     RgbF& noise) const {
+                                     Rgb& noise) const {
   for (std::size_t c = 0; c < 3; ++c) {
     if (std::isnan(mean[c])) continue;
     const float brightest = std::max({own[c], e.irradiance[c], mean[c]});
-    noise[c] = e.near[c] * e.near[c] * mean[c] * (brightest - mean[c]) * variance;
+    const double near = double(e.near[c]);
+    noise[c] = near * near * double(mean[c]) * double(brightest - mean[c]) * double(variance);
     const float share = kernel_.own_irradiance[c], mixed = share * own[c] + (1 - share) * e.irradiance[c];
     e.exitance[c] += e.near[c] * (mean[c] - mixed);
     e.error[c] *= kErrorLeft;

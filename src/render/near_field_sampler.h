@@ -38,7 +38,7 @@ class NearFieldSampler {
   /// out   exitance: as evaluated with it, one a point; noise: its variance, one a point, replaced at those
   ///       beside shadow edges; returns which points these were
   std::vector<std::uint32_t> refine(const PointIrradianceInput& lighting, std::span<const RgbF> own,
-                                    std::span<Exitance> exitance, std::span<RgbF> noise,
+                                    std::span<Exitance> exitance, std::span<Rgb> noise,
                                     HeldView::NearField* held = nullptr) const;
 
  private:
@@ -61,10 +61,10 @@ class NearFieldSampler {
   void find(const RayScene& rays, Places& places) const;
   void add_held(const HeldView::NearField& held, const PointIrradianceInput& lighting,
                 std::span<const RgbF> own, std::span<const std::uint32_t> points,
-                std::span<Exitance> exitance, std::span<RgbF> noise) const;
+                std::span<Exitance> exitance, std::span<Rgb> noise) const;
   void replace_all(const Found& found, std::span<const std::uint32_t> points, const NearFieldMeans& means,
                    float variance) const;
-  void replace_mixed(const RgbF& own, const RgbF& mean, float variance, Exitance& e, RgbF& noise) const;
+  void replace_mixed(const RgbF& own, const RgbF& mean, float variance, Exitance& e, Rgb& noise) const;
 
   const SplitKernel& kernel_;
   NearKernel near_;

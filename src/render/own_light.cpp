@@ -75,7 +75,7 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
   const float tolerance = float(settings.tolerance);
   std::vector<std::uint64_t> keys;
   for (const SurfacePoint& point : points) keys.push_back(key_of(point.position));
-  std::vector<RgbF> variance(points.size());
+  std::vector<Rgb> variance(points.size());
   PointIrradianceInput lighting{input_.rays,
                                 points,
                                 keys,
@@ -88,18 +88,21 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
   const auto& share = group_.kernel.own_irradiance;
   for (std::size_t i = 0; i < points.size(); ++i) {
     exitance[i].exitance += own_part(share, exitance[i], own[i]);
-    const RgbF& v = variance[i];
-    const RgbF noise = own_part(share, exitance[i], RgbF{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)});
+    const Rgb& v = variance[i];
+    const RgbF noise =
+        own_part(share, exitance[i], RgbF(Rgb{std::sqrt(v.x), std::sqrt(v.y), std::sqrt(v.z)}));
     doubts[i] = {noise * 2 + exitance[i].exitance * (kBumps * tolerance)};
-    variance[i] = noise * noise;
+    variance[i] = Rgb(noise) * Rgb(noise);
   }
   lighting.variance = {};
   for (const std::uint32_t i : near_field_.refine(lighting, own, exitance, variance))
     doubts[i] = {doubts[i].noise + exitance[i].exitance * (kEdgeNoise * tolerance), true};
   for (std::size_t i = 0; i < points.size(); ++i) {
     exitance[i].irradiance = own[i];
-    for (std::size_t c = 0; c < 3; ++c)
-      exitance[i].error[c] = std::sqrt(exitance[i].error[c] * exitance[i].error[c] + variance[i][c]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double error = double(exitance[i].error[c]);
+      exitance[i].error[c] = float(std::sqrt(error * error + variance[i][c]));
+    }
   }
 }
 

@@ -45,7 +45,7 @@ std::vector<RgbF> selection_bias(const SelectionBiasInput& input) {
         const Exitance& e = input.exitance[i];
         const double change =
             double(input.own_irradiance[c]) * double(e.near[c]) * double(input.own[i][c] - e.irradiance[c]);
-        window.add(change, double(input.noise[i][c]), refined[i]);
+        window.add(change, input.noise[i][c], refined[i]);
       }
       const auto shared = float(window.bias());
       for (std::size_t i = begin; i < end; ++i) bias[i][c] = shared;

@@ -181,7 +181,7 @@ Shader::Lit Shader::light(const Kind& kind, const Surfaces& surfaces, std::span<
   lighting.variance = lit.noise;
   lit.irradiance = irradiance(lighting, held);
   for (std::size_t i = 0; i < lit.noise.size(); ++i) {
-    const RgbF& albedo = appearances_[rays[surfaces.rays[i]].hit.mesh].albedo;
+    const Rgb albedo(appearances_[rays[surfaces.rays[i]].hit.mesh].albedo);
     lit.noise[i] = lit.noise[i] * albedo * albedo;
   }
   return lit;
@@ -202,13 +202,13 @@ Shader::Lit Shader::evaluated(const Kind& kind, const Surfaces& surfaces, std::s
       group.surface_cache ? interpolated(*group.surface_cache, surfaces, lit, rays)
                           : summed(group, surfaces, lit, held != nullptr ? &held->packets : nullptr);
   for (std::size_t i = 0; i < lit.noise.size(); ++i) {
-    const RgbF own = own_part(group.kernel.own_irradiance, exitance[i], RgbF(1));
+    const Rgb own(own_part(group.kernel.own_irradiance, exitance[i], RgbF(1)));
     lit.noise[i] = lit.noise[i] * own * own;
   }
   const auto& near_field = near_fields_[std::size_t(&group - input_.groups.data())];
   const bool keeps = held != nullptr && input_.view->keeps_near_field && input_.view->has_room;
   if (near_field) {
-    const std::vector<RgbF> noise = lit.noise;
+    const std::vector<Rgb> noise = lit.noise;
     const std::vector<std::uint32_t> refined = near_field->refine(
         lighting, lit.irradiance, exitance, lit.noise, keeps ? &held->near_field : nullptr);
     if (has_visible_lights() && !refined.empty())
@@ -262,7 +262,7 @@ void Shader::write(const Surfaces& surfaces, const Lit& lit, std::span<const Tra
     sample.albedo = appearance.albedo;
     if (!lit.irradiance.empty()) sample.irradiance = lit.irradiance[i];
     if (!lit.error.empty()) sample.error = lit.error[i] * radiance;
-    if (!lit.noise.empty()) sample.noise = lit.noise[i] * (radiance * radiance);
+    if (!lit.noise.empty()) sample.noise = lit.noise[i] * double(radiance * radiance);
     if (!lit.bias.empty()) sample.bias = lit.bias[i] * radiance;
     sample.translucent = appearance.translucent ? 1.0f : 0.0f;
     sample.normal = point.normal;

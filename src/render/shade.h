@@ -62,7 +62,7 @@ class Shader {
   struct Lit {
     std::vector<RgbF> exitance;           // empty: albedo x irradiance
     std::vector<RgbF> irradiance, error;  // empty: not known
-    std::vector<RgbF> noise;              // variance of the exitance at each point by itself; empty: none
+    std::vector<Rgb> noise;               // variance of the exitance at each point by itself; empty: none
     std::vector<RgbF> bias;               // that the noise gives the exitance; empty: none
   };
 

@@ -9,9 +9,9 @@
 #include <set>
 #include <vector>
 
-#include "keyed_values.h"
-#include "overrides.h"
-#include "readers.h"
+#include "scene/keyed_values.h"
+#include "scene/overrides.h"
+#include "scene/readers.h"
 
 namespace opaline {
 namespace {
@@ -56,15 +56,15 @@ std::vector<T> read_named(const std::optional<Value>& list, const std::string& d
     records.push_back(read(value, default_name + std::to_string(records.size())));
     const std::string& name = records.back().name;
     if (names.insert(name).second) continue;
-    for (const Value& member : value.members())
-      if (member.node().key == "name") member.fail("is taken", "a name used once");
+    if (const std::optional<Value> own = value.member("name", value.info()))
+      own->fail("is taken", "a name used once");
     value.fail("gets a default name that is taken: '" + printable(name) + "'");
   }
   return records;
 }
 
 void read_surroundings(const Value& value, std::vector<Light>& lights) {
-  const Rgb radiance = value.color(non_negative);
+  const Rgb radiance = value.color();
   if (radiance != Rgb{}) lights.push_back({"surroundings", Surroundings{radiance}, value.place()});
 }
 
@@ -85,11 +85,12 @@ void share_triangles(std::vector<Shape>& shapes) {
 }
 
 Scene read_scene(const Document& document) {
-  const ObjectReader reader(Value(document, document.root, ""), "scene");
+  static const KeyInfo root{"", "scene"};
+  const ObjectReader reader(Value(document, document.root, "", root), "scene");
   Scene scene;
   scene.file = document.file;
   const auto unit = reader.find("mm_per_unit");
-  const double mm_per_unit = scene.mm_per_unit = unit ? unit->number({1e-12, 1e12}) : 1;
+  const double mm_per_unit = scene.mm_per_unit = unit ? unit->number() : 1;
   if (const auto media = reader.find("media"))
     for (const Value& medium : media->members()) scene.media.push_back(read_medium(medium));
   ShapeContext context{std::filesystem::path(document.file).parent_path().string(),

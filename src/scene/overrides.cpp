@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "schema.h"
+#include "opaline/scene/nearest_name.h"
 
 namespace opaline {
 namespace {

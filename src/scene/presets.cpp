@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "presets.h"
+#include "scene/presets.h"
 
 #include <array>
+#include <vector>
 
 namespace opaline {
 
@@ -22,6 +23,15 @@ std::span<const Preset> presets() {
       {"wholemilk", {{.0011, .0024, .014}, {2.55, 3.21, 3.77}}, 1.3},
   }};
   return table;
+}
+
+std::span<const std::string_view> preset_names() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> all;
+    for (const Preset& preset : presets()) all.push_back(preset.name);
+    return all;
+  }();
+  return names;
 }
 
 }  // namespace opaline

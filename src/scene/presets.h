@@ -17,5 +17,7 @@ struct Preset {
 
 /// The twelve materials of Jensen et al. 2001, A Practical Model for Subsurface Light Transport, figure 5.
 std::span<const Preset> presets();
+/// Their names, in that order.
+std::span<const std::string_view> preset_names();
 
 }  // namespace opaline

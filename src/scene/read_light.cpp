@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <array>
-
-#include "readers.h"
+#include "scene/readers.h"
 
 namespace opaline {
 namespace {
 
-constexpr std::array<std::string_view, 4> type_names{"point", "directional", "sphere", "quad"};
-
 LightSource read_directional(const ObjectReader& reader) {
   const Value direction = reader.need("direction");
-  const Vec3d unit = normalized(direction.triple(finite_number));
+  const Vec3d unit = normalized(direction.triple());
   if (unit == Vec3d{}) direction.fail("has no direction", "not [0, 0, 0]");
-  return DirectionalLight{unit, reader.need("irradiance").color(non_negative)};
+  return DirectionalLight{unit, reader.need("irradiance").color()};
 }
 
 LightSource read_quad_light(const ObjectReader& reader, double mm_per_unit) {
@@ -20,7 +16,7 @@ LightSource read_quad_light(const ObjectReader& reader, double mm_per_unit) {
   const Vec3d u = reader.need("u").point(mm_per_unit), v = v_value.point(mm_per_unit);
   check_parallelogram(u, v, v_value);
   return QuadLight{reader.need("corner").point(mm_per_unit), u, v,
-                   reader.need("radiance").color(non_negative)};
+                   reader.need("radiance").color()};
 }
 
 LightSource read_source(const ObjectReader& reader, std::string_view type, double mm_per_unit) {
@@ -28,14 +24,14 @@ LightSource read_source(const ObjectReader& reader, std::string_view type, doubl
   if (type == "quad") return read_quad_light(reader, mm_per_unit);
   if (type == "sphere")
     return SphereLight{reader.need("center").point(mm_per_unit), reader.need("radius").length(mm_per_unit),
-                       reader.need("radiance").color(non_negative)};
-  return PointLight{reader.need("position").point(mm_per_unit), reader.need("intensity").color(non_negative)};
+                       reader.need("radiance").color()};
+  return PointLight{reader.need("position").point(mm_per_unit), reader.need("intensity").color()};
 }
 
 /// The light's type, which decides what other keys it may have.
 std::string_view type_of(const Value& value) {
-  for (const Value& member : value.members())
-    if (member.node().key == "type") return type_names[member.choice(type_names)];
+  const KeyInfo& info = key_info("light.point", "type");
+  if (const std::optional<Value> type = value.member("type", info)) return info.choices[type->choice()];
   value.fail("lacks the key 'type'", "one of point, directional, sphere, quad");
 }
 

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <array>
 
-#include "presets.h"
-#include "readers.h"
+#include "scene/presets.h"
+#include "scene/readers.h"
 
 namespace opaline {
 namespace {
-
-constexpr Range anisotropy_range{-1, 1, true, true};
-constexpr Range eta_range{0.1, 10};
-constexpr std::array<std::string_view, 2> profile_names{"dipole", "normalized_diffusion"};
 
 /// A way to say what the medium is: the key that decides for it, and those that go with it.
 struct Form {
@@ -50,32 +45,30 @@ std::string_view form_of(const ObjectReader& medium) {
 }
 
 const Preset& preset_of(const Value& value) {
-  std::vector<std::string_view> names;
-  for (const Preset& preset : presets()) names.push_back(preset.name);
-  return presets()[value.choice(names)];
+  return presets()[value.choice()];
 }
 
 PhysicalMedium read_physical(const ObjectReader& medium) {
   PhysicalMedium result;
-  result.sigma_a = medium.need("sigma_a").number_or_triple(non_negative);
+  result.sigma_a = medium.need("sigma_a").number_or_triple();
   if (const auto sigma_s_prime = medium.find("sigma_s_prime")) {
-    result.sigma_s_prime = sigma_s_prime->number_or_triple(non_negative);
+    result.sigma_s_prime = sigma_s_prime->number_or_triple();
     return result;
   }
   const auto g = medium.find("g");
   result.sigma_s_prime =
-      medium.need("sigma_s").number_or_triple(non_negative) * (1 - (g ? g->number(anisotropy_range) : 0));
+      medium.need("sigma_s").number_or_triple() * (1 - (g ? g->number() : 0));
   return result;
 }
 
 ArtistMedium read_artist(const ObjectReader& medium) {
   ArtistMedium result;
-  result.subsurface_color = medium.need("subsurface_color").color(unit_interval);
-  result.subsurface_radius = medium.need("subsurface_radius").number_or_triple(non_negative);
+  result.subsurface_color = medium.need("subsurface_color").color();
+  result.subsurface_radius = medium.need("subsurface_radius").number_or_triple();
   if (const auto scale = medium.find("subsurface_radius_scale"))
-    result.subsurface_radius = result.subsurface_radius * scale->number_or_triple(non_negative);
+    result.subsurface_radius = result.subsurface_radius * scale->number_or_triple();
   if (const auto g = medium.find("subsurface_scatter_anisotropy"))
-    result.anisotropy = g->number(anisotropy_range);
+    result.anisotropy = g->number();
   return result;
 }
 
@@ -99,9 +92,9 @@ Medium read_medium(const Value& value) {
   }
   const auto eta = reader.find("eta"), specular_ior = reader.find("specular_ior");
   if (eta && specular_ior) eta->fail_key("and 'specular_ior' are the same", "one of the two");
-  if (eta || specular_ior) medium.eta = (eta ? eta : specular_ior)->number(eta_range);
+  if (eta || specular_ior) medium.eta = (eta ? eta : specular_ior)->number();
   if (const auto profile = reader.find("profile"))
-    medium.profile = static_cast<ProfileKind>(profile->choice(profile_names));
+    medium.profile = static_cast<ProfileKind>(profile->choice());
   return medium;
 }
 

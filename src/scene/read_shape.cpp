@@ -3,21 +3,20 @@
 #include <filesystem>
 
 #include "opaline/scene/load_scene.h"
-#include "presets.h"
-#include "readers.h"
-#include "schema.h"
+#include "opaline/scene/nearest_name.h"
+#include "scene/presets.h"
+#include "scene/readers.h"
 
 namespace opaline {
 namespace {
 
 constexpr std::array<std::string_view, 6> source_names{"file", "sphere", "box", "quad", "slab", "torus"};
-constexpr std::array<std::string_view, 2> normal_names{"smooth", "faceted"};
 
 MeshFile read_mesh_file(const ObjectReader& shape, const ShapeContext& context) {
   MeshFile mesh;
   mesh.path = (std::filesystem::path(context.folder) / with_frame(shape.need("file").string(), context.frame))
                   .string();
-  if (const auto fill_holes = shape.find("fill_holes")) mesh.fill_holes = fill_holes->boolean();
+  if (const auto fill_holes = shape.find("fill_holes")) mesh.fill_holes = fill_holes->flag();
   if (const auto fit_size = shape.find("fit_size")) mesh.fit_size = fit_size->length(context.mm_per_unit);
   return mesh;
 }
@@ -95,7 +94,7 @@ void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shap
   if (medium && reflectance)
     reflectance->fail_key("cannot stand beside 'medium'", "one of the two: translucent or opaque");
   if (medium) shape.medium = find_medium(*medium, *context.media);
-  if (reflectance) shape.reflectance = reflectance->color(unit_interval);
+  if (reflectance) shape.reflectance = reflectance->color();
   if (!group) return;
   shape.group = group->string();
   if (!medium) group->fail_key("has no meaning without 'medium'");
@@ -126,7 +125,7 @@ Shape read_shape(const Value& value, const std::string& name, ShapeContext& cont
   if (mesh != nullptr && !mesh->fit_size)
     for (Vec3d* axis : {&shape.to_world.x, &shape.to_world.y, &shape.to_world.z})
       *axis *= context.mm_per_unit;
-  if (normals) shape.normals = static_cast<NormalMode>(normals->choice(normal_names));
+  if (normals) shape.normals = static_cast<NormalMode>(normals->choice());
   read_surface(reader, context, shape);
   return shape;
 }

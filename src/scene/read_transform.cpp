@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "readers.h"
+#include "scene/readers.h"
 
 namespace opaline {
 namespace {
@@ -28,9 +28,9 @@ Transform rotation(const Vec3d& axis, double degrees) {
 Transform read_rotation(const Value& value) {
   const ObjectReader reader(value, "shape.transform.rotate");
   const Value axis = reader.need("axis");
-  const Vec3d direction = normalized(axis.triple(finite_number));
+  const Vec3d direction = normalized(axis.triple());
   if (direction == Vec3d{}) axis.fail("has no direction", "an axis that is not [0, 0, 0]");
-  return rotation(direction, reader.need("degrees").number(finite_number));
+  return rotation(direction, reader.need("degrees").number());
 }
 
 Transform read_matrix(const Value& value, double mm_per_unit) {
@@ -39,10 +39,10 @@ Transform read_matrix(const Value& value, double mm_per_unit) {
   Transform t;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::vector<Value> row = rows[i].list(4, expected);
-    t.x[i] = row[0].number(finite_number);
-    t.y[i] = row[1].number(finite_number);
-    t.z[i] = row[2].number(finite_number);
-    t.translation[i] = row[3].number(finite_number) * mm_per_unit;
+    t.x[i] = row[0].number();
+    t.y[i] = row[1].number();
+    t.z[i] = row[2].number();
+    t.translation[i] = row[3].number() * mm_per_unit;
   }
   return t;
 }
@@ -57,7 +57,7 @@ Transform read_step(const Value& value, double mm_per_unit) {
   if (kind == "translate") {
     t.translation = argument.point(mm_per_unit);
   } else {
-    const Vec3d scale = argument.number_or_triple(finite_number);
+    const Vec3d scale = argument.number_or_triple();
     t.x.x = scale.x, t.y.y = scale.y, t.z.z = scale.z;
   }
   return t;

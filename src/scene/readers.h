@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "opaline/scene/scene.h"
-#include "value.h"
+#include "scene/value.h"
 
 namespace opaline {
 

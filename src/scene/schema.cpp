@@ -1,137 +1,239 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "schema.h"
+#include "opaline/scene/schema.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <numeric>
+#include <cmath>
+#include <map>
 #include <utility>
 
-#include "json_tree.h"
+#include "opaline/scene/names.h"
+#include "scene/json_tree.h"
+#include "scene/presets.h"
+#include "scene/settings_table.h"
 
 namespace opaline {
 namespace {
 
-struct Section {
-  std::string_view name;
-  std::vector<std::string_view> keys;
-};
+// The light that surrounds the scene is a key of its own.
+constexpr std::span<const std::string_view> kLightTypes = NameList(kLightNames).first(4);
 
-const std::vector<Section>& sections() {
-  static const std::vector<Section> table{
-      {"scene", {"mm_per_unit", "media", "shapes", "lights", "surroundings", "camera", "film", "settings"}},
-      {"medium",
-       {"preset", "sigma_a", "sigma_s_prime", "sigma_s", "g", "subsurface_color", "subsurface_radius",
-        "subsurface_radius_scale", "subsurface_scatter_anisotropy", "specular_ior", "eta", "profile"}},
-      {"shape",
-       {"name", "file", "sphere", "box", "quad", "slab", "torus", "fill_holes", "fit_size", "transform",
-        "normals", "medium", "reflectance", "group"}},
-      {"shape.sphere", {"center", "radius"}},
-      {"shape.box", {"low", "high"}},
-      {"shape.quad", {"corner", "u", "v"}},
-      {"shape.slab", {"center", "width", "depth", "thickness"}},
-      {"shape.torus", {"center", "major_radius", "minor_radius"}},
-      {"shape.transform", {"translate", "scale", "rotate", "matrix"}},
-      {"shape.transform.rotate", {"axis", "degrees"}},
-      {"light.point", {"type", "name", "position", "intensity"}},
-      {"light.directional", {"type", "name", "direction", "irradiance"}},
-      {"light.sphere", {"type", "name", "center", "radius", "radiance"}},
-      {"light.quad", {"type", "name", "corner", "u", "v", "radiance"}},
-      {"camera", {"position", "look_at", "up", "field_of_view"}},
-      {"film", {"resolution", "crop", "samples_per_pixel", "filter", "pixel_type", "exposure"}},
-      {"settings",
-       {"method", "evaluator", "tolerance", "instruction_set", "max_solid_angle", "near_field",
-        "near_irradiance", "sample_spacing", "samples", "max_samples", "light_samples", "entry_strategy",
-        "entry_samples", "until_error", "seed", "reference_frame"}},
-  };
-  return table;
+KeyInfo row(std::string_view section, std::string_view key, ValueType type, std::string_view unit,
+            const Range& range, std::string default_value, std::string_view meaning,
+            std::span<const std::string_view> choices = {}) {
+  return {section, key, type, unit, range, std::move(default_value), meaning, choices};
 }
 
-/// Insertions, deletions, substitutions and swaps of neighbours that turn a into b (optimal string
-/// alignment).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
-  std::iota(last.begin(), last.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        row[j] = std::min(row[j], before[j - 2] + 1);
-    }
-    std::swap(before, last);
-    std::swap(last, row);
+std::vector<KeyInfo> all_rows() {
+  using enum ValueType;
+  std::vector<KeyInfo> rows{
+      row("scene", "mm_per_unit", number, "mm", {1e-12, 1e12}, "1", "length of one scene unit"),
+      row("scene", "media", object, "", kFiniteNumber, "none",
+          "translucent materials: `{\"name\": {...}, ...}`, see medium"),
+      row("scene", "shapes", list, "", kFiniteNumber, "none", "list of things to see, see shape"),
+      row("scene", "lights", list, "", kFiniteNumber, "none", "list of lights, see light"),
+      row("scene", "surroundings", color, "W/(mm² sr)", kNonNegative, "0 (black)",
+          "the same radiance from every direction; works as a light called \"surroundings\""),
+      row("scene", "camera", object, "", kFiniteNumber, "see camera", "where the picture is taken from"),
+      row("scene", "film", object, "", kFiniteNumber, "see film", "the picture itself"),
+      row("scene", "settings", object, "", kFiniteNumber, "see settings", "how it is computed"),
+      row("medium", "preset", choice, "", kFiniteNumber, "",
+          "a measured material: apple, chicken1, chicken2, cream, ketchup, marble, potato, skimmilk, skin1, "
+          "skin2, spectralon, wholemilk (Jensen et al. 2001)",
+          preset_names()),
+      row("medium", "sigma_a", number_or_triple, "1/mm", kNonNegative, "", "absorption"),
+      row("medium", "sigma_s_prime", number_or_triple, "1/mm", kNonNegative, "",
+          "reduced scattering, (1 - g) sigma_s"),
+      row("medium", "sigma_s", number_or_triple, "1/mm", kNonNegative, "", "scattering"),
+      row("medium", "g", number, "", {-1, 1, true, true}, "0",
+          "mean cosine of the scattering angle, beside `sigma_s`: 0 even, towards 1 forward, towards -1 "
+          "back"),
+      row("medium", "subsurface_color", color, "", kUnitInterval, "",
+          "how much of the light that enters comes out again"),
+      row("medium", "subsurface_radius", number_or_triple, "mm", kNonNegative, "",
+          "how far light goes before it is scattered or absorbed, 1/sigma_t; three numbers are red, green "
+          "and blue, not x, y, z"),
+      row("medium", "subsurface_radius_scale", number_or_triple, "", kNonNegative, "1",
+          "multiplies `subsurface_radius`, for a tint"),
+      row("medium", "subsurface_scatter_anisotropy", number, "", {-1, 1, true, true}, "0",
+          "the same as `g`, beside `subsurface_color`"),
+      row("medium", "specular_ior", number, "", {.1, 10},
+          "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
+      row("medium", "eta", number, "", {.1, 10}, "", "another word for `specular_ior`; use one of the two"),
+      row("medium", "profile", choice, "", kFiniteNumber, "`\"dipole\"`",
+          "how light spreads under the surface: `\"dipole\"` (Jensen et al. 2001) or "
+          "`\"normalized_diffusion\"` (Christensen & Burley 2015)",
+          kProfileNames),
+      row("shape", "name", text, "", kFiniteNumber, "\"shape0\", \"shape1\", ...",
+          "what messages and `--set` call it; no two alike"),
+      row("shape", "file", text, "", kFiniteNumber, "",
+          "mesh: OBJ, PLY, STL or OFF; relative paths start at the scene file's folder"),
+      row("shape", "sphere", object, "", kFiniteNumber, "", "a built-in sphere, see below"),
+      row("shape", "box", object, "", kFiniteNumber, "", "a built-in box"),
+      row("shape", "quad", object, "", kFiniteNumber, "", "a built-in parallelogram"),
+      row("shape", "slab", object, "", kFiniteNumber, "", "a built-in plate"),
+      row("shape", "torus", object, "", kFiniteNumber, "", "a built-in ring"),
+      row("shape", "fill_holes", flag, "", kFiniteNumber, "false",
+          "with `file`: close every hole of the mesh; light leaks through an open one"),
+      row("shape", "fit_size", length, "", kFiniteNumber, "as it is in the file",
+          "with `file`: first scale the mesh until the largest side of its bounding box has this length, "
+          "centre it on x = z = 0 and stand it on y = 0"),
+      row("shape", "transform", list, "", kFiniteNumber, "none",
+          "list of steps, applied in the order of the list"),
+      row("shape", "normals", choice, "", kFiniteNumber, "`\"smooth\"`",
+          "`\"smooth\"`: shaded round, with the file's normals where it has them; `\"faceted\"`: each "
+          "triangle flat",
+          kNormalNames),
+      row("shape", "medium", text, "", kFiniteNumber, "opaque", "name of a medium"),
+      row("shape", "reflectance", color, "", kUnitInterval, "0.5",
+          "colour of an opaque shape; not together with `medium`"),
+      row("shape", "group", text, "", kFiniteNumber, "alone",
+          "translucent shapes with the same group blend as one object, others never bleed into each other; a "
+          "group has one medium"),
+      row("shape.sphere", "center", point, "", kFiniteNumber, "[0, 0, 0]", "its centre"),
+      row("shape.sphere", "radius", length, "", kFiniteNumber, "", "its radius"),
+      row("shape.box", "low", point, "", kFiniteNumber, "", "the corner with the smallest x, y and z"),
+      row("shape.box", "high", point, "", kFiniteNumber, "",
+          "the corner with the largest; beyond `low` in all three"),
+      row("shape.quad", "corner", point, "", kFiniteNumber, "", "one corner"),
+      row("shape.quad", "u", point, "", kFiniteNumber, "", "from it along one side"),
+      row("shape.quad", "v", point, "", kFiniteNumber, "",
+          "from it along the other, not parallel to `u`; the front is where u x v points"),
+      row("shape.slab", "center", point, "", kFiniteNumber, "[0, 0, 0]", "its centre"),
+      row("shape.slab", "width", length, "", kFiniteNumber, "", "along x"),
+      row("shape.slab", "depth", length, "", kFiniteNumber, "", "along z"),
+      row("shape.slab", "thickness", length, "", kFiniteNumber, "", "along y"),
+      row("shape.torus", "center", point, "", kFiniteNumber, "[0, 0, 0]", "its centre"),
+      row("shape.torus", "major_radius", length, "", kFiniteNumber, "",
+          "from the centre to the middle of the tube"),
+      row("shape.torus", "minor_radius", length, "", kFiniteNumber, "",
+          "of the tube; less than `major_radius`"),
+      row("shape.transform", "translate", point, "", kFiniteNumber, "", "move by [x, y, z]"),
+      row("shape.transform", "scale", number_or_triple, "not 0", kFiniteNumber, "",
+          "stretch about the origin by a number or [x, y, z]; negative mirrors"),
+      row("shape.transform", "rotate", object, "", kFiniteNumber, "",
+          "turn about an axis through the origin, see below"),
+      row("shape.transform", "matrix", list, "last column in scene units", kFiniteNumber, "",
+          "three rows of four numbers; the last column moves"),
+      row("shape.transform.rotate", "axis", triple, "", kFiniteNumber, "", "[x, y, z], of any length but 0"),
+      row("shape.transform.rotate", "degrees", number, "degrees", kFiniteNumber, "",
+          "counter-clockwise when the axis points at you"),
+      row("light.point", "type", choice, "", kFiniteNumber, "", "`\"point\"`", kLightTypes),
+      row("light.point", "name", text, "", kFiniteNumber, "\"light0\", ...",
+          "what layers, messages and `--set` call it"),
+      row("light.point", "position", point, "", kFiniteNumber, "", "where it is"),
+      row("light.point", "intensity", color, "W/sr", kNonNegative, "", "brightness in every direction"),
+      row("light.directional", "type", choice, "", kFiniteNumber, "", "`\"directional\"`: a sun",
+          kLightTypes),
+      row("light.directional", "name", text, "", kFiniteNumber, "", "as above"),
+      row("light.directional", "direction", triple, "", kFiniteNumber, "",
+          "the way its light travels, of any length but 0"),
+      row("light.directional", "irradiance", color, "W/mm²", kNonNegative, "", "on a surface that faces it"),
+      row("light.sphere", "type", choice, "", kFiniteNumber, "", "`\"sphere\"`: a glowing ball", kLightTypes),
+      row("light.sphere", "name", text, "", kFiniteNumber, "", "as above"),
+      row("light.sphere", "center", point, "", kFiniteNumber, "", "its centre"),
+      row("light.sphere", "radius", length, "", kFiniteNumber, "", "its radius"),
+      row("light.sphere", "radiance", color, "W/(mm² sr)", kNonNegative, "", "brightness of its surface"),
+      row("light.quad", "type", choice, "", kFiniteNumber, "",
+          "`\"quad\"`: a flat lamp, shining on the side where u x v points", kLightTypes),
+      row("light.quad", "name", text, "", kFiniteNumber, "", "as above"),
+      row("light.quad", "corner", point, "", kFiniteNumber, "", "one corner"),
+      row("light.quad", "u", point, "", kFiniteNumber, "", "from it along one side"),
+      row("light.quad", "v", point, "", kFiniteNumber, "", "from it along the other, not parallel to `u`"),
+      row("light.quad", "radiance", color, "W/(mm² sr)", kNonNegative, "", "brightness of its surface"),
+      row("camera", "position", point, "", kFiniteNumber, "[0, 0, 5]", "of the eye"),
+      row("camera", "look_at", point, "", kFiniteNumber, "[0, 0, 0]",
+          "the point in the middle of the picture"),
+      row("camera", "up", triple, "", kFiniteNumber, "[0, 1, 0]",
+          "what is up in the picture; not along the view"),
+      row("camera", "field_of_view", number, "degrees", {0, 180, true, true}, "40", "full vertical angle"),
+  };
+  for (const Member<Film>& member : film_members()) rows.push_back(member.info);
+  for (const Member<Settings>& member : settings_members()) rows.push_back(member.info);
+  return rows;
+}
+
+// ---- documentation ----------------------------------------------------------------------------------------
+
+std::string number_text(double value) {
+  if (value == kMostWholeNumber.high) return "2^64 - 1";
+  const bool is_power = value >= 1e7 || (value > 0 && value < 1e-3);
+  return is_power ? fmt::format("1e{}", std::lround(std::log10(value))) : fmt::format("{}", value);
+}
+
+std::string range_text(const KeyInfo& info) {
+  const Range& range = info.range;
+  if (range.low == kFiniteNumber.low && range.high == kFiniteNumber.high) return "";
+  const std::string low = number_text(range.low), high = number_text(range.high);
+  if (range.without_low && range.without_high) return fmt::format("between {} and {}", low, high);
+  return fmt::format("{}{} to {}", range.without_low ? "> " : "", low, high);
+}
+
+std::string values_text(const KeyInfo& info) {
+  switch (info.type) {
+    case ValueType::length:
+      return "scene units, > 0";
+    case ValueType::point:
+      return "scene units";
+    case ValueType::flag:
+      return "true, false";
+    case ValueType::color:
+      return "colour, " + range_text(info);
+    case ValueType::number:
+    case ValueType::whole_number:
+    case ValueType::number_or_triple:
+      return range_text(info);
+    case ValueType::triple:
+    case ValueType::choice:
+    case ValueType::text:
+    case ValueType::list:
+    case ValueType::object:
+      return "";
   }
-  return last[b.size()];
+  return "";
 }
 
 }  // namespace
+
+std::span<const KeyInfo> schema() {
+  static const std::vector<KeyInfo> rows = all_rows();
+  return rows;
+}
+
+const KeyInfo& key_info(std::string_view section, std::string_view key) {
+  const auto row = std::ranges::find_if(
+      schema(), [&](const KeyInfo& info) { return info.section == section && info.key == key; });
+  require(row != schema().end(), "a key of the scene's schema");
+  return *row;
+}
 
 std::span<const std::string_view> section_keys(std::string_view section) {
-  for (const Section& s : sections())
-    if (s.name == section) return s.keys;
-  return {};
+  static const std::map<std::string_view, std::vector<std::string_view>> sections = [] {
+    std::map<std::string_view, std::vector<std::string_view>> keys;
+    for (const KeyInfo& info : schema()) keys[info.section].push_back(info.key);
+    return keys;
+  }();
+  const auto found = sections.find(section);
+  return found == sections.end() ? std::span<const std::string_view>() : found->second;
 }
 
-std::vector<std::string> all_known_keys() {
-  std::vector<std::string> keys;
-  for (const Section& section : sections())
-    for (const std::string_view key : section.keys)
-      keys.push_back(std::string(section.name) + '.' + std::string(key));
-  return keys;
+std::string documentation(const KeyInfo& info) {
+  const std::string values = values_text(info);
+  const std::string_view comma = info.unit.empty() || values.empty() ? "" : ", ";
+  const auto cell = [](const std::string& text) { return text.empty() ? " |" : " " + text + " |"; };
+  return fmt::format("| `{}` |", info.key) + cell(std::string(info.meaning)) +
+         cell(fmt::format("{}{}{}", info.unit, comma, values)) + cell(info.default_value);
 }
 
-namespace {
-
-std::string suggestion(std::string_view name) {
-  return name.empty() ? "" : " (did you mean '" + printable(name) + "'?)";
-}
-
-/// The candidate that is spelt almost alike, or empty.
-std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
-  constexpr std::size_t longest = 64;  // a name may be megabytes long; then nothing is near it
-  std::string_view nearest;
-  std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
-  for (const std::string_view candidate : candidates) {
-    if (name.size() > longest || candidate.size() > longest) continue;
-    const std::size_t distance = edit_distance(name, candidate);
-    if (distance < least && distance < candidate.size()) {
-      least = distance;
-      nearest = candidate;
-    }
-  }
-  return nearest;
-}
-
-/// The sections that stand once in a scene, so that their keys have one path.
-constexpr std::array<std::string_view, 3> kSingleSections{"camera", "film", "settings"};
-
-/// Path of a key in one of them that is called like this, or, if `almost`, spelt almost alike; or empty.
-std::string path_elsewhere(std::string_view key, bool almost) {
-  for (const std::string_view section : kSingleSections) {
-    const std::span<const std::string_view> keys = section_keys(section);
-    const bool is_there = std::ranges::find(keys, key) != keys.end();
-    const std::string_view found = is_there ? key : almost ? nearest_name(key, keys) : std::string_view();
-    if (!found.empty()) return std::string(section) + '.' + std::string(found);
-  }
-  return {};
-}
-
-}  // namespace
-
-std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates) {
-  return suggestion(nearest_name(name, candidates));
-}
-
-std::string did_you_mean_key(std::string_view name, std::string_view section) {
-  const std::span<const std::string_view> keys = section_keys(section);
-  // Keys of a shape, a light or a medium are not mixed up with the others: only their names are alike.
-  const bool may_be_elsewhere =
-      section == "scene" || std::ranges::find(kSingleSections, section) != kSingleSections.end();
-  if (!may_be_elsewhere) return did_you_mean(name, keys);
-  const std::string exact = path_elsewhere(name, false);
-  if (!exact.empty()) return suggestion(exact);
-  const std::string_view near = nearest_name(name, keys);
-  return near.empty() ? suggestion(path_elsewhere(name, true)) : suggestion(near);
+std::string settings_json(const Scene& scene) {
+  std::string json;
+  const auto add = [&](const KeyInfo& info, const std::string& value) {
+    if (!value.empty()) json += fmt::format("{}\"{}\":{}", json.empty() ? "" : ",", info.key, value);
+  };
+  for (const Member<Settings>& member : settings_members()) add(member.info, member.json(scene.settings));
+  for (const Member<Film>& member : film_members()) add(member.info, member.json(scene.film));
+  return '{' + json + '}';
 }
 
 std::string join(std::span<const std::string_view> names) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "value.h"
+#include "opaline/scene/nearest_name.h"
+#include "scene/value.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
-
-#include "schema.h"
 
 namespace opaline {
 namespace {
@@ -62,7 +61,13 @@ double Value::number(const Range& range) const {
   return x;
 }
 
-std::uint64_t Value::integer(std::uint64_t low, std::uint64_t high) const {
+std::uint64_t Value::whole_number() const {
+  const Range& range = info_->range;
+  const bool unbounded = range.high >= kMostWholeNumber.high;
+  return whole_number(std::uint64_t(range.low), unbounded ? UINT64_MAX : std::uint64_t(range.high));
+}
+
+std::uint64_t Value::whole_number(std::uint64_t low, std::uint64_t high) const {
   const std::string expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
   const Node& node = require_kind(Node::Kind::number, expected);
   std::optional<std::uint64_t> whole = node.whole;
@@ -74,7 +79,7 @@ std::uint64_t Value::integer(std::uint64_t low, std::uint64_t high) const {
   return *whole;
 }
 
-bool Value::boolean() const {
+bool Value::flag() const {
   return require_kind(Node::Kind::boolean, "true or false").boolean;
 }
 
@@ -85,7 +90,8 @@ std::string Value::string() const {
   return node.text;
 }
 
-std::size_t Value::choice(std::span<const std::string_view> names) const {
+std::size_t Value::choice() const {
+  const std::span<const std::string_view> names = info_->choices;
   const std::string& name = require_kind(Node::Kind::string, "one of " + join(names)).text;
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
@@ -98,15 +104,16 @@ Vec3d Value::triple(const Range& range) const {
   return {values[0].number(range), values[1].number(range), values[2].number(range)};
 }
 
-Vec3d Value::number_or_triple(const Range& range) const {
-  if (node_->kind == Node::Kind::array) return triple(range);
-  require_kind(Node::Kind::number, "a number or a list of 3 numbers in " + text(range));
-  return Vec3d(number(range));
+Vec3d Value::number_or_triple() const {
+  if (node_->kind == Node::Kind::array) return triple();
+  require_kind(Node::Kind::number, "a number or a list of 3 numbers in " + text(info_->range));
+  return Vec3d(number());
 }
 
-Rgb Value::color(const Range& range) const {
-  const std::string expected = "a colour: [r, g, b] or one number, in " + text(range) + ", or \"#rrggbb\"";
-  if (node_->kind == Node::Kind::number || node_->kind == Node::Kind::array) return number_or_triple(range);
+Rgb Value::color() const {
+  const std::string expected =
+      "a colour: [r, g, b] or one number, in " + text(info_->range) + ", or \"#rrggbb\"";
+  if (node_->kind == Node::Kind::number || node_->kind == Node::Kind::array) return number_or_triple();
   if (const std::optional<Rgb> color = hex_color(require_kind(Node::Kind::string, expected).text))
     return *color;
   fail("is no colour", expected);
@@ -129,15 +136,22 @@ std::vector<Value> Value::list() const {
   std::vector<Value> values;
   values.reserve(node.children.size());
   for (const Node& child : node.children)
-    values.emplace_back(*document_, child, path_of(std::to_string(values.size())));
+    values.emplace_back(*document_, child, path_of(std::to_string(values.size())), *info_);
   return values;
 }
 
 std::vector<Value> Value::members() const {
   std::vector<Value> values;
   for (const Node& child : require_kind(Node::Kind::object, "an object {\"name\": ...}").children)
-    values.emplace_back(*document_, child, path_of(child.key));
+    values.emplace_back(*document_, child, path_of(child.key), *info_);
   return values;
+}
+
+std::optional<Value> Value::member(std::string_view key, const KeyInfo& info) const {
+  require_kind(Node::Kind::object, "an object {...}");
+  const Node* child = find_member(*node_, key);
+  if (child == nullptr) return {};
+  return Value(*document_, *child, path_of(key), info);
 }
 
 std::vector<Value> Value::list(std::size_t size, const std::string& expected) const {
@@ -186,7 +200,7 @@ const Node& Value::require_kind(Node::Kind kind, const std::string& expected) co
 }
 
 ObjectReader::ObjectReader(const Value& value, std::string_view section)
-    : Value(value), keys_(section_keys(section)) {
+    : Value(value), section_(section), keys_(section_keys(section)) {
   require(!keys_.empty(), "a section of the scene's schema");
   for (const Node& child : require_kind(Node::Kind::object, "an object {...}").children) {
     if (std::find(keys_.begin(), keys_.end(), child.key) != keys_.end()) continue;
@@ -199,9 +213,7 @@ ObjectReader::ObjectReader(const Value& value, std::string_view section)
 
 std::optional<Value> ObjectReader::find(std::string_view key) const {
   require(std::find(keys_.begin(), keys_.end(), key) != keys_.end(), "a key of the section");
-  const Node* child = find_member(*node_, key);
-  if (child == nullptr) return {};
-  return Value(*document_, *child, path_of(key));
+  return member(key, key_info(section_, key));
 }
 
 Value ObjectReader::need(std::string_view key) const {

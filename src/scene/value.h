@@ -10,42 +10,35 @@
 #include <string_view>
 #include <vector>
 
-#include "json_tree.h"
 #include "opaline/core/vec3.h"
+#include "opaline/scene/schema.h"
+#include "scene/json_tree.h"
 
 namespace opaline {
 
-/// The numbers from low to high, with or without the ends.
-struct Range {
-  double low, high;
-  bool without_low = false, without_high = false;
-};
-
-constexpr Range non_negative{0, 1e30};
-constexpr Range unit_interval{0, 1};
-constexpr Range finite_number{-1e30, 1e30};
-
-/// A value and its name: the path that `--set` would use for it.
+/// A value, its name (the path that `--set` would use for it), and the row of the schema that says what it
+/// may be.
 class Value {
  public:
-  Value(const Document& document, const Node& node, std::string path)
-      : document_(&document), node_(&node), path_(std::move(path)) {}
+  Value(const Document& document, const Node& node, std::string path, const KeyInfo& info)
+      : document_(&document), node_(&node), info_(&info), path_(std::move(path)) {}
 
   const Node& node() const { return *node_; }
+  const KeyInfo& info() const { return *info_; }
   const std::string& path() const { return path_; }
   SourcePlace place() const { return place_at(*document_, node_->offset, node_->override_index); }
 
+  double number() const { return number(info_->range); }
   double number(const Range& range) const;
-  /// A whole number from low to high.
-  std::uint64_t integer(std::uint64_t low, std::uint64_t high) const;
-  bool boolean() const;
+  std::uint64_t whole_number() const;
+  std::uint64_t whole_number(std::uint64_t low, std::uint64_t high) const;
+  bool flag() const;
   std::string string() const;  ///< not empty
-  /// One of the names, as its index.
-  std::size_t choice(std::span<const std::string_view> names) const;
+  std::size_t choice() const;  ///< the index of one of the row's choices
 
-  Vec3d triple(const Range& range) const;            ///< [x, y, z]
-  Vec3d number_or_triple(const Range& range) const;  ///< [x, y, z], or one number for all three
-  Rgb color(const Range& range) const;  ///< linear [r, g, b], one grey number, or "#rrggbb" in sRGB
+  Vec3d triple() const { return triple(info_->range); }  ///< [x, y, z]
+  Vec3d number_or_triple() const;                        ///< [x, y, z], or one number for all three
+  Rgb color() const;  ///< linear [r, g, b], one grey number, or "#rrggbb" in sRGB
 
   double length(double mm_per_unit) const;  ///< > 0, from scene units to mm
   Vec3d point(double mm_per_unit) const;    ///< from scene units to mm
@@ -55,6 +48,8 @@ class Value {
 
   /// The members of an object whose keys are names that the user chose.
   std::vector<Value> members() const;
+  /// One member of an object, read by a row of the schema.
+  std::optional<Value> member(std::string_view key, const KeyInfo& info) const;
 
   /// Throws an error at the value: "'path' message (expected ..., got what it is)".
   [[noreturn]] void fail(const std::string& message, const std::string& expected = {}) const;
@@ -66,9 +61,11 @@ class Value {
   std::string describe() const;  ///< what the value is, for messages
   std::string path_of(std::string_view child) const;
   const Node& require_kind(Node::Kind kind, const std::string& expected) const;
+  Vec3d triple(const Range& range) const;
 
   const Document* document_;
   const Node* node_;
+  const KeyInfo* info_;
   std::string path_;
 };
 
@@ -84,6 +81,7 @@ class ObjectReader : public Value {
   std::string_view exactly_one_of(std::span<const std::string_view> keys) const;
 
  private:
+  std::string section_;
   std::span<const std::string_view> keys_;
 };
 

@@ -28,6 +28,16 @@ std::size_t carried_count(const SampleOrigin& origin, const GroupPlan& plan) {
 
 }  // namespace
 
+bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings) {
+  constexpr double kMore = 2;          // times the number, where the scene allows no more than that
+  constexpr double kFewer = 1.0 / 16;  // of the number: four times as far apart as asked for
+  if (!(origin.area > 0)) return false;
+  const double count = double(origin.count), carried = count * (plan.area / origin.area);
+  const bool by_number = origin.count_was_set || origin.count >= settings.max_samples;
+  return carried > std::max(double(settings.max_samples), kMore * count) ||
+         (by_number && carried < kFewer * count);
+}
+
 void Session::bring_samples(Part& part, const PrecomputeInput& input, std::size_t group) {
   const StageKey anew = samples_key(input, mesh_keys_, group);
   if (anew == part.samples_key) return keep_samples(part);
@@ -38,6 +48,7 @@ void Session::bring_samples(Part& part, const PrecomputeInput& input, std::size_
     return keep_samples(part);
   }
   if (!is_from_this_plan(part.origin, input, group) ||
+      has_outgrown(part.origin, part.plan, input.scene.settings) ||
       !can_carry(*part.origin.world, part.origin.meshes, *world_, part.plan.meshes))
     return place_anew(part, input, group, anew);
   const StageKey carried =

@@ -20,7 +20,8 @@ constexpr double kNoise = 0.7;
 
 /// As many pixels as it takes to see the points wanted.
 Scene sparse_scene(const Session& session, Monitor* monitor) {
-  const Image counted = probe_picture(session, probe_scene(session.scene(), kCountingPixels), 0, monitor);
+  const Image counted =
+      probe_picture(session, probe_scene(session.scene(), kCountingPixels), 0, monitor).image;
   const std::vector<std::uint8_t> lit = translucent_pixels(counted);
   const double share = double(std::ranges::count(lit, 1)) / double(lit.size());
   return probe_scene(session.scene(), share > 0 ? std::min(kMostPixels, kPoints / share) : 1);
@@ -29,13 +30,13 @@ Scene sparse_scene(const Session& session, Monitor* monitor) {
 /// One channel: noise that is independent of the error adds its square at each point. Relative to the
 /// picture, which has no noise to speak of: dividing by the reference would raise what it has too little of.
 MeasuredError measured(const std::vector<double>& errors, const std::vector<float>& picture,
-                       const std::vector<float>& variance, double floor) {
+                       const DirectState& reference, std::size_t channel, double floor) {
   std::vector<double> without;
   double noise = 0, mean_noise = 0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (std::isnan(errors[i])) continue;
     const double scale = std::max(double(picture[i]), floor),
-                 own_noise = double(variance[i]) / (scale * scale);
+                 own_noise = direct_estimate(reference, i).variance[channel] / (scale * scale);
     without.push_back(std::sqrt(std::max(0.0, errors[i] * errors[i] - own_noise)));
     noise += own_noise;
     mean_noise += std::sqrt(own_noise);
@@ -49,14 +50,13 @@ MeasuredError measured(const std::vector<double>& errors, const std::vector<floa
 }
 
 /// The channel that is worst for sure: one with more noise may only look worse.
-MeasuredError worst_channel(const Image& picture, const Image& reference) {
-  const Layer diffuse = extract_layer(picture, "diffuse"), variance = extract_layer(reference, "variance");
+MeasuredError worst_channel(const Image& picture, const Image& reference, const DirectState& state) {
+  const Layer diffuse = extract_layer(picture, "diffuse");
   const RelativeErrors errors =
       relative_errors(extract_layer(reference, "diffuse"), diffuse, translucent_pixels(picture));
   MeasuredError worst;
   for (std::size_t c = 0; c < errors.channels.size(); ++c) {
-    const MeasuredError own =
-        measured(errors.channels[c], diffuse.channels[c], variance.channels[c], errors.floors[c]);
+    const MeasuredError own = measured(errors.channels[c], diffuse.channels[c], state, c, errors.floors[c]);
     if (worst.points == 0 || own.error - own.standard_error > worst.error - worst.standard_error) worst = own;
   }
   return worst;
@@ -66,7 +66,7 @@ MeasuredError worst_channel(const Image& picture, const Image& reference) {
 
 MeasuredError measure_error(const Session& session, double expected, Monitor* monitor) {
   Scene scene = sparse_scene(session, monitor);
-  const Image picture = probe_picture(session, scene, 0, monitor);
+  const Image picture = probe_picture(session, scene, 0, monitor).image;
   scene.settings.method = Method::direct;
   scene.settings.until_error.reset();
   DirectState state;
@@ -74,7 +74,7 @@ MeasuredError measure_error(const Session& session, double expected, Monitor* mo
     scene.settings.entry_samples = entry_samples;
     const DirectResult direct =
         render_direct({scene, session.world(), session.rays(), session.plan(), monitor}, state);
-    MeasuredError result = worst_channel(picture, direct.picture.image);
+    MeasuredError result = worst_channel(picture, direct.picture.image, state);
     result.entry_samples = direct.entry_samples;
     return result;
   };

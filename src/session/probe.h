@@ -14,7 +14,7 @@ Scene probe_scene(const Scene& scene, double most_pixels);
 
 /// The probe seen with the samples, trees and surface caches that the session has prepared.
 /// in    noise: pictures of different ones share no random number of a shadow ray
-Image probe_picture(const Session& session, Scene probe, std::uint64_t noise, Monitor* monitor);
+RenderResult probe_picture(const Session& session, Scene probe, std::uint64_t noise, Monitor* monitor);
 
 /// 1 for each pixel of a probe's picture that shows lit translucent surface.
 std::vector<std::uint8_t> translucent_pixels(const Image& picture);

@@ -136,7 +136,8 @@ void Session::keep_spacing() {
   for (GroupPlan& group : plan_.groups) {
     const auto part = std::ranges::find_if(parts_, [&](const Part& p) { return p.plan.name == group.name; });
     if (part == parts_.end() || part->origin.count == 0 || part->origin.count == group.samples ||
-        part->origin.count_was_set || part->origin.spacing_setting != settings.sample_spacing)
+        part->origin.count_was_set || part->origin.spacing_setting != settings.sample_spacing ||
+        has_outgrown(part->origin, group, settings))
       continue;
     const double asked = group.area / double(group.samples),
                  there = part->origin.area / double(part->origin.count);

@@ -20,6 +20,10 @@ struct SampleOrigin {
   std::optional<double> spacing_setting;
 };
 
+/// Whether the body no longer suits the spacing that carried samples keep: there would be more of them than
+/// the scene allows, or, where the scene sets their number, a small part of that.
+bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings);
+
 struct Session::Part {
   GroupPlan plan;
   DiffuseProfile profile;

@@ -37,7 +37,9 @@ void SettingsSearch::place(double samples) {
 }
 
 Image SettingsSearch::picture() {
-  return probe_picture(session, probe_scene(scene, probe_pixels), ++pictures, monitor);
+  RenderResult result = probe_picture(session, probe_scene(scene, probe_pixels), ++pictures, monitor);
+  estimated = estimated_relative_error(result.image, result.translucent);
+  return std::move(result.image);
 }
 
 Image SettingsSearch::picture_of(double samples) {

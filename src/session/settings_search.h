@@ -16,6 +16,7 @@ struct SettingsSearch {
   double probe_pixels = 96 * 96;      ///< errors may be in a few pixels alone, beside the edge of a shadow
   std::size_t enough_points = 3000;   ///< of a probe, lit and translucent
   std::uint64_t pictures = 0;
+  double estimated = 0;  ///< mean relative error of the last picture, by its own `error` layer
 
   /// Settings that the search itself needs: the evaluator is not left open; edits the session, and learns the
   /// area and the most samples of all groups.

@@ -12,76 +12,82 @@
 namespace opaline {
 namespace {
 
-// Nearly all predictions are less than this factor too low.
-constexpr double kSafety = 1.4;
-// So far beyond the samples at hand an error is extrapolated.
-constexpr double kFarthest = 1.5;
-// Shadow rays double where their noise alone is more than this share of the target.
+// Estimates are rarely less than this factor too low.
+constexpr double kSafety = 1.6;
+// So many samples are off by about this, whatever they stand on; with their number that falls by this power.
+constexpr double kUsualSamples = 17000, kUsualError = 0.006, kSlope = 0.8;
+// Where they are too few they grow by this factor at least, and so much beyond what the slope says: one step
+// is cheaper than two.
+constexpr double kLeastGrowth = 1.5, kBeyond = 1.15, kMostGrowth = 4;
+// Shadow rays grow where their noise alone is more than this share of the target.
 constexpr double kMostNoise = 0.5;
 constexpr int kMostLightSamples = 65536;
+constexpr int kMostSteps = 12;
+// Of the small pictures: a mean needs no more.
+constexpr double kProbePixels = 64 * 64;
+constexpr std::size_t kEnoughPoints = 1500;
 
-struct Step {
-  double samples = 0, error = 0, slope = 0;
-
-  double error_of(double others) const { return error * std::pow(samples / others, slope); }
-  double samples_of(double wanted) const { return samples * std::pow(error / wanted, 1 / slope); }
-};
-
-/// Where the noise of shadow rays alone is much of the target.
-void double_light_samples(SettingsSearch& search, const Image& picture, double target) {
-  if (std::ranges::all_of(search.scene.lights, is_delta)) return;
-  const double noise = probe_difference(search.picture(), picture) / std::sqrt(2);
-  int& rays = search.scene.settings.light_samples;
-  if (noise > kMostNoise * target) rays = std::min(2 * rays, kMostLightSamples);
+/// So many as usually do.
+double first_guess(const SettingsSearch& search, double fewest, double target) {
+  const double guess = kUsualSamples * std::pow(kSafety * kUsualError / target, 1 / kSlope);
+  return std::clamp(guess, fewest, search.most_samples);
 }
 
-/// Doubles the samples until about as many are enough, or more are too many.
-Step approach(SettingsSearch& search, Image before, double samples, double target) {
-  const auto double_samples = [&] {
-    samples = std::min(2 * samples, search.most_samples);
-    return search.picture_of(samples);
-  };
-  Step step;
-  Image now = double_samples();
-  for (double last = probe_difference(before, now);;) {
-    Image next = double_samples();
-    const double difference = probe_difference(now, next), error = probe_error(next, now, before);
-    const Step previous = std::exchange(step, {samples, error, error_slope(last, difference)});
-    // Two estimates in a row are less by chance than one.
-    if (previous.error > 0) step.error = std::sqrt(error * previous.error_of(samples));
-    last = difference;
-    if (step.samples_of(target / kSafety) <= kFarthest * samples || samples >= search.most_samples)
-      return step;
-    double_light_samples(search, next, target);
-    before = std::move(now);
-    now = std::move(next);
+/// Of the shadow rays of a small picture, as another one differs.
+double noise_of(SettingsSearch& search, const Image& picture) {
+  if (std::ranges::all_of(search.scene.lights, is_delta)) return 0;
+  return probe_difference(search.picture(), picture) / std::sqrt(2);
+}
+
+/// Adds shadow rays where their noise is too much; whether it was. The error of low-discrepancy points falls
+/// faster than the root of their number.
+bool add_light_samples(SettingsSearch& search, double noise, double target) {
+  int& rays = search.scene.settings.light_samples;
+  const double excess = kSafety * noise / (kMostNoise * target);
+  if (excess <= 1 || rays >= kMostLightSamples) return false;
+  rays = int(std::min(std::ceil(rays * std::pow(excess, 1.5)), double(kMostLightSamples)));
+  return true;
+}
+
+/// Adds samples and shadow rays until the picture's estimate is within the target.
+void approach(SettingsSearch& search, Image picture, double samples, double target) {
+  for (int step = 0; step < kMostSteps && kSafety * search.estimated > target; ++step) {
+    const double estimated = search.estimated, noise = std::min(noise_of(search, picture), estimated),
+                 excess = kSafety * std::sqrt(estimated * estimated - noise * noise) / target;
+    const bool more_rays = add_light_samples(search, noise, target),
+               more_samples = samples < search.most_samples && (excess > 1 || !more_rays);
+    if (!more_rays && !more_samples) return;
+    const double before = samples;
+    if (more_samples)
+      samples = std::min(search.most_samples, samples * std::clamp(kBeyond * std::pow(excess, 1 / kSlope),
+                                                                   kLeastGrowth, kMostGrowth));
+    const Image last = std::exchange(picture, search.picture_of(samples));
+    // A second opinion: the last picture was about as much off as the two differ.
+    if (samples > before)
+      search.estimated =
+          std::sqrt(search.estimated * probe_difference(last, picture) * std::pow(before / samples, kSlope));
   }
 }
 
-/// Keeps a surface cache if its interpolation is within the target too; returns the error then.
-double choose_evaluator(SettingsSearch& search, double predicted, double target) {
-  const Image exact = search.picture();
-  if (!search.try_surface_cache()) return predicted;
-  const double both = std::hypot(predicted, probe_difference(search.picture(), exact));
-  if (kSafety * both <= target) return both;
+/// Keeps a surface cache if the picture is then within the target, too.
+void choose_evaluator(SettingsSearch& search, double target) {
+  const double exact = search.estimated;
+  if (!search.try_surface_cache()) return;
+  search.picture();
+  if (kSafety * search.estimated <= std::max(target, kSafety * exact)) return;
   search.scene.settings.evaluator = EvaluatorKind::dual_tree;
-  return predicted;
-}
-
-/// As few samples as the step promises the target for.
-double samples_for(const SettingsSearch& search, const Step& step, double fewest, double target) {
-  const double samples = std::clamp(step.samples_of(target / kSafety), fewest,
-                                    std::min(kFarthest * step.samples, search.most_samples));
-  // Those that are placed already cost less than a few less.
-  return samples > 0.8 * step.samples ? std::max(samples, step.samples) : samples;
+  search.estimated = exact;
 }
 
 }  // namespace
 
 TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor) {
   SettingsSearch search{session, scene, monitor};
+  search.probe_pixels = kProbePixels;
+  search.enough_points = kEnoughPoints;
   search.begin(tolerance_for(target));
-  const double fewest = std::min(kFewestTargetSamples, search.most_samples), start = fewest / 2;
+  const double fewest = std::min(kFewestTargetSamples, search.most_samples),
+               start = first_guess(search, fewest, target);
   Image first;
   if (fewest > 0) first = search.first_picture(start);
   TargetError result;
@@ -90,13 +96,10 @@ TargetError reach_error(Session& session, Scene scene, double target, Monitor* m
     session.edit(std::move(scene));
     return result;
   }
-  const Step step = approach(search, std::move(first), start, target);
-  const double samples = samples_for(search, step, fewest, target);
-  result.predicted = step.error_of(samples);
+  approach(search, std::move(first), start, target);
+  if (scene.settings.evaluator == EvaluatorKind::automatic) choose_evaluator(search, target);
+  result.predicted = search.estimated;
   result.reached = result.predicted <= target;
-  search.place(samples);
-  if (scene.settings.evaluator == EvaluatorKind::automatic)
-    result.predicted = choose_evaluator(search, result.predicted, target);
   result.samples = search.planned_samples();
   session.edit(std::move(search.scene));
   return result;

@@ -104,7 +104,7 @@ void BudgetSearch::try_first(const FinishPicture& finish) {
   Scene whole = probe_scene(search_.scene, search_.probe_pixels);
   whole.shapes = search_.scene.shapes;
   finishing_ =
-      finishing_cost(probe_picture(search_.session, whole, 0, search_.monitor), search_.scene.film, finish);
+      finishing_cost(probe_picture(search_.session, whole, 0, search_.monitor).image, search_.scene.film, finish);
 }
 
 void BudgetSearch::try_samples(double samples) {

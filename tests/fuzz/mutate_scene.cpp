@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "scene/schema.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline::fuzz {
 namespace {

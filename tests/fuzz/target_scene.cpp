@@ -2,7 +2,7 @@
 // The scene reader: a scene's text, and after it a line "--set path=value" for each override.
 #include "fuzz_target.h"
 #include "opaline/scene/load_scene.h"
-#include "scene/schema.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline::fuzz {
 
@@ -13,11 +13,11 @@ std::vector<std::string> seeds() {
 std::vector<std::string> words() {
   std::vector<std::string> all{"{",       "}",        "[",    "]",    "//",    "/*",      "*/",
                                "\\u0000", "\n--set ", "null", "true", "keyed", "between", "spline"};
-  for (const std::string& key : all_known_keys()) {
-    const std::string name = key.substr(key.rfind('.') + 1);
-    all.push_back('"' + name + "\": ");
-    all.push_back("\n--set " + key + '=');
-    all.push_back('.' + name);
+  for (const KeyInfo& info : schema()) {
+    const std::string key(info.key);
+    all.push_back('"' + key + "\": ");
+    all.push_back("\n--set " + std::string(info.section) + '.' + key + '=');
+    all.push_back('.' + key);
   }
   return all;
 }

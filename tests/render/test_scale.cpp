@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
+#include <string>
+#include <variant>
 
 #include "opaline/core/error.h"
 #include "opaline/irradiance/light_sampling.h"
 #include "opaline/render/direct.h"
+#include "opaline/render/render.h"
 #include "support/scenes.h"
 
 namespace opaline::test {
@@ -94,6 +98,67 @@ TEST(Scale, PowersOfTwoAreTheSamePicture) {
         expect_same(plain, picture(scaled(scene, k)), k);
       }
     }
+}
+
+/// The scene in light k times as bright.
+Scene brighter(Scene scene, double k) {
+  const auto scale = [k](auto& light) {
+    if constexpr (requires { light.intensity; })
+      light.intensity = light.intensity * k;
+    else if constexpr (requires { light.irradiance; })
+      light.irradiance = light.irradiance * k;
+    else
+      light.radiance = light.radiance * k;
+  };
+  for (Light& light : scene.lights) std::visit(scale, light.source);
+  return scene;
+}
+
+// Claim: lights k times as bright are k times the picture, its irradiance and its estimated error, to the
+// last bit, for powers of two from 2^-90 to 2^80, by sums and by caches; the mean relative error stays what
+// it is. Tolerance none: scaling by a power of two rounds nothing. Fails if: a variance is kept as a float
+// (the error was infinite from 2^62 on, and without its noise below 2^-50).
+TEST(Scale, BrightnessTimesPowersOfTwo) {
+  for (const EvaluatorKind evaluator : {EvaluatorKind::dual_tree, EvaluatorKind::surface_cache}) {
+    Scene scene = plain_scene(ProfileKind::dipole);
+    scene.settings.evaluator = evaluator;
+    const Image plain = picture(scene);
+    const double error = estimated_relative_error(plain);
+    EXPECT_GT(error, 0);
+    for (const double k : {0x1p-90, 0x1p-70, 0x1p-50, 2., 0x1p50, 0x1p62, 0x1p70, 0x1p80}) {
+      const Image bright = picture(brighter(scene, k));
+      SCOPED_TRACE(testing::Message() << "evaluator " << int(evaluator) << " k " << k);
+      EXPECT_EQ(estimated_relative_error(bright), error);
+      std::map<std::string, int> other;
+      for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
+        const std::string& name = plain.channels[i % plain.channels.size()];
+        const std::string layer = name.substr(0, name.find('.'));
+        const bool is_light = name == "R" || name == "G" || name == "B" || layer == "diffuse" ||
+                              layer == "specular" || layer == "irradiance" || layer == "error";
+        const double expected = double(plain.pixels[i]) * (is_light ? k : 1);
+        other[name] += double(bright.pixels[i]) != expected;
+      }
+      for (const auto& [name, pixels] : other) EXPECT_EQ(pixels, 0) << name;
+    }
+  }
+}
+
+// Claim: the estimated noise of `direct` does not depend on the lights' brightness either. Fails if: squares
+// are summed as floats (until_error then ended at once in dim light, and never in bright light).
+TEST(Scale, NoiseOfDirectAtAnyBrightness) {
+  Scene scene = plain_scene(ProfileKind::dipole);
+  scene.settings.method = Method::direct;
+  scene.settings.entry_samples = 64;
+  const auto noise = [](const Scene& lit) {
+    const World world = make_world(lit);
+    const RayScene rays(world);
+    const Plan plan = make_plan(lit, world);
+    DirectState state;
+    return render_direct({lit, world, rays, plan}, state).relative_error;
+  };
+  const double plain = noise(scene);
+  EXPECT_GT(plain, 0);
+  for (const double k : {0x1p-90, 0x1p-70, 0x1p70, 0x1p80}) EXPECT_EQ(noise(brighter(scene, k)), plain) << k;
 }
 
 // Claim: the same holds of the samples' places, areas and the exitance at points that a caller gives in mm.

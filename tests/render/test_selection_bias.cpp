@@ -18,7 +18,8 @@ namespace {
 TEST(SelectionBias, OfPointsThatNoiseChose) {
   constexpr std::size_t kPoints = 160000;
   constexpr float kShare = .5f, kNear = .4f, kBright = 4;
-  std::vector<RgbF> own(kPoints), noise(kPoints);
+  std::vector<RgbF> own(kPoints);
+  std::vector<Rgb> noise(kPoints);
   std::vector<Exitance> exitance(kPoints);
   std::vector<std::uint32_t> refined;
   double bias = 0;
@@ -27,7 +28,7 @@ TEST(SelectionBias, OfPointsThatNoiseChose) {
     // One ray in four arrives: irradiance 1 on the whole.
     const bool lit = unit_double(hash_bits(7, i)) < .25;
     own[i] = RgbF(lit ? kBright : 0.0f);
-    noise[i] = RgbF(scale * scale * 3);
+    noise[i] = Rgb(double(scale * scale * 3));
     exitance[i].irradiance = RgbF(1);
     exitance[i].near = RgbF(kNear);
     if (lit) refined.push_back(i);
@@ -42,7 +43,8 @@ TEST(SelectionBias, OfPointsThatNoiseChose) {
 
 // Claim: a shadow's edge in the light of a free point source has no noise and no such bias.
 TEST(SelectionBias, NoneWithoutNoise) {
-  std::vector<RgbF> own(32), noise(32);
+  std::vector<RgbF> own(32);
+  std::vector<Rgb> noise(32);
   std::vector<Exitance> exitance(32);
   for (std::size_t i = 0; i < 32; ++i) {
     own[i] = RgbF(i < 10 ? 1.0f : 0.0f);

@@ -235,6 +235,50 @@ TEST(Moving, StretchedAndSqueezed) {
   }
 }
 
+// Claim: a body that grew or shrank beyond what its samples can serve at the spacing that they keep gets new
+// ones, and the cold picture; up to there they go along. By hand: a ball 1e4 times as wide would take 1e8
+// times its 2500 samples (the program before it did not end), one of a hundredth would keep one of them.
+// Fails if: bring_samples does not ask has_outgrown, or asks the area of one world in units of the other.
+TEST(Moving, BodiesThatOutgrewTheirSamples) {
+  const auto sized = [](double k) {
+    Scene scene = two_balls();
+    scene.shapes.resize(1);
+    scene.lights = {scene.lights[2]};  // the sun
+    scene.shapes[0].to_world = {{k, 0, 0}, {0, k, 0}, {0, 0, k}, {}};
+    scene.camera.position = scene.camera.position * k;
+    return scene;
+  };
+  Session session;
+  picture_of(session, sized(1));
+  const std::size_t count = session.groups()[0].surface.samples.size();
+  picture_of(session, sized(3));
+  EXPECT_NEAR(double(session.work().samples_carried), double(count), 1);
+  for (const double k : {1e4, 1., 1e6, 1e-2}) {
+    SCOPED_TRACE(k);
+    const Image picture = picture_of(session, sized(k));
+    EXPECT_EQ(session.work().samples_carried, 0u);
+    EXPECT_TRUE(same_pixels(picture, cold_picture(sized(k))));
+  }
+}
+
+// Claim: where the spacing asked for would take more samples than settings.max_samples, a body that has grown
+// gets as many as a new session places. By hand: 7500 on a ball three times as wide as one of 2600. Fails if:
+// the plan has the number of the small ball's samples, or they are carried in spite of the limit.
+TEST(Moving, GrownBeyondTheMostSamples) {
+  Scene scene = two_balls();
+  scene.shapes.resize(1);
+  scene.settings.samples.reset();
+  scene.settings.sample_spacing = .7;
+  scene.settings.max_samples = 7500;
+  Session session;
+  picture_of(session, scene);
+  EXPECT_NEAR(double(session.groups()[0].surface.samples.size()), 2600, 100);
+  scene.shapes[0].to_world = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {}};
+  const Image picture = picture_of(session, scene);
+  EXPECT_EQ(session.work().samples_carried, 0u);
+  EXPECT_TRUE(same_pixels(picture, cold_picture(scene)));
+}
+
 // Claim: a mesh with other triangles has nothing to carry, and the picture is the cold one. Source: the
 // issue's table, "anything else". Fails if: triangle counts alone are compared.
 TEST(Moving, OtherTopology) {

@@ -54,16 +54,17 @@ struct PointIrradianceInput {
   int light_samples = 64;
   std::uint64_t seed = 0;
   /// If not empty: one a point, to which the estimated variance of its irradiance is added, per channel.
-  std::span<RgbF> variance = {};
+  /// Double: the square of a brightness leaves a float's range.
+  std::span<Rgb> variance = {};
 };
 
 /// What reaches points from one light per unit emission.
 struct PointTransfers {
-  std::vector<float> weights;    ///< one a point: E per unit emission, >= 0
-  std::vector<float> variances;  ///< of the weights; empty: not asked for
+  std::vector<float> weights;     ///< one a point: E per unit emission, >= 0
+  std::vector<float> deviations;  ///< standard errors of the weights; empty: not asked for
 };
 
-/// Shadow rays from each point to one of input.lights; variances where input.variance is not empty.
+/// Shadow rays from each point to one of input.lights; deviations where input.variance is not empty.
 PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light);
 /// To each of them.
 std::vector<PointTransfers> transfers_at(const PointIrradianceInput& input);

@@ -14,7 +14,8 @@ namespace opaline {
 /// takes.
 struct DirectState {
   std::size_t passes = 0;
-  /// Per pixel of the rendered part, row by row: diffuse radiance R G B, then its squares.
+  /// Per pixel of the rendered part, row by row: diffuse radiance R G B, then the roots of the sums of its
+  /// squares.
   std::vector<float> sums;
   static constexpr std::size_t kSums = 6;
 };
@@ -29,7 +30,8 @@ struct DirectInput {
 };
 
 struct DirectResult {
-  /// Layers R G B A, diffuse, specular, albedo, N, P, Z, and variance: of the diffuse radiance's mean.
+  /// Layers R G B A, diffuse, specular, albedo, N, P, Z, and variance: of the diffuse radiance's mean,
+  /// infinite or 0 where a float does not hold it (radiances beyond 1e19 or below 1e-18).
   RenderResult picture;
   std::size_t entry_samples = 0;  ///< a pixel
   double relative_error = 0;      ///< see relative_noise; infinite after a single pass
@@ -44,6 +46,13 @@ std::size_t entry_samples_per_pass(const Film& film);
 /// weights of entries under 5 % of a usual one, which Russian roulette replaces. Light paths and boundary as
 /// `render`.
 DirectResult render_direct(const DirectInput& input, DirectState& state);
+
+/// Mean of a pixel's passes and the variance of that mean; pixel: its place in DirectState::sums.
+struct DirectEstimate {
+  RgbF mean{};
+  Rgb variance{};
+};
+DirectEstimate direct_estimate(const DirectState& state, std::size_t pixel);
 
 /// Rms over the pixels with light of the estimated standard error over sqrt(mean^2 + (1 % of the
 /// brightest)^2), the largest channel.

@@ -53,7 +53,9 @@ struct SessionWork {
 ///   an object moved as a whole          no file is read; its samples go along; light that enters it, and
 ///                                       others where the shadow of a ball around it fell or falls
 ///   a mesh bent, the same triangles     it is read, not checked; samples and their cells go along with their
-///                                       triangles (carry_samples); all else of it
+///                                       triangles (carry_samples); all else of it. Samples are placed anew
+///                                       where they would be more than settings.max_samples, or less than a
+///                                       sixteenth of settings.samples
 ///   anything else                       what depends on it
 ///
 /// Pictures are those of a new session, bit for bit, but for such sums (within the tolerance) and for samples

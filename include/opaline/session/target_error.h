@@ -19,13 +19,12 @@ struct TargetError {
 };
 
 /// Edits the session to the scene with the spacing of samples, tolerance, evaluator and, where shadow rays
-/// are too few, light_samples that are expected to cost least for this error. Samples double until three
-/// small pictures in a row tell that about as many are enough. The evaluator is chosen only if the scene
-/// leaves it open. Bytes do not depend on the number of threads.
+/// are too few, light_samples of a picture whose own estimate (estimated_relative_error) keeps a margin to this
+/// error. It begins with as many samples as usually do, and adds some until a small picture is within it. The
+/// evaluator is chosen only if the scene leaves it open. Bytes do not depend on the number of threads.
 /// in    scene: hierarchical, evaluator not classic, which has no tolerance; its samples, sample_spacing and
 ///       tolerance are replaced; target: relative, > 0
-/// out   measured errors are at most the target, and at least a third of it unless kFewestTargetSamples do
-///       better, in about 95 % of scenes (bench_target_error)
+/// out   measured errors are at most the target in about 95 % of scenes (bench_target_error)
 /// error as Session::edit and Session::prepare
 TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);
 

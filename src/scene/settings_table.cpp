@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/settings_table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <optional>
+#include <type_traits>
+
+#include "opaline/scene/names.h"
+
+namespace opaline {
+namespace {
+
+constexpr double kMostSamples = 1e9, kLargestSide = 65536;
+
+template <class Owner>
+constexpr std::string_view kSection;
+template <>
+constexpr std::string_view kSection<Film> = "film";
+template <>
+constexpr std::string_view kSection<Settings> = "settings";
+
+// ---- members of one value ---------------------------------------------------------------------------------
+
+template <class T>
+struct WithoutOptional {
+  using Type = T;
+};
+template <class T>
+struct WithoutOptional<std::optional<T>> {
+  using Type = T;
+};
+
+template <class T>
+T read_as(const Value& value, double mm_per_unit) {
+  if constexpr (std::is_same_v<T, bool>)
+    return value.flag();
+  else if constexpr (std::is_enum_v<T>)
+    return T(value.choice());
+  else if constexpr (std::is_integral_v<T>)
+    return T(value.whole_number());
+  else
+    return value.info().type == ValueType::length ? value.length(mm_per_unit) : value.number();
+}
+
+template <class T>
+std::string json_of(const T& value) {
+  if constexpr (std::is_enum_v<T>)
+    return fmt::format("\"{}\"", name_of(value));
+  else
+    return fmt::format("{}", value);
+}
+template <class T>
+std::string json_of(const std::optional<T>& value) {
+  return value ? json_of(*value) : std::string();
+}
+
+template <class Owner, class T>
+Owner owner_of(T Owner::*);
+template <class Owner, class T>
+T value_of(T Owner::*);
+
+/// A row whose value goes into one member. Without a documented default the one of the member is shown.
+template <auto kMember>
+auto member(std::string_view key, ValueType type, std::string_view unit, const Range& range,
+            std::string default_value, std::string_view meaning) {
+  using Owner = decltype(owner_of(kMember));
+  using T = decltype(value_of(kMember));
+  const auto read = [](Owner& owner, const Value& value, double mm_per_unit) {
+    owner.*kMember = read_as<typename WithoutOptional<T>::Type>(value, mm_per_unit);
+  };
+  const auto json = [](const Owner& owner) { return json_of(owner.*kMember); };
+  KeyInfo info{kSection<Owner>, key, type, unit, range, std::move(default_value), meaning};
+  if constexpr (std::is_enum_v<T>) info.choices = names_of(T{});
+  if (info.default_value.empty()) {
+    info.default_value = json(Owner{});
+    if (type == ValueType::choice) info.default_value = '`' + info.default_value + '`';
+  }
+  return Member<Owner>{std::move(info), read, json};
+}
+
+Member<Settings> read_by(void (*read)(Settings&, const Value&, double), Member<Settings> member) {
+  member.read = read;
+  return member;
+}
+
+constexpr double kLeastTolerance = 1e-4;  // asked for 1e-5, the p99 on a sphere is 6.2e-5
+
+void read_tolerance(Settings& settings, const Value& value, double) {
+  settings.tolerance = value.number({0, 1, true});
+  if (settings.tolerance < kLeastTolerance)
+    value.fail("cannot be kept: sums in single precision are off by .006 %",
+               "at least 1e-4; \"evaluator\": \"brute_force\" is exact");
+}
+
+// ---- members that are more than one value -----------------------------------------------------------------
+
+void read_resolution(Film& film, const Value& value, double) {
+  const std::vector<Value> sides = value.list(2, "[width, height]");
+  film.resolution = {static_cast<int>(sides[0].whole_number()), static_cast<int>(sides[1].whole_number())};
+}
+
+void read_crop(Film& film, const Value& value, double) {
+  const std::vector<Value> ends = value.list(4, "[x0, y0, x1, y1]");
+  std::array<int, 4>& crop = film.crop.emplace();
+  for (std::size_t i = 0; i < 4; ++i)
+    crop[i] = static_cast<int>(ends[i].whole_number(0, static_cast<std::uint64_t>(film.resolution[i % 2])));
+  if (crop[0] >= crop[2] || crop[1] >= crop[3]) value.fail("holds no pixel", "x0 < x1 and y0 < y1");
+}
+
+void read_pixel_type(Film& film, const Value& value, double) {
+  film.half = value.choice() == 0;
+}
+
+std::string resolution_json(const Film& film) {
+  return fmt::format("[{}]", fmt::join(film.resolution, ","));
+}
+
+std::string crop_json(const Film& film) {
+  return film.crop ? fmt::format("[{}]", fmt::join(*film.crop, ",")) : std::string();
+}
+
+constexpr std::array<std::string_view, 2> kPixelTypes{"half", "float"};
+
+std::string pixel_type_json(const Film& film) {
+  return fmt::format("\"{}\"", kPixelTypes[film.half ? 0 : 1]);
+}
+
+}  // namespace
+
+std::span<const Member<Film>> film_members() {
+  using enum ValueType;
+  static const KeyInfo resolution{
+      "film",       "resolution",     list, "pixels, each 1 to 65536, at most 2^28 in all", {1, kLargestSide},
+      "[512, 512]", "[width, height]"},
+      crop{"film",
+           "crop",
+           list,
+           "pixels",
+           {0, kLargestSide},
+           "everything",
+           "[x0, y0, x1, y1], counted from the top left, x1 and y1 excluded: compute this part only"},
+      pixel_type{"film",
+                 "pixel_type",
+                 choice,
+                 "",
+                 kFiniteNumber,
+                 "`\"half\"`",
+                 "`\"half\"`: 16 bits a value in the EXR; `\"float\"`: 32 bits",
+                 kPixelTypes};
+  static const std::vector<Member<Film>> table{
+      {resolution, read_resolution, resolution_json},
+      {crop, read_crop, crop_json},  // after the resolution, which it lies within
+      member<&Film::samples_per_pixel>("samples_per_pixel", whole_number, "", {1, 65536}, "",
+                                       "rays for each pixel"),
+      member<&Film::filter>("filter", choice, "", kFiniteNumber, "",
+                            "`\"box\"`: one pixel wide; `\"gaussian\"`: softer, standard deviation 0.5, "
+                            "radius 1.5 pixels"),
+      {pixel_type, read_pixel_type, pixel_type_json},
+      member<&Film::exposure>("exposure", number, "stops", {-100, 100}, "",
+                              "brightens the PNG only, by a factor of 2 each"),
+  };
+  return table;
+}
+
+std::span<const Member<Settings>> settings_members() {
+  using enum ValueType;
+  static const std::vector<Member<Settings>> table{
+      member<&Settings::method>(
+          "method", choice, "", kFiniteNumber, "",
+          "`\"hierarchical\"`: light under the surface; `\"lambert\"`: the same scene as plain paint, fast; "
+          "`\"direct\"`: the same light under the surface at random, slow, noisy and without bias: the "
+          "reference"),
+      member<&Settings::evaluator>("evaluator", choice, "", kFiniteNumber, "",
+                                   "`\"dual_tree\"`: clusters of points against the octree's nodes, to a "
+                                   "tolerance; `\"surface_cache\"`: "
+                                   "the same at places all over the surface, interpolated for each point; "
+                                   "`\"automatic\"`: the one or the "
+                                   "other, by the number of points; `\"classic\"`: traversal of the octree "
+                                   "for each point, as published; "
+                                   "`\"brute_force\"`: the exact sum, slow"),
+      read_by(read_tolerance,
+              member<&Settings::tolerance>(
+                  "tolerance", number, "", {kLeastTolerance, 1}, "",
+                  "dual tree and surface cache: 99 % of the points are at least this close to the exact sum, "
+                  "relatively; what is smaller single precision does not keep")),
+      member<&Settings::instruction_set>(
+          "instruction_set", choice, "", kFiniteNumber, "",
+          "dual tree: `\"automatic\"`: the widest vectors of the machine; `\"baseline\"`, `\"avx2\"`, "
+          "`\"avx512\"`: these"),
+      member<&Settings::max_solid_angle>(
+          "max_solid_angle", number, "sr", {0, 1e30, true}, "",
+          "classic: open a node that looks larger than this; smaller is slower and closer to the exact sum"),
+      member<&Settings::near_field>(
+          "near_field", flag, "", kFiniteNumber, "",
+          "treat the light that enters close by separately: far fewer samples needed"),
+      member<&Settings::near_irradiance>(
+          "near_irradiance", choice, "", kFiniteNumber, "",
+          "the irradiance of the light that enters close by: `\"samples\"`: their mean around the point; "
+          "`\"point\"`: traced at the point; `\"mixed\"`: as much of each as keeps the width of the kernel, "
+          "and "
+          "traced at places around the point where the two differ"),
+      member<&Settings::sample_spacing>("sample_spacing", length, "", kFiniteNumber,
+                                        "from the medium's mean free path",
+                                        "distance between samples, sqrt(area / samples)"),
+      member<&Settings::samples>("samples", whole_number, "", {1, kMostSamples}, "from the spacing",
+                                 "number of samples for each group; goes before `sample_spacing`"),
+      member<&Settings::max_samples>("max_samples", whole_number, "", {1, kMostSamples}, "",
+                                     "never more than this for each group"),
+      member<&Settings::light_samples>("light_samples", whole_number, "", {1, 65536}, "",
+                                       "shadow rays from each sample, and from each pixel of an opaque "
+                                       "surface, to each area light and to the "
+                                       "surroundings"),
+      member<&Settings::entry_strategy>("entry_strategy", choice, "", kFiniteNumber, "",
+                                        "direct: how the places where light entered are drawn; "
+                                        "`\"disc_axes\"`: lines through discs along three "
+                                        "axes; `\"chords\"`: chords of spheres, for comparison"),
+      member<&Settings::entry_samples>(
+          "entry_samples", whole_number, "", {1, kMostSamples},
+          fmt::format("{}, or as many as `until_error` takes", kDefaultEntrySamples),
+          "direct: such places for each pixel, in whole passes of 16"),
+      member<&Settings::until_error>("until_error", number, "", {0, 1, true}, "none",
+                                     "direct: stop when the estimated noise of the pixels (rms of the "
+                                     "standard error, relative) is this small"),
+      member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
+                              "of all random numbers; the same seed gives the same picture"),
+      member<&Settings::reference_frame>("reference_frame", whole_number, "", {0, 1e9}, "",
+                                         "of frame ranges: samples are placed on the surfaces of this frame "
+                                         "and go along with them to all others"),
+  };
+  return table;
+}
+
+}  // namespace opaline
