@@ -6,6 +6,15 @@
 #include <limits>
 
 namespace opaline {
+namespace {
+
+// Places count in full up to where the cosine of their normal with the point's is one over this, and less
+// beyond, as the reflectance of a plane says little about what turns away. Measured on the rim of the bunny's
+// ear at 2048 x 2048: the largest error is 5.8 %, where all count in full 11.6 %; 1 leaves p99 1.54 in place
+// of 1.36 %.
+constexpr float kFacing = 1.5f;
+
+}  // namespace
 
 NearFieldMeans::NearFieldMeans(const NearKernel& kernel, std::span<const SurfacePoint> points,
                                std::span<const std::uint32_t> chosen, std::span<const int> drawn,
@@ -70,6 +79,7 @@ void NearFieldMeans::add_lattice(std::span<const IrradianceLattice::Cell* const>
     for (std::vector<Densities>& entered : close_entered_) entered.clear();
     for (const IrradianceLattice::Cell* cell : cells) take_close(*cell, boxes_[first / kGroup]);
     close_rings_.resize(close_areas_.size());
+    close_facing_.resize(close_areas_.size());
     for (std::size_t m = first; m < std::min(first + kGroup, count_); ++m) add_close(m);
   }
 }
@@ -115,11 +125,14 @@ void NearFieldMeans::add_close(std::size_t point) {
   const float *gx = close_coordinates_[3].data(), *gy = close_coordinates_[4].data(),
               *gz = close_coordinates_[5].data();
   int* const ring = close_rings_.data();
+  float* const facing = close_facing_.data();
   const std::size_t n = close_rings_.size();
   for (std::size_t i = 0; i < n; ++i) {
     const float dx = x - px[i], dy = y - py[i], dz = z - pz[i];
     const float r = std::sqrt(dx * dx + dy * dy + dz * dz) * rings, within = r < kOutside ? r : kOutside;
-    ring[i] = int(nx * gx[i] + ny * gy[i] + nz * gz[i] > 0 ? within : kOutside);
+    const float cosine = nx * gx[i] + ny * gy[i] + nz * gz[i], steep = kFacing * cosine;
+    facing[i] = steep < 1 ? steep : 1;
+    ring[i] = int(cosine > 0 ? within : kOutside);
   }
   const Densities* const table = kernel_.densities.data();
   Densities weights{};
@@ -127,7 +140,7 @@ void NearFieldMeans::add_close(std::size_t point) {
     weights = Densities{};
     Densities sum{};
     for (std::size_t i = 0; i < n; ++i) {
-      const Densities weight = table[ring[i]] * close_areas_[i];
+      const Densities weight = table[ring[i]] * (close_areas_[i] * facing[i]);
       weights += weight;
       sum += weight * close_entered_[l][i];
     }

@@ -60,6 +60,7 @@ class NearFieldMeans {
   std::vector<Densities> close_areas_;
   std::vector<std::vector<Densities>> close_entered_;
   std::vector<int> close_rings_;
+  std::vector<float> close_facing_;
 };
 
 }  // namespace opaline

@@ -13,9 +13,9 @@
 namespace opaline {
 namespace {
 
-// The share of the exitance that is usually at stake where shadow rays are worth their time. Fine-grained
-// points share their rays with so many others that less is enough.
-constexpr float kUsual = 0.06f, kWorthShared = 0.005f;
+// The share of the exitance that is usually at stake where shadow rays are worth their time. Points that lie
+// close together share their rays with so many others that less is enough.
+constexpr float kUsual = 0.06f, kWorthClose = 0.015f, kWorthShared = 0.005f;
 constexpr float kFinestAt = 0.1f;  // stake from which on the lattice is as fine as the points allow
 // Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
 // field of each less evenly; and how many each of many neighbours brings at least.
@@ -24,22 +24,19 @@ constexpr std::uint64_t kStride = 11;  // in the sequence from one point's place
 constexpr int kFewerRays = 16;      // than a point's own are traced from a place to each light with an area
 constexpr float kErrorLeft = 0.4f;  // of what the interpolated irradiance was off by
 
-// Spacing of the lattice: at its coarsest, over the kernel's rms distance; over the points'; the finest
-// level.
-constexpr double kCoarsest = 0.5, kPerPoint = 1;
+// In units of the distance within which half of the narrowest channel's kernel lies: spacing of the lattice
+// at its coarsest; distance of points that use the lattice; of points that are many more than its cells; and
+// the kernel's reach: one that goes farther has a core too narrow for the lattice.
+constexpr double kCoarsest = 0.65, kClose = 0.65, kFineGrained = 0.33;
+constexpr float kFarthest = 12;
+constexpr double kPerPoint = 1;  // spacing of the lattice over that of the points, at its finest
 constexpr std::uint32_t kFinest = 4;
-// Points use the lattice if they are this close to each other, over the kernel's rms distance, and so many of
-// a batch are marked that they can share a cell's cost. Points closer than kFineGrained are many more than
-// cells.
-constexpr double kClose = 0.5, kFineGrained = 0.25;
-constexpr std::size_t kDense = 32;
-constexpr double kFarthest =
-    8;  // that the kernel may reach, over its rms distance: farther takes too many cells
+constexpr std::size_t kDense = 32;  // points of a batch that must be marked to share the cost of cells
 // Variance of a mean over the lattice where a shadow's edge leaves a share f of the kernel in the light, over
-// f (1 - f) and the cube of spacing / rms distance: (4 / pi) (1 / 6) / .25 times the integral of the squared
-// kernel along the edge, sqrt(pi / 2) / pi^2 for a Gaussian. Each square that the edge crosses adds 1/6 of
-// the square of its weight.
-constexpr float kLatticeVariance = 0.11f;
+// f (1 - f) and the cube of spacing / half distance: (4 / pi) (1 / 6) / .25 times the integral of the squared
+// kernel along the edge, sqrt(pi / 2) / pi^2 for a Gaussian of rms distance 1. Each square that the edge
+// crosses adds 1/6 of the square of its weight.
+constexpr float kLatticeVariance = 0.063f;
 
 // Between points that follow each other: the median, mm.
 double typical_distance(std::span<const SurfacePoint> points) {
@@ -60,7 +57,7 @@ struct NearFieldSampler::Found {
   const PointIrradianceInput& lighting;
   std::span<const RgbF> own;
   std::span<Exitance> exitance;
-  std::span<RgbF> noise;
+  std::span<Rgb> noise;
   HeldView::NearField* held;
   std::size_t kinds() const { return held != nullptr ? lighting.lights.size() + 1 : 1; }
 };
@@ -79,14 +76,17 @@ NearFieldSampler::NearFieldSampler(const TranslucentGroup& group, float worth)
       worth_(worth),
       is_own_mesh_(*std::ranges::max_element(group.plan.meshes) + 1) {
   for (const std::uint32_t mesh : group.plan.meshes) is_own_mesh_[mesh] = true;
-  lattice_ = std::make_unique<IrradianceLattice>(is_own_mesh_, kCoarsest * near_.root_mean_square);
+  lattice_ = std::make_unique<IrradianceLattice>(is_own_mesh_, kCoarsest * double(near_.narrowest));
 }
 
 std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& lighting,
                                                     std::span<const RgbF> own, std::span<Exitance> exitance,
                                                     std::span<Rgb> noise, HeldView::NearField* held) const {
   const double apart = typical_distance(lighting.points);
-  const float worth = apart < kFineGrained * near_.root_mean_square ? kWorthShared : worth_;
+  const double widths = apart / double(near_.narrowest);
+  const float worth = widths < kFineGrained ? kWorthShared
+                      : widths < kClose     ? std::min(kWorthClose, worth_)
+                                            : worth_;
   std::vector<std::uint32_t> marked;
   for (std::uint32_t i = 0; i < exitance.size(); ++i)
     if (at_stake(own[i], exitance[i]) > worth) marked.push_back(i);
@@ -125,8 +125,12 @@ void NearFieldSampler::look_up(const Found& found, std::span<std::uint32_t> open
          lattice_->keys_near(points, chosen, double(near_.reach), level, found.held != nullptr))
       cells.push_back(&lattice_->cell(key, found.lighting));
     means.add_lattice(cells);
-    const auto step = float(lattice_->spacing(level) / near_.root_mean_square);
-    replace_all(found, chosen, means, kLatticeVariance * step * step * step);
+    RgbF variance;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float step = float(lattice_->spacing(level)) / near_.half[c];
+      variance[c] = kLatticeVariance * step * step * step;
+    }
+    replace_all(found, chosen, means, variance);
   }
 }
 
@@ -170,13 +174,13 @@ void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_
       set_entered.push_back(std::span(values).subspan(skip, count));
     NearFieldMeans means(near_, lighting.points, points, std::span(drawn).subspan(first), entered.size());
     means.add_drawn(std::span(places.points).subspan(skip, count), set_entered);
-    replace_all(found, points, means, 1.0f / kTogether);
+    replace_all(found, points, means, RgbF(1.0f / kTogether));
   }
 }
 
 // variance: of the share of the places that an edge leaves in the light, over share x (1 - share)
 void NearFieldSampler::replace_all(const Found& found, std::span<const std::uint32_t> points,
-                                   const NearFieldMeans& means, float variance) const {
+                                   const NearFieldMeans& means, const RgbF& variance) const {
   for (std::size_t m = 0; m < points.size(); ++m) {
     const std::uint32_t i = points[m];
     replace_mixed(found.own[i], means.mean(0, m), variance, found.exitance[i], found.noise[i]);
@@ -190,8 +194,8 @@ void NearFieldSampler::replace_all(const Found& found, std::span<const std::uint
 // How fine the lattice may be for points so far apart, mm, of which some are marked; none where they had
 // better have places of their own.
 std::optional<std::uint32_t> NearFieldSampler::finest_level(double apart, std::size_t marked) const {
-  if (marked < kDense || !(apart <= kClose * near_.root_mean_square) ||
-      near_.reach > kFarthest * near_.root_mean_square)
+  if (marked < kDense || !(apart <= kClose * double(near_.narrowest)) ||
+      near_.reach > kFarthest * near_.narrowest)
     return {};
   std::uint32_t level = 0;
   while (level < kFinest && lattice_->spacing(level) > kPerPoint * apart) ++level;
@@ -217,19 +221,19 @@ void NearFieldSampler::add_held(const HeldView::NearField& held, const PointIrra
     RgbF mean;
     for (std::size_t l = 0; l < lighting.lights.size(); ++l)
       mean += RgbF(emission(lighting.lights[l])) * held.transfers[l * exitance.size() + i];
-    replace_mixed(own[i], mean, 1.0f / kTogether, exitance[i], noise[i]);
+    replace_mixed(own[i], mean, RgbF(1.0f / kTogether), exitance[i], noise[i]);
   }
 }
 
 // Puts the near field's mean irradiance, NaN where it is not known, where `evaluate` took a mixture. noise:
 // the variance of a mean of places of which some have all the light there is, and others none.
-void NearFieldSampler::replace_mixed(const RgbF& own, const RgbF& mean, float variance, Exitance& e,
+void NearFieldSampler::replace_mixed(const RgbF& own, const RgbF& mean, const RgbF& variance, Exitance& e,
                                      Rgb& noise) const {
   for (std::size_t c = 0; c < 3; ++c) {
     if (std::isnan(mean[c])) continue;
     const float brightest = std::max({own[c], e.irradiance[c], mean[c]});
     const double near = double(e.near[c]);
-    noise[c] = near * near * double(mean[c]) * double(brightest - mean[c]) * double(variance);
+    noise[c] = near * near * double(mean[c]) * double(brightest - mean[c]) * double(variance[c]);
     const float share = kernel_.own_irradiance[c], mixed = share * own[c] + (1 - share) * e.irradiance[c];
     e.exitance[c] += e.near[c] * (mean[c] - mixed);
     e.error[c] *= kErrorLeft;

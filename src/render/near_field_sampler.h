@@ -30,7 +30,7 @@ class NearFieldSampler {
  public:
   /// group: not without meshes; it must outlive the sampler.
   /// worth: the share of the exitance that must be at stake before shadow rays are worth their time
-  explicit NearFieldSampler(const TranslucentGroup& group, float worth = 0.015f);
+  explicit NearFieldSampler(const TranslucentGroup& group, float worth = 0.02f);
 
   /// Corrects the exitance of the points beside shadow edges.
   /// in    lighting: of the points; own: their irradiance
@@ -63,8 +63,8 @@ class NearFieldSampler {
                 std::span<const RgbF> own, std::span<const std::uint32_t> points,
                 std::span<Exitance> exitance, std::span<Rgb> noise) const;
   void replace_all(const Found& found, std::span<const std::uint32_t> points, const NearFieldMeans& means,
-                   float variance) const;
-  void replace_mixed(const RgbF& own, const RgbF& mean, float variance, Exitance& e, Rgb& noise) const;
+                   const RgbF& variance) const;
+  void replace_mixed(const RgbF& own, const RgbF& mean, const RgbF& variance, Exitance& e, Rgb& noise) const;
 
   const SplitKernel& kernel_;
   NearKernel near_;

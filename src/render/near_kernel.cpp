@@ -27,12 +27,15 @@ NearKernel::NearKernel(const TranslucentGroup& group) : radius(group.kernel.radi
     const double sum = std::accumulate(rings.begin(), rings.end(), 0.0);
     double inside = 0;
     for (std::size_t i = 0; i < kRings && sum > 0; ++i) {
-      if (inside < (1 - kBeyondReach) * sum) reach = std::max(reach, radius * float(i + 1) / kRings);
+      const float end = radius * float(i + 1) / kRings;
+      if (inside < (1 - kBeyondReach) * sum) reach = std::max(reach, end);
+      if (inside < sum / 2) half[c] = end;
       inside += rings[i];
       const double area = std::numbers::pi * h * h * double(2 * i + 1) / (kRings * kRings);
       densities[i][c] = float(rings[i] / (sum * area));
       mean_rings[i] += rings[i] / sum;
     }
+    if (half[c] > 0) narrowest = narrowest > 0 ? std::min(narrowest, half[c]) : half[c];
   }
   const double all = std::accumulate(mean_rings.begin(), mean_rings.end(), 0.0);
   const float channels = float(std::round(all));

@@ -25,7 +25,9 @@ struct NearKernel {
   std::array<Densities, kRings + 1> densities{};  ///< ring by ring; 0 beyond h
   std::array<double, kRings + 1> within{};  ///< the part of the channels' mean within a ring's inner edge
   double root_mean_square = 0;              ///< distance under the channels' mean, mm
-  float reach = 0;                          ///< within which all but 2 % of each channel's kernel lies, mm
+  RgbF half;            ///< within which half of a channel's kernel lies, mm; 0: no kernel
+  float narrowest = 0;  ///< the least of those that are not 0
+  float reach = 0;      ///< within which all but 2 % of each channel's kernel lies, mm
 };
 
 }  // namespace opaline
