@@ -18,14 +18,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "benchmark/csv.h"
 #include "error_estimate_measure.h"
 #include "error_estimate_pairs.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/random.h"
 #include "opaline/image/metrics.h"
-#include "opaline/report/csv.h"
+#include "opaline/quality/measured_error.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/measured_error.h"
 
 namespace {
 

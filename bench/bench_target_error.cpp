@@ -13,10 +13,10 @@
 
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/stopwatch.h"
+#include "opaline/quality/measured_error.h"
+#include "opaline/quality/target_error.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/measured_error.h"
-#include "opaline/session/target_error.h"
-#include "session/probe.h"
+#include "quality/probe.h"
 #include "target_error_page.h"
 #include "target_error_scenes.h"
 

@@ -9,12 +9,12 @@
 #include <exception>
 #include <filesystem>
 
+#include "benchmark/csv.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/stopwatch.h"
-#include "opaline/report/csv.h"
+#include "opaline/quality/time_budget.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/time_budget.h"
-#include "session/probe.h"
+#include "quality/probe.h"
 #include "target_error_scenes.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/html.h"
+#include "benchmark/html.h"
 
 namespace opaline {
 namespace {
@@ -41,9 +41,8 @@ std::string scatter(std::span<const CalibrationRow> rows) {
         "<circle class=\"series-{}\" fill=\"var(--c)\" r=\"4\" cx=\"{:.1f}\" "
         "cy=\"{:.1f}\"><title>{}"
         "</title></circle>\n",
-        row.profile == ProfileKind::dipole ? 1 : 3,
-        kMargin + place(row.predicted / row.target), kSide - kMargin - place(row.measured / row.target),
-        escaped(as_line(row)));
+        row.profile == ProfileKind::dipole ? 1 : 3, kMargin + place(row.predicted / row.target),
+        kSide - kMargin - place(row.measured / row.target), escaped(as_line(row)));
   return svg + fmt::format(
                    "<text class=\"label-x\" x=\"{}\" y=\"{}\">predicted error / target</text>\n<text "
                    "class=\"label-y\" transform=\"translate(14 {}) rotate(-90)\">measured error / "
@@ -71,7 +70,8 @@ std::string verdict_of(std::span<const CalibrationRow> rows) {
   for (const CalibrationRow& row : rows) overheads.push_back(row.overhead());
   std::ranges::sort(overheads);
   return fmt::format(
-      "{} of {} pairs within the target ({:.1f} %); with the choice a picture costs {:.2f} times what it costs "
+      "{} of {} pairs within the target ({:.1f} %); with the choice a picture costs {:.2f} times what it "
+      "costs "
       "alone in the median, 90 % under {:.2f}, {:.2f} at most",
       kept, rows.size(), 100 * double(kept) / double(rows.size()), overheads[rows.size() / 2],
       overheads[rows.size() * 9 / 10], overheads.back());
@@ -97,7 +97,8 @@ std::string calibration_page(std::span<const CalibrationRow> rows) {
   const CsvTable table = calibration_table(rows);
   std::string body = fmt::format(
       "<p class=\"answer\">{}.</p>\n<figure>{}<figcaption>Below the marked height the promise "
-      "is kept. Blue: dipole, orange: normalized diffusion. Point at a mark for its scene.</figcaption></figure>\n<table>"
+      "is kept. Blue: dipole, orange: normalized diffusion. Point at a mark for its "
+      "scene.</figcaption></figure>\n<table>"
       "<thead><tr>",
       escaped(verdict_of(rows)), scatter(rows));
   for (std::size_t c = 0; c < table.names.size(); ++c)

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "opaline/report/csv.h"
+#include "benchmark/csv.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {

@@ -7,11 +7,11 @@
 #include <variant>
 #include <vector>
 
+#include "benchmark/bench_command.h"
 #include "cli/display_server.h"
-#include "cli/log.h"
+#include "core/log.h"
 #include "opaline/cache/stage_cache.h"
 #include "opaline/image/picture_layers.h"
-#include "opaline/report/ladder.h"
 
 namespace opaline {
 
@@ -62,22 +62,6 @@ struct CompareArguments {
   std::string layer;                ///< empty: R, G, B
   std::string error_picture;        ///< empty: none; .exr or .png
   std::optional<double> fail_above, exposure;
-  Log log;
-};
-
-struct BenchArguments {
-  std::vector<std::string> scenes;     ///< at least one
-  std::vector<std::string> overrides;  ///< as RenderArguments
-  std::string csv, report;             ///< file, folder; empty: none
-  std::string against;                 ///< results.json of an earlier benchmark; empty: none
-  std::vector<std::string> halves;     ///< none, or two with a single scene
-  double reference_error = 0;
-  std::string reference_dir;  ///< empty: in the report, or beside the CSV
-  std::vector<Rung> rungs;    ///< more than the ladder has
-  int repeats = 3, threads = 1;
-  bool quick = false;
-  bool profiles = false;  ///< each translucent scene with each radial profile
-  std::string command_line;
   Log log;
 };
 

@@ -5,7 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
-#include "cli/units.h"
+#include "core/units.h"
 #include "opaline/cache/cache_folder.h"
 #include "opaline/core/error.h"
 

@@ -20,12 +20,6 @@ void info_command(const InfoArguments& arguments);
 ///       Error{run_failed}: stdout or the error picture cannot be written
 int compare_command(const CompareArguments& arguments);
 
-/// Measures each scene's rungs, prints a table and writes the CSV and the report; the exit code: 0, or 3 where
-/// a rung failed, or 1 where one is worse than in earlier results.
-/// error Error{bad_input}: a scene, half or earlier results that cannot be used; Error{run_failed}: the
-///       reference cannot be made, an output not be written; Error{interrupted}: the old outputs stay
-int bench_command(const BenchArguments& arguments);
-
 /// Fills a cache with what rendering the scene, or frames of it, will ask for.
 /// error as render_command
 void precompute_command(const PrecomputeArguments& arguments);

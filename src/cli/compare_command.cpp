@@ -8,7 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/compare_report.h"
-#include "cli/units.h"
+#include "core/units.h"
 #include "opaline/core/error.h"
 #include "opaline/image/error_picture.h"
 #include "opaline/image/flip.h"

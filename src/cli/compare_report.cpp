@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/units.h"
+#include "core/units.h"
 
 namespace opaline {
 namespace {

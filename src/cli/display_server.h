@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "cli/log.h"
+#include "core/log.h"
 #include "opaline/image/image.h"
 #include "opaline/render/render.h"
 

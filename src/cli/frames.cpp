@@ -11,10 +11,11 @@
 #include <set>
 
 #include "cli/metadata.h"
-#include "cli/units.h"
+#include "core/units.h"
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/session/scene_hash.h"
 
 namespace opaline {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/units.h"
+#include "core/units.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
 

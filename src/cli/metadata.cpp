@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/metadata.h"
 
-#include <OpenImageIO/hash.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <fstream>
-#include <set>
 
 #include "cli/report.h"
-#include "geometry/read_mesh.h"
-#include "opaline/core/error.h"
 #include "opaline/scene/schema.h"
 
 namespace opaline {
@@ -19,25 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string read_again(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  std::string bytes(file ? std::size_t(file.tellg()) : 0, '\0');
-  file.seekg(0).read(bytes.data(), std::streamsize(bytes.size()));
-  if (!file) throw bad_file(path, "cannot be read again");
-  return bytes;
-}
-
-std::string mesh_bytes(const Shape& shape, const std::string& path) {
-  try {
-    return read_mesh_bytes(path);
-  } catch (const Error& failure) {
-    throw told_at(shape.place, failure);
-  }
-}
-
 Json settings_in_use(const Scene& scene, const World& world, std::span<const TranslucentGroup> translucent) {
   Json json = Json::parse(settings_json(scene));
-  for (const char* asked : {"samples", "sample_spacing"}) json.erase(asked);  // the groups say what came of it
+  for (const char* asked : {"samples", "sample_spacing"})
+    json.erase(asked);  // the groups say what came of it
   for (const TranslucentGroup& group : translucent)
     json["groups"].push_back({{"name", group.plan.name},
                               {"samples", group.surface.samples.size()},
@@ -93,26 +73,6 @@ std::string command_again(const RenderArguments& arguments) {
   return command + layers_text(arguments);
 }
 
-// Lengths go in front: what is hashed can be cut in one way only.
-std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,
-                       const Scene& scene) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return {};
-  OIIO::SHA1 hash;
-  const auto add = [&](const std::string& part) {
-    const std::string length = std::to_string(part.size()) + ':';
-    hash.append(length.data(), length.size());
-    hash.append(part.data(), part.size());
-  };
-  add(read_again(path));
-  for (const std::string& text : overrides) add(text);
-  std::set<std::string> seen;
-  for (const Shape& shape : scene.shapes)
-    if (const auto* mesh = std::get_if<MeshFile>(&shape.source))
-      if (seen.insert(mesh->path).second) add(mesh_bytes(shape, mesh->path));
-  return hash.digest();
-}
-
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
                        const World& world, std::span<const TranslucentGroup> translucent,
                        std::optional<int> frame) {
@@ -134,18 +94,6 @@ Metadata frame_metadata(const RenderArguments& arguments, const std::string& has
           {"opaline:scene_hash", hash},
           {"opaline:command", command_line("opaline", name, arguments.overrides) + layers_text(arguments)},
           {"opaline:frame", std::to_string(frame)}};
-}
-
-std::string direct_scene_key(const RenderArguments& arguments, const Scene& scene) {
-  std::vector<std::string> overrides;
-  for (const std::string& text : arguments.overrides)
-    if (!text.starts_with("settings.entry_samples=") && !text.starts_with("settings.until_error="))
-      overrides.push_back(text);
-  std::string key = scene_hash(arguments.scene, overrides, scene);
-  if (key.empty())
-    throw bad_file(arguments.resume, "the sums of a scene that comes through a pipe cannot be kept",
-                   "a scene in a file");
-  return key;
 }
 
 std::pair<std::string, std::string> timings_metadata(const std::vector<StageCost>& costs) {

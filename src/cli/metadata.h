@@ -26,12 +26,6 @@ std::string command_of(const RenderArguments& arguments);
 /// the same outputs.
 std::string command_again(const RenderArguments& arguments);
 
-/// SHA-1 of the scene file's bytes, the overrides, and the bytes of each mesh file in use, once; empty where
-/// the scene came through a pipe. Taken while loading: files may change during a long render. error
-/// Error{bad_input}: a file that cannot be read a second time
-std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,
-                       const Scene& scene);
-
 /// opaline:version, opaline:frame, opaline:scene_hash and opaline:command of a frame: what tells whether it
 /// is made already.
 Metadata frame_metadata(const RenderArguments& arguments, const std::string& hash, int frame);
@@ -42,10 +36,6 @@ Metadata frame_metadata(const RenderArguments& arguments, const std::string& has
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
                        const World& world, std::span<const TranslucentGroup> groups,
                        std::optional<int> frame);
-
-/// What the sums of a direct rendering belong to: the scene and all overrides but those that say when to
-/// stop. error Error{bad_input}: the scene came through a pipe
-std::string direct_scene_key(const RenderArguments& arguments, const Scene& scene);
 
 /// opaline:timings, JSON: wall and CPU seconds of each stage so far.
 std::pair<std::string, std::string> timings_metadata(const std::vector<StageCost>& costs);

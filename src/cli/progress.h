@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "cli/log.h"
+#include "core/log.h"
 #include "opaline/core/monitor.h"
 
 namespace opaline {

@@ -15,11 +15,12 @@
 #include "cli/report.h"
 #include "cli/resumable_state.h"
 #include "cli/stages.h"
-#include "cli/units.h"
+#include "core/units.h"
 #include "opaline/core/error.h"
 #include "opaline/render/direct.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/session/scene_hash.h"
 #include "opaline/session/session.h"
 
 namespace opaline {

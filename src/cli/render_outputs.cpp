@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "opaline/scene/names.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/scene/names.h"
 #include "render/layers.h"
 
 namespace opaline {
@@ -24,8 +24,7 @@ void check_layers(const LayerChoice& layers, Method method) {
         }))
       throw Error(ErrorKind::bad_input, {}, 0, 0,
                   "--layers: there is no layer '" + layer + "' with this method",
-                  layer == "variance" ? "--method direct" : "another --method",
-                  std::string(name_of(method)));
+                  layer == "variance" ? "--method direct" : "another --method", std::string(name_of(method)));
 }
 
 WriteReport write_picture(const std::string& path, const Image& image, const Film& film,

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "cli/log.h"
+#include "core/log.h"
 #include "opaline/core/stopwatch.h"
+#include "opaline/quality/measured_error.h"
+#include "opaline/quality/target_error.h"
+#include "opaline/quality/time_budget.h"
 #include "opaline/render/plan.h"
 #include "opaline/render/plate_model.h"
-#include "opaline/session/measured_error.h"
-#include "opaline/session/target_error.h"
-#include "opaline/session/time_budget.h"
 
 namespace opaline {
 

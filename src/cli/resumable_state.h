@@ -6,8 +6,9 @@
 #include <string>
 
 #include "cli/arguments.h"
-#include "cli/metadata.h"
+#include "opaline/core/error.h"
 #include "opaline/render/direct.h"
+#include "opaline/session/scene_hash.h"
 
 namespace opaline {
 
@@ -17,7 +18,10 @@ class ResumableState {
   ResumableState(const RenderArguments& arguments, const Scene& scene)
       : path_(arguments.resume), scene_(scene) {
     if (path_.empty()) return;
-    key_ = direct_scene_key(arguments, scene_);
+    key_ = direct_sums_key(arguments.scene, arguments.overrides, scene_);
+    if (key_.empty())
+      throw bad_file(path_, "the sums of a scene that comes through a pipe cannot be kept",
+                     "a scene in a file");
     state = read_direct_state(path_, scene_, key_);
     written_ = state.passes;
   }

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/report.h"
+#include "core/interrupt.h"
 #include "opaline/core/monitor.h"
 #include "opaline/core/stopwatch.h"
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/report.h"
-#include "cli/units.h"
+#include "core/units.h"
 
 namespace opaline {
 namespace {

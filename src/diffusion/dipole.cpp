@@ -39,9 +39,9 @@ double diffuse_reflectance_profile(const Dipole& dipole, double r) {
 
 double diffuse_reflectance_within(const Dipole& dipole, double r) {
   if (r <= 0) return 0;
-  return total_diffuse_reflectance(dipole) -
-         dipole.reduced_albedo / 2 *
-             (source_beyond(dipole.z_real, dipole.sigma_tr, r) + source_beyond(dipole.z_virtual, dipole.sigma_tr, r));
+  return total_diffuse_reflectance(dipole) - dipole.reduced_albedo / 2 *
+                                                 (source_beyond(dipole.z_real, dipole.sigma_tr, r) +
+                                                  source_beyond(dipole.z_virtual, dipole.sigma_tr, r));
 }
 
 double total_diffuse_reflectance(const Dipole& dipole) {

@@ -22,6 +22,8 @@ double diffuse_reflectance_within(const NormalizedDiffusion& profile, double r) 
   return -profile.total * (0.25 * std::expm1(-r / profile.d) + 0.75 * std::expm1(-r / (3 * profile.d)));
 }
 
-double total_diffuse_reflectance(const NormalizedDiffusion& profile) { return profile.total; }
+double total_diffuse_reflectance(const NormalizedDiffusion& profile) {
+  return profile.total;
+}
 
 }  // namespace opaline

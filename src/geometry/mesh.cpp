@@ -16,8 +16,8 @@ double enclosed_volume(const Mesh& mesh) {
   double six_volumes = 0;
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3d& first = mesh.positions[mesh.triangles[0][0]];
-    six_volumes += dot(mesh.positions[a] - first,
-                       cross(mesh.positions[b] - first, mesh.positions[c] - first));
+    six_volumes +=
+        dot(mesh.positions[a] - first, cross(mesh.positions[b] - first, mesh.positions[c] - first));
   }
   return std::abs(six_volumes) / 6;
 }

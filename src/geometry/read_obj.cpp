@@ -159,7 +159,8 @@ class ObjReader {
       ++mesh_.collapsed;
       return;
     }
-    for (std::size_t i = 2; i < corners_.size(); ++i) add_triangle({corners_[0], corners_[i - 1], corners_[i]});
+    for (std::size_t i = 2; i < corners_.size(); ++i)
+      add_triangle({corners_[0], corners_[i - 1], corners_[i]});
   }
 
   /// The normals of its corners wait until all vertices are known.
@@ -178,11 +179,11 @@ class ObjReader {
     seen_.clear();
     for (const Corner& corner : corners_) {
       const auto end = corners_.begin() + std::ptrdiff_t(kept);
-      const bool is_new = corners_.size() <= kFew
-                              ? std::find_if(corners_.begin(), end, [&](const Corner& c) {
-                                  return c.vertex == corner.vertex;
-                                }) == end
-                              : seen_.insert(corner.vertex).second;
+      const bool is_new =
+          corners_.size() <= kFew
+              ? std::find_if(corners_.begin(), end,
+                             [&](const Corner& c) { return c.vertex == corner.vertex; }) == end
+              : seen_.insert(corner.vertex).second;
       if (is_new) corners_[kept++] = corner;
     }
     corners_.resize(kept);

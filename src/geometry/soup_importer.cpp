@@ -12,8 +12,7 @@ Vec3f to_vec3f(const OpenMesh::Vec3f& v) {
 
 }  // namespace
 
-SoupImporter::SoupImporter(const MeshScan& scan)
-    : vertex_normals_(scan.vertex_normals) {
+SoupImporter::SoupImporter(const MeshScan& scan) : vertex_normals_(scan.vertex_normals) {
   mesh_.positions.reserve(scan.positions.size());
   mesh_.triangles.reserve(scan.triangles);
 }

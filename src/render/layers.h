@@ -14,8 +14,8 @@ namespace opaline {
 /// What one camera ray saw; zero where it saw nothing.
 struct PixelSample {
   RgbF diffuse{}, specular{};
-  RgbF emitted{};     ///< lights and surroundings seen directly
-  float coverage = 0; ///< 1 on a surface
+  RgbF emitted{};      ///< lights and surroundings seen directly
+  float coverage = 0;  ///< 1 on a surface
   RgbF albedo{}, irradiance{};
   RgbF error{};           ///< of diffuse, much the same for all rays of a pixel
   Rgb noise{};            ///< variance of diffuse that is each ray's own

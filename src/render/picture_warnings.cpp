@@ -104,10 +104,9 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
     if (emission(light) == Rgb{})
       texts.push_back(fmt::format("the light {} has no brightness", light.name));
     else if (distance > kFarAway * world.diagonal * world.unit)
-      texts.push_back(
-          fmt::format("the light {} is {:.3g} scene units away from shapes that measure {:.3g} together",
-                      light.name, distance / scene.mm_per_unit,
-                      world.diagonal * world.unit / scene.mm_per_unit));
+      texts.push_back(fmt::format(
+          "the light {} is {:.3g} scene units away from shapes that measure {:.3g} together", light.name,
+          distance / scene.mm_per_unit, world.diagonal * world.unit / scene.mm_per_unit));
   }
   return texts;
 }

@@ -99,10 +99,11 @@ double mean_thickness(const World& world, const GroupPlan& group) {
 void warn_of_thin_body(const GroupPlan& group, std::vector<std::string>& warnings) {
   const double thickness = group.thickness;
   if (!(thickness > 0 && thickness < group.spacing)) return;
-  warnings.push_back(fmt::format(
-      "{}: it is {:.3g} mm thick in the mean and its samples are {:.3g} mm apart: they cannot tell its sides apart; "
-      "take {:.2g} samples (settings.samples, settings.max_samples)",
-      group.name, thickness, group.spacing, group.area / (thickness * thickness)));
+  warnings.push_back(
+      fmt::format("{}: it is {:.3g} mm thick in the mean and its samples are {:.3g} mm apart: they cannot "
+                  "tell its sides apart; "
+                  "take {:.2g} samples (settings.samples, settings.max_samples)",
+                  group.name, thickness, group.spacing, group.area / (thickness * thickness)));
 }
 
 void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan& group,
@@ -139,13 +140,12 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
     if (!shape.group.empty())
       it = std::ranges::find_if(groups, [&](const GroupPlan& g) { return g.shared && g.name == name; });
     if (it == groups.end()) {
-      groups.push_back(
-          {.name = name,
-           .shared = !shape.group.empty(),
-           .meshes = {},
-           .medium = *shape.medium,
-           .smallest_mean_free_path = smallest_mean_free_path(profile),
-           .reason = {}});
+      groups.push_back({.name = name,
+                        .shared = !shape.group.empty(),
+                        .meshes = {},
+                        .medium = *shape.medium,
+                        .smallest_mean_free_path = smallest_mean_free_path(profile),
+                        .reason = {}});
       it = groups.end() - 1;
     }
     it->meshes.push_back(std::uint32_t(i));

@@ -14,9 +14,9 @@
 namespace opaline {
 namespace {
 
-constexpr int kCells = 64;    // along each side, at most
+constexpr int kCells = 64;      // along each side, at most
 constexpr int kNarrowest = 16;  // pixels of a cell
-constexpr double kApart = 3;  // pixels around a triangle: the filter's radius, and rounding
+constexpr double kApart = 3;    // pixels around a triangle: the filter's radius, and rounding
 
 /// The cells around a place of the picture; outside of the part -1 or their number.
 struct CellBox {
@@ -32,13 +32,17 @@ class SeenCells {
     const auto cell = [](double at, int low, int high, int cells) {
       return int(std::clamp(std::floor((at - low) / (high - low) * cells), -1.0, double(cells)));
     };
-    return {cell(place.x - kApart, part_.x0, part_.x1, columns_), cell(place.x + kApart, part_.x0, part_.x1, columns_),
-            cell(place.y - kApart, part_.y0, part_.y1, rows_), cell(place.y + kApart, part_.y0, part_.y1, rows_)};
+    return {cell(place.x - kApart, part_.x0, part_.x1, columns_),
+            cell(place.x + kApart, part_.x0, part_.x1, columns_),
+            cell(place.y - kApart, part_.y0, part_.y1, rows_),
+            cell(place.y + kApart, part_.y0, part_.y1, rows_)};
   }
 
   void add(const CellBox& a, const CellBox& b, const CellBox& c) {
-    const int x0 = std::max(0, std::min({a.x0, b.x0, c.x0})), x1 = std::min(columns_ - 1, std::max({a.x1, b.x1, c.x1})),
-              y0 = std::max(0, std::min({a.y0, b.y0, c.y0})), y1 = std::min(rows_ - 1, std::max({a.y1, b.y1, c.y1}));
+    const int x0 = std::max(0, std::min({a.x0, b.x0, c.x0})),
+              x1 = std::min(columns_ - 1, std::max({a.x1, b.x1, c.x1})),
+              y0 = std::max(0, std::min({a.y0, b.y0, c.y0})),
+              y1 = std::min(rows_ - 1, std::max({a.y1, b.y1, c.y1}));
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) seen_[std::size_t(y * kCells + x)] = true;
   }

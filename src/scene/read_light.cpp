@@ -15,8 +15,7 @@ LightSource read_quad_light(const ObjectReader& reader, double mm_per_unit) {
   const Value v_value = reader.need("v");
   const Vec3d u = reader.need("u").point(mm_per_unit), v = v_value.point(mm_per_unit);
   check_parallelogram(u, v, v_value);
-  return QuadLight{reader.need("corner").point(mm_per_unit), u, v,
-                   reader.need("radiance").color()};
+  return QuadLight{reader.need("corner").point(mm_per_unit), u, v, reader.need("radiance").color()};
 }
 
 LightSource read_source(const ObjectReader& reader, std::string_view type, double mm_per_unit) {

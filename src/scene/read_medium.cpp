@@ -56,8 +56,7 @@ PhysicalMedium read_physical(const ObjectReader& medium) {
     return result;
   }
   const auto g = medium.find("g");
-  result.sigma_s_prime =
-      medium.need("sigma_s").number_or_triple() * (1 - (g ? g->number() : 0));
+  result.sigma_s_prime = medium.need("sigma_s").number_or_triple() * (1 - (g ? g->number() : 0));
   return result;
 }
 
@@ -67,8 +66,7 @@ ArtistMedium read_artist(const ObjectReader& medium) {
   result.subsurface_radius = medium.need("subsurface_radius").number_or_triple();
   if (const auto scale = medium.find("subsurface_radius_scale"))
     result.subsurface_radius = result.subsurface_radius * scale->number_or_triple();
-  if (const auto g = medium.find("subsurface_scatter_anisotropy"))
-    result.anisotropy = g->number();
+  if (const auto g = medium.find("subsurface_scatter_anisotropy")) result.anisotropy = g->number();
   return result;
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/scene/nearest_name.h"
 #include "scene/value.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
+
+#include "opaline/scene/nearest_name.h"
 
 namespace opaline {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "benchmark/csv.h"
 #include "opaline/image/image.h"
-#include "opaline/report/csv.h"
 #include "run_program.h"
 
 namespace opaline {

@@ -93,7 +93,8 @@ TEST(CliCache, ListAndPrune) {
   for (const auto& entry : entries)
     EXPECT_EQ(std::filesystem::file_size(folder.cache + '/' + std::string(entry["file"])), entry["bytes"]);
   EXPECT_TRUE(contains(run_program({"cache", "ls", folder.cache}).out, "3 entries of "));
-  EXPECT_EQ(run_program({"cache", "prune", folder.cache, "--size", "1GB"}).out, "0 entries removed of 0.0 MB\n");
+  EXPECT_EQ(run_program({"cache", "prune", folder.cache, "--size", "1GB"}).out,
+            "0 entries removed of 0.0 MB\n");
   EXPECT_EQ(run_program({"cache", "prune", folder.cache, "--size", "0"}).exit_code, 0);
   EXPECT_EQ(run_program({"cache", "ls", folder.cache}).out, "0 entries of 0.0 MB\n");
   EXPECT_TRUE(contains(folder.render("b.exr", {"--cache-size", "10KB"}).out, "larger than the whole cache"));

@@ -34,10 +34,12 @@ TEST(CliInfo, PlanAsTextAndJson) {
 TEST(CliInfo, ModelErrorOfPlates) {
   const std::string plate = std::string(OPALINE_SCENES_DIR) + "/backlit-slab.json";
   const Outcome thin = run_program({"info", plate});
-  EXPECT_TRUE(contains(thin.out, "model error slab is as thick as a plate of 1.85 mm: 3.08 1.85 2.64 mean free paths"))
+  EXPECT_TRUE(contains(thin.out,
+                       "model error slab is as thick as a plate of 1.85 mm: 3.08 1.85 2.64 mean free paths"))
       << thin.out;
   EXPECT_TRUE(contains(thin.out, "random walks, the truth: ")) << thin.out;
-  const nlohmann::json event = event_of(events_of(run_program({"info", plate, "--log", "json"}).out), "plate");
+  const nlohmann::json event =
+      event_of(events_of(run_program({"info", plate, "--log", "json"}).out), "plate");
   EXPECT_GT(event["channels"][1]["profile"]["back"], .8);
   EXPECT_LT(event["channels"][1]["random_walks"]["back"], .5);
   // In a group of its own name, with a channel that is thick.

@@ -194,17 +194,20 @@ TEST(CliRender, JsonLog) {
 // file does not (.95).
 TEST(CliRender, PlansTheMemoryItTakes) {
   const std::string scenes = std::string(OPALINE_SCENES_DIR) + "/";
-  const std::vector<std::vector<std::string>> jobs{{"bunny-marble.json"},
-                                                   {"bunny-marble.json", "--resolution", "2048x2048"},
-                                                   {"bunny-skin1.json", "--resolution", "1024x1024", "--layers", "all"},
-                                                   {"sphere.json"},
-                                                   {"backlit-slab.json"}};
+  const std::vector<std::vector<std::string>> jobs{
+      {"bunny-marble.json"},
+      {"bunny-marble.json", "--resolution", "2048x2048"},
+      {"bunny-skin1.json", "--resolution", "1024x1024", "--layers", "all"},
+      {"sphere.json"},
+      {"backlit-slab.json"}};
   for (const std::vector<std::string>& job : jobs) {
     const SceneFolder folder;
-    std::vector<std::string> arguments{"render", scenes + job[0], "-o", folder.file("a.exr"), "--log", "json"};
+    std::vector<std::string> arguments{"render", scenes + job[0], "-o", folder.file("a.exr"),
+                                       "--log",  "json"};
     arguments.insert(arguments.end(), job.begin() + 1, job.end());
     const auto events = events_of(run_program(arguments).out);
-    const double planned = event_of(events, "plan")["memory_bytes"], taken = events.back()["peak_memory_bytes"];
+    const double planned = event_of(events, "plan")["memory_bytes"],
+                 taken = events.back()["peak_memory_bytes"];
     EXPECT_LE(taken, planned) << job[0];
     EXPECT_LE(planned, 1.3 * taken) << job[0];
   }

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "opaline/report/csv.h"
+#include "benchmark/csv.h"
 #include "run_program.h"
 
 namespace opaline {

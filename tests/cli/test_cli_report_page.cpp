@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "opaline/report/csv.h"
+#include "benchmark/csv.h"
 #include "run_program.h"
 
 namespace opaline {

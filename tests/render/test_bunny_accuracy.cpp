@@ -31,8 +31,9 @@ std::vector<Query> shading_points(int resolution, std::size_t stride) {
     for (int x = 0; x < resolution; ++x) {
       if (channel(image, x, y, "A") == 0 || seen++ % stride != 0) continue;
       const Vec3d p{channel(image, x, y, "P.X"), channel(image, x, y, "P.Y"), channel(image, x, y, "P.Z")};
-      points.push_back({Vec3f(p - world.origin),
-                        {channel(image, x, y, "N.X"), channel(image, x, y, "N.Y"), channel(image, x, y, "N.Z")}});
+      points.push_back(
+          {Vec3f(p - world.origin),
+           {channel(image, x, y, "N.X"), channel(image, x, y, "N.Y"), channel(image, x, y, "N.Z")}});
     }
   return points;
 }
@@ -118,7 +119,8 @@ std::vector<double> blurred(const std::vector<double>& ratio, int width) {
 TEST(LongBunnyAccuracy, NoMottling) {
   const std::vector<double> picture_100k = picture(100'000), reference = picture(3'000'000);
   std::vector<double> ratio(reference.size());
-  for (std::size_t i = 0; i < ratio.size(); ++i) ratio[i] = reference[i] > 0 ? picture_100k[i] / reference[i] : 0;
+  for (std::size_t i = 0; i < ratio.size(); ++i)
+    ratio[i] = reference[i] > 0 ? picture_100k[i] / reference[i] : 0;
   const std::vector<double> smooth = blurred(ratio, 512);
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < ratio.size(); ++i) {

@@ -236,7 +236,8 @@ TEST(Scale, BodiesInsideOfAHugeShell) {
   const Image inside = picture(scene);
   const std::size_t channels = alone.channels.size();
   float brightest = 0;
-  for (std::size_t i = 0; i < alone.pixels.size(); i += channels) brightest = std::max(brightest, alone.pixels[i]);
+  for (std::size_t i = 0; i < alone.pixels.size(); i += channels)
+    brightest = std::max(brightest, alone.pixels[i]);
   for (std::size_t i = 0; i < alone.pixels.size(); i += channels)
     ASSERT_NEAR(inside.pixels[i], alone.pixels[i], 1e-3 * double(brightest)) << i / channels;
 }

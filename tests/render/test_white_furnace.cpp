@@ -27,8 +27,10 @@ void expect_furnace(ProfileKind profile, double eta) {
   for (int y = 0; y < 24; ++y)
     for (int x = 0; x < 24; ++x) {
       if (channel(image, x, y, "A") < 1) continue;
-      const Vec3d position{channel(image, x, y, "P.X"), channel(image, x, y, "P.Y"), channel(image, x, y, "P.Z")};
-      const Vec3d normal{channel(image, x, y, "N.X"), channel(image, x, y, "N.Y"), channel(image, x, y, "N.Z")};
+      const Vec3d position{channel(image, x, y, "P.X"), channel(image, x, y, "P.Y"),
+                           channel(image, x, y, "P.Z")};
+      const Vec3d normal{channel(image, x, y, "N.X"), channel(image, x, y, "N.Y"),
+                         channel(image, x, y, "N.Z")};
       const double cosine = std::abs(dot(normalized(scene.camera.position - position), normal));
       const double reflected = fresnel_reflectance(cosine, eta);
       const double expected = returned * (1 - reflected) + reflected;
@@ -40,9 +42,15 @@ void expect_furnace(ProfileKind profile, double eta) {
   EXPECT_NEAR(sum / expected_sum, 1, 0.007);
 }
 
-TEST(WhiteFurnace, DipoleSphere) { expect_furnace(ProfileKind::dipole, 1.5); }
-TEST(WhiteFurnace, NormalizedDiffusionSphere) { expect_furnace(ProfileKind::normalized_diffusion, 1.3); }
-TEST(WhiteFurnace, IndexMatchedSphere) { expect_furnace(ProfileKind::dipole, 1.0); }
+TEST(WhiteFurnace, DipoleSphere) {
+  expect_furnace(ProfileKind::dipole, 1.5);
+}
+TEST(WhiteFurnace, NormalizedDiffusionSphere) {
+  expect_furnace(ProfileKind::normalized_diffusion, 1.3);
+}
+TEST(WhiteFurnace, IndexMatchedSphere) {
+  expect_furnace(ProfileKind::dipole, 1.0);
+}
 
 }  // namespace
 }  // namespace opaline::test

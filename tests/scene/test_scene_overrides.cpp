@@ -55,7 +55,10 @@ TEST(SceneOverrides, Errors) {
   const std::vector<Case> cases{
       {"media.marble.eta=-1", set("media.marble.eta=-1"), 0, {"'media.marble.eta'", "got -1"}},
       {"media.marble.etta=1", set("media.marble.etta=1"), 0, {"unknown key 'etta'", "did you mean 'eta'?"}},
-      {"media.marbel.eta=1", set("media.marbel.eta=1"), 0, {"no 'marbel' in 'media'", "did you mean 'marble'?"}},
+      {"media.marbel.eta=1",
+       set("media.marbel.eta=1"),
+       0,
+       {"no 'marbel' in 'media'", "did you mean 'marble'?"}},
       {"media.marbel.preset=skin1", set("media.marbel.preset=skin1"), 0, {"did you mean 'marble'?"}},
       {"media.marbel={\"preset\": \"skin1\"}",
        set("media.marbel={\"preset\": \"skin1\"}"),

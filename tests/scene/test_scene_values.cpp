@@ -34,7 +34,8 @@ TEST(SceneValues, ManyBallsAreCoarserThanFew) {
   const auto fineness_of = [](int balls) {
     std::string shapes;
     for (int i = 0; i < balls; ++i) shapes += R"({"sphere": {"radius": 1}}, )";
-    const Scene scene = parse(R"({"shapes": [)" + shapes + R"({"torus": {"major_radius": 2, "minor_radius": 1}}]})");
+    const Scene scene =
+        parse(R"({"shapes": [)" + shapes + R"({"torus": {"major_radius": 2, "minor_radius": 1}}]})");
     const int of_torus = std::get<TorusShape>(scene.shapes.back().source).fineness;
     EXPECT_EQ(std::get<SphereShape>(scene.shapes.front().source).fineness, of_torus);
     return of_torus;

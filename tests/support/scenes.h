@@ -17,7 +17,8 @@ inline constexpr double kPi = 3.14159265358979323846;
 inline Medium grey_medium(double mean_free_path, double absorbed, double eta,
                           ProfileKind profile = ProfileKind::dipole) {
   const double sigma_t_prime = 1 / mean_free_path;
-  return {"grey", PhysicalMedium{Rgb(absorbed * sigma_t_prime), Rgb((1 - absorbed) * sigma_t_prime)}, eta, profile};
+  return {"grey", PhysicalMedium{Rgb(absorbed * sigma_t_prime), Rgb((1 - absorbed) * sigma_t_prime)}, eta,
+          profile};
 }
 
 inline Medium marble() {
@@ -45,7 +46,9 @@ inline Scene single_shape(ShapeSource source, const Medium& medium, std::size_t 
   return scene;
 }
 
-inline Light point_light(const Vec3d& position, const Rgb& intensity) { return {"point", PointLight{position, intensity}}; }
+inline Light point_light(const Vec3d& position, const Rgb& intensity) {
+  return {"point", PointLight{position, intensity}};
+}
 
 /// Stages of a scene up to the precompute.
 struct Prepared {
@@ -76,7 +79,8 @@ inline Octree tree_with_irradiance(const SurfaceSamples& surface, const RgbF& ir
 inline float channel(const Image& image, int x, int y, const std::string& name) {
   for (std::size_t c = 0; c < image.channels.size(); ++c)
     if (image.channels[c] == name)
-      return image.pixels[(std::size_t(y) * std::size_t(image.width) + std::size_t(x)) * image.channels.size() + c];
+      return image
+          .pixels[(std::size_t(y) * std::size_t(image.width) + std::size_t(x)) * image.channels.size() + c];
   throw std::runtime_error("no channel " + name);
 }
 

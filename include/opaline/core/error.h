@@ -22,8 +22,8 @@ class Error : public std::exception {
   std::string expected;
   std::string got;
 
-  Error(ErrorKind kind, std::string file, int line, int column, std::string message, std::string expected = {},
-        std::string got = {});
+  Error(ErrorKind kind, std::string file, int line, int column, std::string message,
+        std::string expected = {}, std::string got = {});
 
   const char* what() const noexcept override { return text_.c_str(); }
 

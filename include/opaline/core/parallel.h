@@ -23,7 +23,9 @@ class FlushDenormals {
   unsigned saved_;
 };
 
-inline std::size_t chunk_count(std::size_t n, std::size_t chunk) { return (n + chunk - 1) / chunk; }
+inline std::size_t chunk_count(std::size_t n, std::size_t chunk) {
+  return (n + chunk - 1) / chunk;
+}
 
 /// Calls body(begin, end, chunk index) over [0, n) cut into chunks of the given size, in parallel, each with
 /// denormals flushed. The cut depends on n and chunk alone; bodies write to places of their own.

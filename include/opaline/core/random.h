@@ -17,7 +17,9 @@ constexpr std::uint64_t hash_bits(std::uint64_t seed, std::uint64_t index) {
 }
 
 /// Uniform in [0, 1), 53 bits.
-constexpr double unit_double(std::uint64_t bits) { return double(bits >> 11) * 0x1p-53; }
+constexpr double unit_double(std::uint64_t bits) {
+  return double(bits >> 11) * 0x1p-53;
+}
 
 /// Point i of the two-dimensional additive recurrence on the plastic number (R2, Roberts 2018), rotated by
 /// `shift` (Cranley-Patterson), in [0, 1)^2.

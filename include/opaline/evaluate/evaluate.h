@@ -87,7 +87,7 @@ struct CloudError {
   /// `classic`: what nodes taken as points leave out over what their solid angles suggest.
   std::array<float, 3> flattened{1, 1, 1};
   std::array<float, 3> light_shift{};  ///< systematic relative error of the irradiance
-  float other_sheets = 1;  ///< 0: without the samples of other sheets within h
+  float other_sheets = 1;              ///< 0: without the samples of other sheets within h
 };
 
 struct EvaluateInput {
@@ -96,11 +96,11 @@ struct EvaluateInput {
   std::span<const Query> queries;
   /// Entered irradiance at each query, for the channels that need it; empty: interpolated ones everywhere.
   std::span<const RgbF> irradiance = {};
-  EvaluatorKind evaluator = EvaluatorKind::dual_tree;  ///< automatic, surface_cache: dual_tree too
+  EvaluatorKind evaluator = EvaluatorKind::dual_tree;          ///< automatic, surface_cache: dual_tree too
   double tolerance = 0.005;                                    ///< dual_tree
   double max_solid_angle = 0.05;                               ///< classic, sr
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
-  CloudError cloud = {};        ///< of the samples, for Exitance::error
+  CloudError cloud = {};                                       ///< of the samples, for Exitance::error
   Monitor* monitor = nullptr;
   QueryPackets* packets = nullptr;  ///< dual_tree: of an earlier evaluation of these queries, or to be filled
 };

@@ -25,14 +25,18 @@ struct World {
   std::vector<Bounds> boxes;  ///< one a mesh, in the scene, mm
   /// The middle of everything, rounded to a power of two of 1/8 to 1/4 of the diagonal: where one object
   /// moves a little, the others keep their bits.
-  Vec3d origin{};       ///< mm
-  double unit = 1;      ///< mm; a power of 1024: translucent bodies, or else the scene, are 1 to 1024 units large
+  Vec3d origin{};   ///< mm
+  double unit = 1;  ///< mm; a power of 1024: translucent bodies, or else the scene, are 1 to 1024 units large
   double diagonal = 0;  ///< of the bounding box of everything, units; 0 for an empty scene
 };
 
 /// From the scene's millimetres into the world's space, and back.
-inline Vec3d into_world(const World& world, const Vec3d& p) { return (p - world.origin) / world.unit; }
-inline Vec3d out_of_world(const World& world, const Vec3d& p) { return p * world.unit + world.origin; }
+inline Vec3d into_world(const World& world, const Vec3d& p) {
+  return (p - world.origin) / world.unit;
+}
+inline Vec3d out_of_world(const World& world, const Vec3d& p) {
+  return p * world.unit + world.origin;
+}
 
 /// Meshes of all shapes; error as make_mesh, told at the shape's place in the scene.
 World make_world(const Scene& scene);

@@ -71,7 +71,8 @@ std::vector<PointTransfers> transfers_at(const PointIrradianceInput& input);
 
 /// E per point, W/mm^2: the sum over lights of emission x weight; adds to input.variance if it is not empty.
 /// in    transfers: one a light
-std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers, const PointIrradianceInput& input);
+std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers,
+                                 const PointIrradianceInput& input);
 
 /// Irradiance at arbitrary points, all lights together: for shading where samples are not wanted or too
 /// coarse.

@@ -13,9 +13,10 @@ namespace opaline {
 /// One sample of a light seen from a point: the contribution to irradiance is radiance_weight x cos x Ft x (1 if
 /// not occluded) x emission, emission being the light's colour (intensity, irradiance or radiance).
 struct LightSample {
-  Vec3f direction;   ///< unit, from the point towards the light
-  float distance;    ///< infinity for directional lights and surroundings
-  float weight = 0;  ///< intensity -> 1/d^2, irradiance -> 1, radiance -> solid angle / samples; 0: no light here
+  Vec3f direction;  ///< unit, from the point towards the light
+  float distance;   ///< infinity for directional lights and surroundings
+  float weight =
+      0;  ///< intensity -> 1/d^2, irradiance -> 1, radiance -> solid angle / samples; 0: no light here
 };
 
 /// The light's colour: what a sample's weight multiplies.

@@ -42,7 +42,7 @@ struct HeldView {
     std::vector<Surface> surfaces;     ///< by kind; empty: not known
   };
   std::vector<std::vector<Batch>> tiles;  ///< one batch a sample of the pixels
-  bool has_room = false;          ///< for points, and for the near field where it is to be kept
+  bool has_room = false;                  ///< for points, and for the near field where it is to be kept
   bool keeps_near_field = false;  ///< the noise of pictures in other colours is then that of the first
 
   /// Lets go of all that depends on which surfaces are of which kind.

@@ -13,23 +13,24 @@ namespace opaline {
 
 /// Translucent shapes that share samples and one tree.
 struct GroupPlan {
-  std::string name;                   ///< the group's, or its only shape's
-  bool shared = false;                ///< a named group: others may join; a lone shape stays alone
-  std::vector<std::uint32_t> meshes;  ///< indices into World::meshes
-  std::size_t medium = 0;             ///< index into Scene::media
-  double area = 0;                    ///< mm^2
-  double thickness = 0;               ///< mean, mm: twice the volume over the area; 0 if a mesh is open
-  double smallest_mean_free_path = 0; ///< over the channels that scatter, mm
-  double spacing = 0;                 ///< sqrt(area / samples), mm
+  std::string name;                    ///< the group's, or its only shape's
+  bool shared = false;                 ///< a named group: others may join; a lone shape stays alone
+  std::vector<std::uint32_t> meshes;   ///< indices into World::meshes
+  std::size_t medium = 0;              ///< index into Scene::media
+  double area = 0;                     ///< mm^2
+  double thickness = 0;                ///< mean, mm: twice the volume over the area; 0 if a mesh is open
+  double smallest_mean_free_path = 0;  ///< over the channels that scatter, mm
+  double spacing = 0;                  ///< sqrt(area / samples), mm
   std::size_t samples = 0;
-  std::string reason;                 ///< why this many
+  std::string reason;  ///< why this many
 };
 
 struct Plan {
   std::vector<GroupPlan> groups;      ///< empty: nothing translucent, no precompute
   std::vector<std::string> stages;    ///< that will run, each with its reason
   std::vector<std::string> warnings;  ///< one line each, with the likely fix
-  std::size_t bytes = 0;              ///< expected peak: program, meshes, rays, samples, trees and a picture without empty pixels
+  std::size_t bytes =
+      0;  ///< expected peak: program, meshes, rays, samples, trees and a picture without empty pixels
   std::size_t triangles = 0;
   RayBuild rays = RayBuild::careful;  ///< quick where that costs the rays of one picture less than it saves
 };

@@ -43,7 +43,7 @@ struct RenderResult {
   Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2
                 ///< sr)
   std::vector<std::uint8_t> translucent;  ///< a pixel each: 1 where more than half of what it shows is so
-  std::size_t queries = 0;     ///< points at which exitance was evaluated
+  std::size_t queries = 0;                ///< points at which exitance was evaluated
   std::size_t non_finite = 0;  ///< pixels whose radiance is not finite; 0 unless something is broken
 };
 

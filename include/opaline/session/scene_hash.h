@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What tells one scene with its meshes and overrides from another.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// SHA-1 of the scene file's bytes, the overrides, and the bytes of each mesh file in use, once; empty where
+/// the scene came through a pipe. Taken while loading: files may change during a long render.
+/// error Error{bad_input}: a file that cannot be read a second time
+std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,
+                       const Scene& scene);
+
+/// What the sums of a direct rendering belong to: scene_hash of all overrides but those that say when to stop.
+std::string direct_sums_key(const std::string& path, const std::vector<std::string>& overrides,
+                            const Scene& scene);
+
+}  // namespace opaline

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "benchmark/bench_pictures.h"
+
+#include <algorithm>
+
+#include "benchmark/page.h"
+#include "opaline/image/error_picture.h"
+#include "opaline/image/image.h"
+
+namespace opaline {
+namespace {
+
+/// R, G, B and coverage: what a comparison reads.
+Image shown_channels(const Image& image) {
+  Image shown = image;
+  shown.channels.clear();
+  std::vector<std::size_t> places;
+  for (std::size_t c = 0; c < image.channels.size(); ++c)
+    if (std::string_view("RGBA").find(image.channels[c]) != std::string_view::npos) {
+      shown.channels.push_back(image.channels[c]);
+      places.push_back(c);
+    }
+  const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height), count = places.size();
+  shown.pixels = {};
+  shown.pixels.resize(pixels * count);
+  for (std::size_t p = 0; p < pixels; ++p)
+    for (std::size_t c = 0; c < count; ++c)
+      shown.pixels[p * count + c] = image.pixels[p * image.channels.size() + places[c]];
+  return shown;
+}
+
+Image image_of(const Layer& layer) {
+  Image image;
+  image.width = layer.width;
+  image.height = layer.height;
+  image.channels = {"R", "G", "B"};
+  const std::size_t pixels = std::size_t(layer.width) * std::size_t(layer.height);
+  image.pixels.resize(3 * pixels);
+  for (std::size_t p = 0; p < pixels; ++p)
+    for (std::size_t c = 0; c < 3; ++c) image.pixels[3 * p + c] = layer.channels[c][p];
+  return image;
+}
+
+/// A scene's two halves, for all of its rungs.
+struct Reference {
+  explicit Reference(const BenchScene& scene) {
+    for (std::size_t h = 0; h < 2; ++h) {
+      const Image image = read_image(scene.reference.halves[h]);
+      halves[h] = extract_layer(image, "");
+      const std::vector<std::uint8_t> shown = object_pixels(image);
+      object.resize(shown.size());
+      for (std::size_t p = 0; p < shown.size(); ++p) object[p] |= shown[p];
+    }
+    mean = mean_of(halves[0], halves[1]);
+  }
+
+  std::array<Layer, 2> halves;
+  Layer mean;
+  std::vector<std::uint8_t> object;
+};
+
+BenchSubject subject_of(const BenchScene& scene, const Reference& reference) {
+  BenchSubject subject;
+  subject.scene = scene.id;
+  subject.key = scene.key;
+  subject.title = scene.name;
+  subject.reference = scene.reference.made;
+  subject.resolution = {reference.mean.width, reference.mean.height};
+  subject.half_noise =
+      picture_error(reference.mean, reference.halves[0], reference.halves[1], reference.object)
+          .worst.half_noise;
+  return subject;
+}
+
+void write_pictures(const BenchFolder& folder, const std::string& name, const Image& image,
+                    const Reference& reference, double exposure) {
+  const Image shown = shown_channels(image);
+  const Layer layer = extract_layer(shown, "");
+  write_exr(folder.file(name), shown, /*half=*/false);
+  write_png(folder.file(shown_picture(name)), shown, exposure);
+  write_png(folder.file(error_picture_of(name)),
+            error_colours(relative_errors(layer, reference.mean, reference.object), layer, reference.object),
+            0);
+}
+
+}  // namespace
+
+void add_pictures(const BenchFolder& folder, const std::vector<BenchScene>& scenes,
+                  const std::vector<BenchJob>& jobs, BenchReport& report) {
+  for (const BenchScene& scene : scenes) {
+    const Reference reference(scene);
+    const double exposure = scene.scene.film.exposure;
+    BenchSubject& subject = report.subjects.emplace_back(subject_of(scene, reference));
+    if (folder.is_report()) {
+      subject.picture = "pictures/" + scene.name + "-reference.png";
+      write_png(folder.file(subject.picture), image_of(reference.mean), exposure);
+    }
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      if (jobs[i].scene != &scene || !jobs[i].failure.empty()) continue;
+      const Image image = read_image(folder.file(jobs[i].picture));
+      report.rows[i].error =
+          picture_error(extract_layer(image, ""), reference.halves[0], reference.halves[1], reference.object);
+      if (!folder.is_report()) continue;
+      report.rows[i].picture = jobs[i].picture;
+      write_pictures(folder, jobs[i].picture, image, reference, exposure);
+    }
+  }
+}
+
+// The same picture as both halves: a reference without noise.
+std::vector<BudgetRow> budget_rows(const BenchFolder& folder, const std::vector<BudgetJob>& jobs) {
+  std::vector<BudgetRow> rows;
+  for (const BudgetJob& job : jobs) {
+    rows.push_back({job.scene->id, job.part, std::nullopt, job.failure});
+    BudgetRow& row = rows.back();
+    if (!job.failure.empty()) continue;
+    const Image here = read_image(folder.file(job.here)), converged = read_image(folder.file(job.converged));
+    const Layer reference = extract_layer(converged, "");
+    row.error = picture_error(extract_layer(here, ""), reference, reference, object_pixels(converged));
+  }
+  return rows;
+}
+
+}  // namespace opaline

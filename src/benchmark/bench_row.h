@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A benchmark as data: what each run cost, and what the runs of a rung amount to.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "benchmark/error_budget.h"
+#include "benchmark/ladder.h"
+#include "benchmark/picture_error.h"
+#include "benchmark/spread.h"
+
+namespace opaline {
+
+/// The stages of a rendering that are told apart.
+inline constexpr std::array<std::string_view, 8> kBenchStages{"loading", "rays",     "sampling", "irradiance",
+                                                              "octree",  "exitance", "shading",  "writing"};
+inline constexpr std::size_t kShadingStage = 6;
+static_assert(kBenchStages[kShadingStage] == "shading");  // it and the later ones: again for each frame
+
+/// As the kernel accounts for it. It tells user from system by its ticks: their sum is the exact one.
+struct Cost {
+  double user_seconds = 0, system_seconds = 0, wall_seconds = 0;
+  double peak_bytes = 0;  ///< largest resident set; of a stage: of the process up to its end
+};
+
+/// One run of a rung.
+struct BenchRun {
+  Cost job;  ///< the whole process
+  std::array<std::optional<Cost>, kBenchStages.size()> stages;
+  double samples = 0, queries = 0, entry_samples = 0;
+  double rays = 0, embree_seconds = 0;  ///< of the shading pass; CPU inside Embree alone for the same rays
+};
+
+struct CostSpread {
+  Spread user, system, cpu, wall;  ///< s
+  Spread memory;                   ///< bytes
+};
+
+/// A rung of a scene. A failed one has a failure and nothing measured.
+struct BenchRow {
+  std::string scene;
+  Rung rung;
+  std::string failure;
+  CostSpread job;
+  std::array<CostSpread, kBenchStages.size()> stages;
+  double samples = 0, queries = 0, entry_samples = 0, rays = 0;
+  Spread shading_rate, embree_rate;  ///< rays per CPU second, of the whole shading pass and of Embree alone
+  /// CPU over the lambert rung's in the same round of the same benchmark, a ratio a round: drift cancels.
+  Spread job_ratio, shading_ratio;
+  /// CPU of the stages before the shading, which do not depend on the camera, and of it and the later ones,
+  /// s.
+  Spread once_cpu, frame_cpu;
+  std::optional<PictureError> error;
+  std::string picture;  ///< EXR beside the report, relative to its folder; empty: not kept
+};
+
+/// What the rows of a scene are measured on and against.
+struct BenchSubject {
+  std::string scene;      ///< as in the rows
+  std::string key;        ///< of what the scene's files and the bench's settings of it hold
+  std::string title;      ///< its name without folders
+  std::string reference;  ///< in words
+  double half_noise = 0;  ///< of one half of the reference, rms, worst channel
+  std::array<int, 2> resolution{};
+  std::string picture;  ///< of the reference, PNG; empty: not kept
+};
+
+/// Notes say where and how it was measured: key and value, in the order they are written.
+struct BenchReport {
+  std::vector<std::pair<std::string, std::string>> notes;
+  std::vector<BenchSubject> subjects;  ///< in the order of the rows
+  std::vector<BenchRow> rows;
+  std::vector<BudgetRow> budget;  ///< empty: not measured
+};
+
+/// The row of a rung's runs, without its error.
+/// in    lambert: the runs of the baseline, run i in the same round as runs[i]; too few of them (it failed):
+///       no ratio for the rounds they miss
+BenchRow summarize(const std::string& scene, const Rung& rung, std::span<const BenchRun> runs,
+                   std::span<const BenchRun> lambert);
+
+}  // namespace opaline

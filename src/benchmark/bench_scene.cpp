@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "benchmark/bench_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "benchmark/child_process.h"
+#include "core/units.h"
+#include "opaline/core/error.h"
+#include "opaline/image/image.h"
+#include "opaline/scene/load_scene.h"
+#include "opaline/session/scene_hash.h"
+
+namespace opaline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kQuickWidth = 128;
+constexpr std::array<const char*, 2> kProfiles{"dipole", "normalized_diffusion"};
+constexpr std::array<const char*, 2> kReferenceSeeds{"101", "102"};
+
+void add_sets(std::vector<std::string>& arguments, const std::vector<std::string>& overrides) {
+  for (const std::string& text : overrides) arguments.insert(arguments.end(), {"--set", text});
+}
+
+/// The event that a child was run for; its failure is this run's.
+Json answer_of(const OwnChild& child, const std::string& event) {
+  if (!child.failure.empty()) throw Error(ErrorKind(child.exit_code), {}, 0, 0, child.failure);
+  const Json* answer = child.event(event);
+  if (answer == nullptr) throw run_failed("", "a child process did not say what it did");
+  return *answer;
+}
+
+std::size_t planned_samples(const BenchScene& scene, Monitor& monitor) {
+  std::vector<std::string> line{"info", scene.file, "--log", "json"};
+  add_sets(line, scene.overrides);
+  std::size_t most = 0;
+  const Json plan = answer_of(run_own_child(line, monitor), "plan");
+  for (const Json& group : plan.at("groups")) most = std::max(most, group.at("samples").get<std::size_t>());
+  return most;
+}
+
+std::string quick_resolution(const Film& film) {
+  const double aspect = double(film.resolution[1]) / double(film.resolution[0]);
+  const long height = std::clamp(std::lround(kQuickWidth * aspect), 1L, 65536L);
+  return fmt::format("film.resolution=[{},{}]", kQuickWidth, height);
+}
+
+/// Checks that a half fits the scene's picture, and returns its seed; its pixels are gone afterwards.
+std::string check_half(const std::string& path, const BenchScene& scene) {
+  const Image image = read_image(path);
+  const Film& film = scene.scene.film;
+  const std::array<int, 4> part =
+      film.crop.value_or(std::array<int, 4>{0, 0, film.resolution[0], film.resolution[1]});
+  const int width = part[2] - part[0], height = part[3] - part[1];
+  if (image.width != width || image.height != height || extract_layer(image, "").channels.empty())
+    throw bad_file(path, "not a reference of " + scene.file,
+                   fmt::format("{} x {} pixels of R, G, B", width, height),
+                   fmt::format("{} x {}", image.width, image.height));
+  for (const auto& [key, value] : image.metadata)
+    if (key == "opaline:seed") return value;
+  return "unknown";
+}
+
+/// Renders a half, or goes on with it where it is not yet good enough; returns its file.
+std::string render_half(const BenchArguments& arguments, const std::string& folder, const BenchScene& scene,
+                        const std::string& seed, Monitor& monitor) {
+  std::vector<std::string> overrides = scene.overrides;
+  overrides.insert(overrides.end(), {"settings.method=direct", "settings.seed=" + seed});
+  const std::string stem = fmt::format("{}/{}-{:.16}-seed{}", folder, fs::path(scene.file).stem().string(),
+                                       direct_sums_key(scene.file, overrides, scene.scene), seed);
+  const std::string half = stem + ".exr";
+  // By all cores: it is not timed, and its bytes do not depend on them.
+  std::vector<std::string> line{"render", scene.file, "--log",    "json",
+                                "-o",     half,       "--resume", stem + ".sums.exr"};
+  add_sets(line, overrides);
+  add_sets(line, {"settings.entry_samples=1000000000",
+                  fmt::format("settings.until_error={}", arguments.reference_error)});
+  write_line(stderr, fmt::format("bench: reference of {}, seed {}, until {:.3g} %: {}", scene.id, seed,
+                                 100 * arguments.reference_error, half));
+  const OwnChild child = run_own_child(line, monitor);
+  const Json done = answer_of(child, "done");
+  write_line(stderr, fmt::format("bench:   {:.3g} % with {} entry samples a pixel, {}",
+                                 100 * done.value("direct_noise", 0.0),
+                                 grouped(done.value("entry_samples", std::uint64_t{0})),
+                                 short_time(child.cost.wall_seconds)));
+  return half;
+}
+
+/// The scene's own seed unless the reference has it: then the first that it has not.
+std::uint64_t other_seed(std::uint64_t seed, const std::array<std::string, 2>& taken) {
+  const auto is_taken = [&](std::uint64_t s) {
+    return std::ranges::find(taken, std::to_string(s)) != taken.end();
+  };
+  if (is_taken(seed))
+    for (seed = 0; is_taken(seed);) ++seed;
+  return seed;
+}
+
+/// more: overrides after the user's own.
+BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& file,
+                            const std::vector<std::string>& more, Monitor& monitor) {
+  BenchScene scene;
+  scene.file = scene.id = file;
+  scene.overrides = arguments.overrides;
+  scene.overrides.insert(scene.overrides.end(), more.begin(), more.end());
+  scene.scene = load_scene(file, scene.overrides);
+  // In front, as the option would be: what the user sets wins.
+  if (arguments.quick) scene.overrides.insert(scene.overrides.begin(), quick_resolution(scene.scene.film));
+  // Halves would be rounded to .05 %.
+  scene.overrides.emplace_back("film.pixel_type=float");
+  scene.scene = load_scene(file, scene.overrides);
+  scene.name = fs::path(file).stem().string();
+  scene.key = scene_hash(file, scene.overrides, scene.scene);
+  scene.planned_samples = planned_samples(scene, monitor);
+  scene.rungs = ladder({scene.planned_samples, arguments.quick});
+  scene.rungs.insert(scene.rungs.end(), arguments.rungs.begin(), arguments.rungs.end());
+  return scene;
+}
+
+}  // namespace
+
+std::vector<BenchScene> open_bench_scenes(const BenchArguments& arguments, const std::string& file,
+                                          Monitor& monitor) {
+  std::vector<BenchScene> scenes{open_bench_scene(arguments, file, {}, monitor)};
+  if (!arguments.profiles || scenes[0].planned_samples == 0) return scenes;
+  const BenchScene own = std::move(scenes[0]);
+  scenes.clear();
+  for (const char* profile : kProfiles) {
+    std::vector<std::string> more;
+    for (const Medium& medium : own.scene.media)
+      more.push_back(fmt::format("media.{}.profile={}", medium.name, profile));
+    BenchScene& scene = scenes.emplace_back(open_bench_scene(arguments, file, more, monitor));
+    scene.id += fmt::format(" ({})", profile);
+    scene.name += fmt::format("-{}", profile);
+  }
+  return scenes;
+}
+
+void prepare_reference(const BenchArguments& arguments, const std::string& folder, BenchScene& scene,
+                       Monitor& monitor) {
+  BenchReference& reference = scene.reference;
+  const bool given = !arguments.halves.empty();
+  reference.made = given ? "given" : fmt::format("direct, until {:.3g} %", 100 * arguments.reference_error);
+  for (std::size_t i = 0; i < 2; ++i) {
+    reference.halves[i] =
+        given ? arguments.halves[i] : render_half(arguments, folder, scene, kReferenceSeeds[i], monitor);
+    reference.seeds[i] = check_half(reference.halves[i], scene);
+  }
+  scene.direct_seed = other_seed(scene.scene.settings.seed, reference.seeds);
+}
+
+std::vector<std::string> rung_overrides(const BenchScene& scene, const Rung& rung) {
+  std::vector<std::string> overrides = overrides_of(rung);
+  if (rung.method == "direct") {
+    overrides.push_back(fmt::format("settings.seed={}", scene.direct_seed));
+    // Its knob is the number of entry samples, whatever noise the scene wants.
+    if (scene.scene.settings.until_error) overrides.emplace_back("settings.until_error=1e-30");
+  }
+  return overrides;
+}
+
+std::vector<std::string> render_arguments(const BenchArguments& arguments, const BenchScene& scene,
+                                          const std::vector<std::string>& overrides) {
+  std::vector<std::string> line{"render", scene.file,  "--log",
+                                "json",   "--threads", std::to_string(arguments.threads)};
+  add_sets(line, scene.overrides);
+  add_sets(line, overrides);
+  return line;
+}
+
+}  // namespace opaline

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene of a benchmark: its rungs, its reference.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "benchmark/bench_command.h"
+#include "benchmark/ladder.h"
+#include "opaline/core/monitor.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// Two pictures with independent noise.
+struct BenchReference {
+  std::array<std::string, 2> halves;  ///< file names
+  std::array<std::string, 2> seeds;   ///< "unknown" where a file does not say
+  std::string made;                   ///< in words
+};
+
+struct BenchScene {
+  std::string file;
+  std::string id;                      ///< in rows: the file, and the profile where each has its turn
+  std::string name;                    ///< without folders, for files; no two alike
+  std::string key;                     ///< scene_hash of what every run renders
+  std::vector<std::string> overrides;  ///< of every run, before a rung's own
+  Scene scene;                         ///< without its meshes
+  std::size_t planned_samples = 0;     ///< of the group with the most
+  std::vector<Rung> rungs;
+  BenchReference reference;
+  std::uint64_t direct_seed = 0;  ///< of the direct rungs: not one of the reference's
+};
+
+/// Its settings and rungs, once, or once for each profile if that is asked for and something is translucent;
+/// the plan is asked of a child process.
+/// error Error{bad_input} as load_scene and make_plan
+std::vector<BenchScene> open_bench_scenes(const BenchArguments& arguments, const std::string& file,
+                                          Monitor& monitor);
+
+/// The user's halves, or two direct renderings, kept in and taken from `folder` under names that hold their
+/// key. error Error{bad_input}: halves of another size; Error{run_failed}: a rendering failed
+void prepare_reference(const BenchArguments& arguments, const std::string& folder, BenchScene& scene,
+                       Monitor& monitor);
+
+/// What a rung's run is rendered with, besides the scene's own overrides.
+std::vector<std::string> rung_overrides(const BenchScene& scene, const Rung& rung);
+
+/// Command line of a run, for run_own_child; "-o" and the picture are still missing.
+std::vector<std::string> render_arguments(const BenchArguments& arguments, const BenchScene& scene,
+                                          const std::vector<std::string>& overrides);
+
+}  // namespace opaline

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables as CSV: notes, names, units, rows.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "benchmark/bench_row.h"
+
+namespace opaline {
+
+/// As text: "# key: value" a note, quoted if it has a comma, a line of names, a line of units, a line a row;
+/// cells quoted where they must be (RFC 4180), lines end in \n.
+struct CsvTable {
+  std::vector<std::pair<std::string, std::string>> notes;  ///< no line breaks; no ": " in a key
+  std::vector<std::string> names, units;                   ///< a column each
+  std::vector<std::vector<std::string>> rows;              ///< as many cells as names
+};
+
+std::string to_csv(const CsvTable& table);
+
+/// error Error{bad_input} naming `file` and the line: an open quote, a row of another length than the names
+CsvTable parse_csv(std::string_view text, const std::string& file);
+
+/// Raised whenever a column changes its name, unit or meaning, or goes.
+inline constexpr int kBenchSchema = 2;
+
+/// The schema is the first note. Empty cells were not measured; a failed rung's `failure` says why.
+CsvTable bench_table(const BenchReport& report);
+
+/// The parts of the error, a row each.
+CsvTable budget_table(const BenchReport& report);
+
+}  // namespace opaline

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "benchmark/ladder.h"
+
+#include <algorithm>
+
+namespace opaline {
+namespace {
+
+/// Rungs that differ in one setting.
+struct Series {
+  std::string method, evaluator, knob;
+  std::vector<std::string> values, quick_values;
+};
+
+std::string scaled(std::size_t samples, double factor) {
+  return std::to_string(std::max<std::size_t>(1, std::size_t(factor * double(samples))));
+}
+
+/// A new evaluator or knob is a line here. A series without a knob has one value, "".
+std::vector<Series> all_series(std::size_t samples) {
+  const std::string quarter = scaled(samples, .25), planned = scaled(samples, 1),
+                    fourfold = scaled(samples, 4);
+  return {
+      {"lambert", "", "", {""}, {""}},
+      {"hierarchical", "", "", {""}, {""}},
+      {"hierarchical", "dual_tree", "tolerance", {"0.1", "0.02", "0.005", "0.001"}, {"0.02"}},
+      {"hierarchical", "surface_cache", "tolerance", {"0.02", "0.005"}, {"0.02"}},
+      {"hierarchical", "classic", "max_solid_angle", {"0.4", "0.1", "0.05", "0.02"}, {"0.4", "0.1"}},
+      {"hierarchical", "brute_force", "", {""}, {}},
+      {"hierarchical", "dual_tree", "samples", {quarter, planned, fourfold}, {quarter}},
+      {"direct", "", "entry_samples", {"16", "64", "256"}, {"16"}},
+  };
+}
+
+}  // namespace
+
+std::string name_of(const Rung& rung) {
+  std::string name = rung.method;
+  if (!rung.evaluator.empty()) name += ' ' + rung.evaluator;
+  if (!rung.knob.empty()) name += ' ' + rung.knob + '=' + rung.value;
+  return name;
+}
+
+std::vector<std::string> overrides_of(const Rung& rung) {
+  std::vector<std::string> overrides{"settings.method=" + rung.method};
+  if (!rung.evaluator.empty()) overrides.push_back("settings.evaluator=" + rung.evaluator);
+  if (!rung.knob.empty()) overrides.push_back("settings." + rung.knob + '=' + rung.value);
+  return overrides;
+}
+
+std::vector<Rung> ladder(const LadderInput& input) {
+  std::vector<Rung> rungs;
+  for (const Series& series : all_series(input.planned_samples)) {
+    // Without anything translucent there are no samples to count, nor a tree to walk.
+    if (input.planned_samples == 0 && series.method == "hierarchical") continue;
+    for (const std::string& value : input.quick ? series.quick_values : series.values)
+      rungs.push_back({series.method, series.evaluator, series.knob, value});
+  }
+  return rungs;
+}
+
+}  // namespace opaline

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A benchmark as JSON, and what a later one compares of it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "benchmark/bench_row.h"
+
+namespace opaline {
+
+/// {"schema": "opaline bench", "version": kBenchSchema, "notes": [[key, value], ...],
+///  "scenes": [{"scene", "key", ...}], "units": {column: unit}, "rows": [{column: value}],
+///  "budget": [{column: value}]}: the columns and values of the CSVs; null: not measured.
+std::string to_json(const BenchReport& report);
+
+/// A rung as far as its cost and error are watched.
+struct WatchedRung {
+  std::string key;  ///< of its scene: BenchSubject
+  std::string title, rung;
+  Spread job_ratio, shading_ratio;
+  double error = 0, error_floor = 0;  ///< relative, worst channel
+  bool has_error = false;
+};
+
+std::vector<WatchedRung> watched_rungs(const BenchReport& report);
+
+/// The same from the text of a results.json; failed rungs are left out.
+/// error Error{bad_input} naming `file`: no such JSON, or of another version
+std::vector<WatchedRung> parse_results(std::string_view text, const std::string& file);
+
+}  // namespace opaline

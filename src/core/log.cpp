@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/log.h"
+
+#include <new>
+#include <stdexcept>
+#include <system_error>
+
+#include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+const char* name_of(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::bad_input:
+      return "bad_input";
+    case ErrorKind::interrupted:
+      return "interrupted";
+    case ErrorKind::run_failed:
+      break;
+  }
+  return "run_failed";
+}
+
+/// A size that no memory holds is reported by containers as length_error, a thread without room for its stack
+/// as EAGAIN.
+bool is_out_of_memory(const std::exception& failure) {
+  const auto* system = dynamic_cast<const std::system_error*>(&failure);
+  return dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ||
+         dynamic_cast<const std::length_error*>(&failure) != nullptr ||
+         (system != nullptr && system->code() == std::errc::resource_unavailable_try_again);
+}
+
+}  // namespace
+
+std::string compact(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void write_line(std::FILE* stream, std::string_view line) {
+  const std::string whole = std::string(line) + '\n';
+  std::fwrite(whole.data(), 1, whole.size(), stream);
+  std::fflush(stream);
+}
+
+void print_event(const Log& log, const char* event, const Json& members) {
+  if (log.format != LogFormat::json) return;
+  Json line{{"event", event}};
+  line.update(members);
+  write_line(stdout, compact(line));
+}
+
+void print_warning(const Log& log, const std::string& text) {
+  print_event(log, "warning", {{"message", text}});
+  if (log.format == LogFormat::text) write_line(stderr, "opaline: warning: " + text);
+}
+
+int print_failure(const Log& log, const std::exception& failure) {
+  const auto* error = dynamic_cast<const Error*>(&failure);
+  const ErrorKind kind = error != nullptr ? error->kind : ErrorKind::run_failed;
+  const std::string text = is_out_of_memory(failure) ? "out of memory" : failure.what();
+  Json members{{"kind", name_of(kind)}, {"exit_code", int(kind)}, {"message", text}};
+  if (error != nullptr && !error->file.empty()) members["file"] = error->file;
+  if (error != nullptr && error->line > 0) members["line"] = error->line;
+  if (error != nullptr && error->column > 0) members["column"] = error->column;
+  print_event(log, "error", members);
+  if (log.format == LogFormat::text)
+    write_line(stderr, kind == ErrorKind::interrupted ? "opaline: " + text : "opaline: error: " + text);
+  return int(kind);
+}
+
+}  // namespace opaline

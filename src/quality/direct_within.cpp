@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "opaline/core/stopwatch.h"
+#include "opaline/quality/time_budget.h"
+#include "quality/picture_cost.h"
+
+namespace opaline {
+namespace {
+
+constexpr double kTrialPixels = 96 * 96;
+
+/// CPU of a pass, and of the layers without noise, s.
+struct PassCost {
+  double pass = 0, layers = 0;
+};
+
+}  // namespace
+
+DirectResult direct_within(const DirectInput& input, double seconds, const FinishPicture& finish) {
+  const Stopwatch watch;
+  const auto spent = [&watch] { return watch.cost({}).cpu_seconds; };
+  const std::size_t per_pass = entry_samples_per_pass(input.scene.film),
+                    most = input.scene.settings.entry_samples.value_or(SIZE_MAX / 2);
+  Scene scene = input.scene;
+  DirectState state;
+  PassCost cost;
+  const auto go_on = [&](std::size_t passes) {
+    scene.settings.entry_samples = std::min((state.passes + passes) * per_pass, most);
+    const std::size_t first = state.passes;
+    const double start = spent();
+    double end = start;
+    DirectInput part{scene, input.world, input.rays, input.plan, input.monitor, [&](const DirectState& now) {
+                       end = spent();
+                       if (input.after_pass) input.after_pass(now);
+                     }};
+    DirectResult result = render_direct(part, state);
+    if (state.passes > first) cost = {(end - start) / double(state.passes - first), spent() - end};
+    return result;
+  };
+  DirectResult result = go_on(1);
+  const double finishing = finishing_cost(thinned(result.picture.image, kTrialPixels), scene.film, finish);
+  // Half of what there seems to be time for, then the rest: a single pass tells its cost badly.
+  for (const double share : {0.5, 1.0}) {
+    const double left = kPlannedShare * seconds - spent() - finishing - cost.layers;
+    const auto passes = std::size_t(std::max(0.0, share * left / cost.pass));
+    if (passes == 0 || state.passes * per_pass >= most) break;
+    const std::size_t before = state.passes;
+    result = go_on(passes);
+    if (state.passes < before + passes) break;  // good enough
+  }
+  return result;
+}
+
+}  // namespace opaline

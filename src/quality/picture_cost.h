@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a whole picture will cost, told from small parts of it.
+#pragma once
+
+#include <vector>
+
+#include "opaline/quality/time_budget.h"
+#include "opaline/session/session.h"
+
+namespace opaline {
+
+/// CPU of shading the whole picture, by a few of its own tiles: points of a small picture lie wider apart,
+/// and what is evaluated together costs more there.
+class ShadingCost {
+ public:
+  /// probe: of this scene; where it shows what tells which tiles stand for the others
+  ShadingCost(const Scene& scene, const Image& probe);
+
+  /// s, of the scene with what the session has prepared.
+  double of(const Session& session, const Scene& scene);
+
+ private:
+  struct Tile {
+    double coverage = 0;  // by what is to be shaded
+    Rectangle pixels{};
+  };
+  std::vector<Tile> tiles_;  // of all the picture, by coverage
+  std::size_t tried_;        // so many of them, spread evenly
+};
+
+/// CPU of what follows a picture, by a small one, s. The first call of `finish` may cost more than later
+/// ones.
+double finishing_cost(const Image& probe, const Film& film, const FinishPicture& finish);
+
+/// Every few pixels of a picture, so that about so many are left.
+Image thinned(const Image& picture, double pixels);
+
+/// Of the time that is planned: the rest is for what is guessed too low.
+inline constexpr double kPlannedShare = 0.93;
+
+}  // namespace opaline

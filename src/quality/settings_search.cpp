@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "quality/settings_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "quality/probe.h"
+
+namespace opaline {
+namespace {
+
+constexpr double kMostProbePixels = 256 * 256;
+// p99 of the evaluator's error is its tolerance, and the mean about a tenth of that.
+constexpr double kTolerancePerError = 0.5, kLeastTolerance = 5e-4, kMostTolerance = 0.02;
+
+}  // namespace
+
+void SettingsSearch::begin(double tolerance) {
+  Settings& settings = scene.settings;
+  settings.samples.reset();
+  settings.tolerance = tolerance;
+  if (settings.evaluator == EvaluatorKind::automatic) settings.evaluator = EvaluatorKind::dual_tree;
+  session.edit(scene);
+  double largest = 0;
+  for (const GroupPlan& group : session.plan().groups) {
+    area += group.area;
+    largest = std::max(largest, group.area);
+  }
+  // Rounded up, the largest group has as many as it may.
+  if (largest > 0) most_samples = (double(settings.max_samples) - 1e-6) * area / largest;
+}
+
+void SettingsSearch::place(double samples) {
+  scene.settings.sample_spacing = std::sqrt(area / samples);
+  session.edit(scene);
+  session.prepare(monitor);
+}
+
+Image SettingsSearch::picture() {
+  RenderResult result = probe_picture(session, probe_scene(scene, probe_pixels), ++pictures, monitor);
+  estimated = estimated_relative_error(result.image, result.translucent);
+  return std::move(result.image);
+}
+
+Image SettingsSearch::picture_of(double samples) {
+  place(samples);
+  return picture();
+}
+
+Image SettingsSearch::first_picture(double samples) {
+  place(samples);
+  for (;; probe_pixels *= 2) {
+    Image image = picture();
+    if (translucent_points(image) >= enough_points || probe_pixels >= kMostProbePixels) return image;
+  }
+}
+
+std::size_t SettingsSearch::planned_samples() const {
+  std::size_t samples = 0;
+  for (const GroupPlan& group : session.plan().groups) samples += group.samples;
+  return samples;
+}
+
+bool SettingsSearch::try_surface_cache() {
+  scene.settings.evaluator = EvaluatorKind::automatic;
+  session.edit(scene);
+  session.prepare(monitor);
+  return std::ranges::any_of(session.groups(),
+                             [](const TranslucentGroup& group) { return group.surface_cache.has_value(); });
+}
+
+double tolerance_for(double error) {
+  return std::clamp(kTolerancePerError * error, kLeastTolerance, kMostTolerance);
+}
+
+std::size_t translucent_points(const Image& picture) {
+  const std::vector<std::uint8_t> lit = translucent_pixels(picture);
+  return std::size_t(std::ranges::count(lit, 1));
+}
+
+}  // namespace opaline

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/quality/target_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "opaline/irradiance/light_sampling.h"
+#include "quality/probe.h"
+#include "quality/settings_search.h"
+
+namespace opaline {
+namespace {
+
+// Estimates are rarely less than this factor too low.
+constexpr double kSafety = 1.6;
+// So many samples are off by about this, whatever they stand on; with their number that falls by this power.
+constexpr double kUsualSamples = 17000, kUsualError = 0.006, kSlope = 0.8;
+// Where they are too few they grow by this factor at least, and so much beyond what the slope says: one step
+// is cheaper than two.
+constexpr double kLeastGrowth = 1.5, kBeyond = 1.15, kMostGrowth = 4;
+// Shadow rays grow where their noise alone is more than this share of the target.
+constexpr double kMostNoise = 0.5;
+constexpr int kMostLightSamples = 65536;
+constexpr int kMostSteps = 12;
+// Of the small pictures: a mean needs no more.
+constexpr double kProbePixels = 64 * 64;
+constexpr std::size_t kEnoughPoints = 1500;
+
+/// So many as usually do.
+double first_guess(const SettingsSearch& search, double fewest, double target) {
+  const double guess = kUsualSamples * std::pow(kSafety * kUsualError / target, 1 / kSlope);
+  return std::clamp(guess, fewest, search.most_samples);
+}
+
+/// Of the shadow rays of a small picture, as another one differs.
+double noise_of(SettingsSearch& search, const Image& picture) {
+  if (std::ranges::all_of(search.scene.lights, is_delta)) return 0;
+  return probe_difference(search.picture(), picture) / std::sqrt(2);
+}
+
+/// Adds shadow rays where their noise is too much; whether it was. The error of low-discrepancy points falls
+/// faster than the root of their number.
+bool add_light_samples(SettingsSearch& search, double noise, double target) {
+  int& rays = search.scene.settings.light_samples;
+  const double excess = kSafety * noise / (kMostNoise * target);
+  if (excess <= 1 || rays >= kMostLightSamples) return false;
+  rays = int(std::min(std::ceil(rays * std::pow(excess, 1.5)), double(kMostLightSamples)));
+  return true;
+}
+
+/// Adds samples and shadow rays until the picture's estimate is within the target.
+void approach(SettingsSearch& search, Image picture, double samples, double target) {
+  for (int step = 0; step < kMostSteps && kSafety * search.estimated > target; ++step) {
+    const double estimated = search.estimated, noise = std::min(noise_of(search, picture), estimated),
+                 excess = kSafety * std::sqrt(estimated * estimated - noise * noise) / target;
+    const bool more_rays = add_light_samples(search, noise, target),
+               more_samples = samples < search.most_samples && (excess > 1 || !more_rays);
+    if (!more_rays && !more_samples) return;
+    const double before = samples;
+    if (more_samples)
+      samples = std::min(search.most_samples, samples * std::clamp(kBeyond * std::pow(excess, 1 / kSlope),
+                                                                   kLeastGrowth, kMostGrowth));
+    const Image last = std::exchange(picture, search.picture_of(samples));
+    // A second opinion: the last picture was about as much off as the two differ.
+    if (samples > before)
+      search.estimated =
+          std::sqrt(search.estimated * probe_difference(last, picture) * std::pow(before / samples, kSlope));
+  }
+}
+
+/// Keeps a surface cache if the picture is then within the target, too.
+void choose_evaluator(SettingsSearch& search, double target) {
+  const double exact = search.estimated;
+  if (!search.try_surface_cache()) return;
+  search.picture();
+  if (kSafety * search.estimated <= std::max(target, kSafety * exact)) return;
+  search.scene.settings.evaluator = EvaluatorKind::dual_tree;
+  search.estimated = exact;
+}
+
+}  // namespace
+
+TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor) {
+  SettingsSearch search{session, scene, monitor};
+  search.probe_pixels = kProbePixels;
+  search.enough_points = kEnoughPoints;
+  search.begin(tolerance_for(target));
+  const double fewest = std::min(kFewestTargetSamples, search.most_samples),
+               start = first_guess(search, fewest, target);
+  Image first;
+  if (fewest > 0) first = search.first_picture(start);
+  TargetError result;
+  result.sees_translucent = fewest > 0 && translucent_points(first) > 0;
+  if (!result.sees_translucent) {
+    session.edit(std::move(scene));
+    return result;
+  }
+  approach(search, std::move(first), start, target);
+  if (scene.settings.evaluator == EvaluatorKind::automatic) choose_evaluator(search, target);
+  result.predicted = search.estimated;
+  result.reached = result.predicted <= target;
+  result.samples = search.planned_samples();
+  session.edit(std::move(search.scene));
+  return result;
+}
+
+}  // namespace opaline

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/session/scene_hash.h"
+
+#include <OpenImageIO/hash.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string_view>
+
+#include "geometry/read_mesh.h"
+#include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_again(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  std::string bytes(file ? std::size_t(file.tellg()) : 0, '\0');
+  file.seekg(0).read(bytes.data(), std::streamsize(bytes.size()));
+  if (!file) throw bad_file(path, "cannot be read again");
+  return bytes;
+}
+
+std::string mesh_bytes(const Shape& shape, const std::string& path) {
+  try {
+    return read_mesh_bytes(path);
+  } catch (const Error& failure) {
+    throw told_at(shape.place, failure);
+  }
+}
+
+}  // namespace
+
+// Lengths go in front: what is hashed can be cut in one way only.
+std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,
+                       const Scene& scene) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return {};
+  OIIO::SHA1 hash;
+  const auto add = [&](const std::string& part) {
+    const std::string length = std::to_string(part.size()) + ':';
+    hash.append(length.data(), length.size());
+    hash.append(part.data(), part.size());
+  };
+  add(read_again(path));
+  for (const std::string& text : overrides) add(text);
+  std::set<std::string> seen;
+  for (const Shape& shape : scene.shapes)
+    if (const auto* mesh = std::get_if<MeshFile>(&shape.source))
+      if (seen.insert(mesh->path).second) add(mesh_bytes(shape, mesh->path));
+  return hash.digest();
+}
+
+std::string direct_sums_key(const std::string& path, const std::vector<std::string>& overrides,
+                            const Scene& scene) {
+  std::vector<std::string> kept;
+  for (const std::string& text : overrides)
+    if (!text.starts_with("settings.entry_samples=") && !text.starts_with("settings.until_error="))
+      kept.push_back(text);
+  return scene_hash(path, kept, scene);
+}
+
+}  // namespace opaline
