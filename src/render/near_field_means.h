@@ -19,8 +19,7 @@ class NearFieldMeans {
   static constexpr std::size_t kGroup = 16;  ///< points that look for places together
 
   /// in    chosen: at most kMostPoints of the points, best such that every kGroup of them lie together;
-  /// drawn: how
-  ///       many places each of them drew from its own kernel; kinds: of light
+  ///       drawn: how many places each of them drew from its own kernel; kinds: of light
   NearFieldMeans(const NearKernel& kernel, std::span<const SurfacePoint> points,
                  std::span<const std::uint32_t> chosen, std::span<const int> drawn, std::size_t kinds);
 

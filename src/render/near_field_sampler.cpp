@@ -13,9 +13,9 @@
 namespace opaline {
 namespace {
 
-// The share of the exitance that is usually at stake where shadow rays are worth their time. Points that lie
-// close together share their rays with so many others that less is enough.
-constexpr float kUsual = 0.06f, kWorthClose = 0.015f, kWorthShared = 0.005f;
+// The share of the exitance that is usually at stake where shadow rays are worth their time; and the least
+// there: of points far apart, close together, and so close that they share their rays with many others.
+constexpr float kUsual = 0.06f, kWorthApart = 0.02f, kWorthClose = 0.015f, kWorthShared = 0.005f;
 constexpr float kFinestAt = 0.1f;  // stake from which on the lattice is as fine as the points allow
 // Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
 // field of each less evenly; and how many each of many neighbours brings at least.
@@ -27,7 +27,7 @@ constexpr float kErrorLeft = 0.4f;  // of what the interpolated irradiance was o
 // In units of the distance within which half of the narrowest channel's kernel lies: spacing of the lattice
 // at its coarsest; distance of points that use the lattice; of points that are many more than its cells; and
 // the kernel's reach: one that goes farther has a core too narrow for the lattice.
-constexpr double kCoarsest = 0.65, kClose = 0.65, kFineGrained = 0.33;
+constexpr double kCoarsest = 0.65, kClose = 0.85, kFineGrained = 0.33;
 constexpr float kFarthest = 12;
 constexpr double kPerPoint = 1;  // spacing of the lattice over that of the points, at its finest
 constexpr std::uint32_t kFinest = 4;
@@ -70,11 +70,8 @@ struct NearFieldSampler::Places {
   std::vector<std::uint32_t> sets;  // of the points that brought them
 };
 
-NearFieldSampler::NearFieldSampler(const TranslucentGroup& group, float worth)
-    : kernel_(group.kernel),
-      near_(group),
-      worth_(worth),
-      is_own_mesh_(*std::ranges::max_element(group.plan.meshes) + 1) {
+NearFieldSampler::NearFieldSampler(const TranslucentGroup& group)
+    : kernel_(group.kernel), near_(group), is_own_mesh_(*std::ranges::max_element(group.plan.meshes) + 1) {
   for (const std::uint32_t mesh : group.plan.meshes) is_own_mesh_[mesh] = true;
   lattice_ = std::make_unique<IrradianceLattice>(is_own_mesh_, kCoarsest * double(near_.narrowest));
 }
@@ -84,9 +81,7 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
                                                     std::span<Rgb> noise, HeldView::NearField* held) const {
   const double apart = typical_distance(lighting.points);
   const double widths = apart / double(near_.narrowest);
-  const float worth = widths < kFineGrained ? kWorthShared
-                      : widths < kClose     ? std::min(kWorthClose, worth_)
-                                            : worth_;
+  const float worth = widths < kFineGrained ? kWorthShared : widths < kClose ? kWorthClose : kWorthApart;
   std::vector<std::uint32_t> marked;
   for (std::uint32_t i = 0; i < exitance.size(); ++i)
     if (at_stake(own[i], exitance[i]) > worth) marked.push_back(i);

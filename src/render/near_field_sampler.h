@@ -23,14 +23,13 @@ namespace opaline {
 /// of them share (IrradianceLattice), the finer the more hangs on it: an edge leaves an error of the spacing
 /// to the power of 3/2. Elsewhere points draw places from their own kernels. Neighbours share these: each
 /// counts as drawn from the mean of the points' own kernels. Points bring as many as goes with the deviation
-/// that is to be expected. from  balance heuristic: Veach & Guibas 1995, sec. 3; allocation: Neyman 1934;
-/// stratified sampling of edges:
+/// that is to be expected.
+/// from  balance heuristic: Veach & Guibas 1995, sec. 3; allocation: Neyman 1934; stratified sampling of edges:
 ///       Mitchell 1996
 class NearFieldSampler {
  public:
   /// group: not without meshes; it must outlive the sampler.
-  /// worth: the share of the exitance that must be at stake before shadow rays are worth their time
-  explicit NearFieldSampler(const TranslucentGroup& group, float worth = 0.02f);
+  explicit NearFieldSampler(const TranslucentGroup& group);
 
   /// Corrects the exitance of the points beside shadow edges.
   /// in    lighting: of the points; own: their irradiance
@@ -68,7 +67,6 @@ class NearFieldSampler {
 
   const SplitKernel& kernel_;
   NearKernel near_;
-  float worth_;
   std::vector<bool> is_own_mesh_;
   std::unique_ptr<IrradianceLattice> lattice_;
 };
