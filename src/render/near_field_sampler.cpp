@@ -27,7 +27,7 @@ constexpr float kErrorLeft = 0.4f;  // of what the interpolated irradiance was o
 // In units of the distance within which half of the narrowest channel's kernel lies: spacing of the lattice
 // at its coarsest; distance of points that use the lattice; of points that are many more than its cells; and
 // the kernel's reach: one that goes farther has a core too narrow for the lattice.
-constexpr double kCoarsest = 0.65, kClose = 0.85, kFineGrained = 0.33;
+constexpr double kCoarsest = 0.45, kClose = 0.85, kFineGrained = 0.33;
 constexpr float kFarthest = 12;
 constexpr double kPerPoint = 1;  // spacing of the lattice over that of the points, at its finest
 constexpr std::uint32_t kFinest = 4;
