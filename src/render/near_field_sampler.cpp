@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "opaline/core/random.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {

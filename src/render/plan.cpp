@@ -8,7 +8,7 @@
 #include <set>
 
 #include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/render.h"
 #include "opaline/render/surface_caches.h"

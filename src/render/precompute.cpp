@@ -7,7 +7,7 @@
 
 #include "evaluate/cloud_error.h"
 #include "opaline/core/random.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "opaline/render/surface_caches.h"
 
 namespace opaline {

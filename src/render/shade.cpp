@@ -89,10 +89,8 @@ RgbF crease_deviation(const TranslucentGroup& group, const RenderInput& input) {
 Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers) : input_(input) {
   for (const Light& light : input.scene.lights) {
     lights_.push_back(recentred(light, input.world.origin, input.world.unit));
-    if (const auto* all_around = std::get_if<Surroundings>(&light.source))
-      surroundings_ += RgbF(all_around->radiance);
-    else if (!is_delta(light))
-      emitters_.push_back(lights_.back());
+    if (is_delta(light)) continue;
+    (extent(light).center ? emitters_ : surroundings_).push_back(lights_.back());
   }
   for (const TranslucentGroup& group : input.groups) {
     near_fields_.emplace_back();
@@ -140,7 +138,7 @@ std::vector<Shader::Surfaces> Shader::collect(std::span<const TracedRay> rays,
     if (emitter.hit) {
       out[i].emitted = emitter.radiance;
     } else if (hit.mesh == Hit::kMiss) {
-      out[i].emitted = surroundings_;
+      out[i].emitted = surroundings(ray.direction);
     } else {
       const Appearance& appearance = appearances_[hit.mesh];
       Surfaces& own = surfaces[appearance.kind];
@@ -286,7 +284,9 @@ void Shader::add_mirrored_lights(const Surfaces& surfaces, std::span<const Trace
   for (std::size_t i = 0; i < mirrored.size(); ++i) {
     const auto& [ray, hit] = mirrored[i];
     const EmitterHit emitter = nearest_emitter(ray.origin, ray.direction, ray.far);
-    const RgbF seen = emitter.hit ? emitter.radiance : hit.mesh != Hit::kMiss ? RgbF{} : surroundings_;
+    const RgbF seen = emitter.hit              ? emitter.radiance
+                      : hit.mesh != Hit::kMiss ? RgbF{}
+                                               : surroundings(ray.direction);
     const TracedRay& camera = rays[surfaces.rays[i]];
     const float cosine = cos_view(surfaces.points[i], camera.ray.direction);
     out[surfaces.rays[i]].specular = seen * fresnel_reflectance(cosine, appearances_[camera.hit.mesh].eta);
@@ -300,6 +300,12 @@ EmitterHit Shader::nearest_emitter(const Vec3f& origin, const Vec3f& direction, 
     if (hit.hit) nearest = hit;
   }
   return nearest;
+}
+
+RgbF Shader::surroundings(const Vec3f& direction) const {
+  RgbF radiance;
+  for (const Light& light : surroundings_) radiance += background(light, direction);
+  return radiance;
 }
 
 PointIrradianceInput Shader::lighting_of(const Surfaces& surfaces, float eta) const {

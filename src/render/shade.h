@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "opaline/irradiance/irradiance.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "opaline/render/render.h"
 #include "render/entry_sampler.h"
 #include "render/layers.h"
@@ -43,7 +43,7 @@ class Shader {
                     std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
   /// False where rays that hit nothing see nothing either.
-  bool has_visible_lights() const { return !emitters_.empty() || surroundings_ != RgbF{}; }
+  bool has_visible_lights() const { return !emitters_.empty() || !surroundings_.empty(); }
 
  private:
   // Surfaces whose exitance is found in one go: of a group, or with one boundary.
@@ -76,6 +76,7 @@ class Shader {
                                QueryPackets* packets) const;
   static std::vector<Exitance> interpolated(const SurfaceCache& cache, const Surfaces& surfaces,
                                             const Lit& lit, std::span<const TracedRay> rays);
+  RgbF surroundings(const Vec3f& direction) const;
   PointIrradianceInput lighting_of(const Surfaces& surfaces, float eta) const;
   void write(const Surfaces& surfaces, const Lit& lit, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;
@@ -84,9 +85,9 @@ class Shader {
   EmitterHit nearest_emitter(const Vec3f& origin, const Vec3f& direction, float far) const;
 
   const RenderInput& input_;
-  std::vector<Light> lights_;    // recentred
-  std::vector<Light> emitters_;  // those with an area
-  RgbF surroundings_{};
+  std::vector<Light> lights_;                                 // recentred
+  std::vector<Light> emitters_;                               // those with an area
+  std::vector<Light> surroundings_;                           // those all around
   std::vector<std::optional<NearFieldSampler>> near_fields_;  // one a group; none where samples tell all
   std::vector<RgbF> creases_;  // one a group: systematic error of the picture's near fields, relative
   std::vector<Appearance> appearances_;  // one a mesh

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "opaline/core/error.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "opaline/render/direct.h"
 #include "opaline/render/render.h"
 #include "support/scenes.h"

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light that arrives at a surface point from one light of the scene, as shadow rays with weights.
+// The lights of a scene, whatever their kind: where they are, and what arrives at a point from them.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "opaline/core/vec3.h"
 #include "opaline/scene/scene.h"
@@ -45,5 +47,22 @@ struct EmitterHit {
   RgbF radiance{};
 };
 EmitterHit intersect_emitter(const Light& light, const Vec3f& origin, const Vec3f& direction, float far);
+
+/// Radiance that a ray sees of the light if it meets nothing.
+RgbF background(const Light& light, const Vec3f& direction);
+
+/// Where a light is. A light with neither centre nor direction is all around.
+struct LightExtent {
+  std::optional<Vec3d> center{};   ///< of a ball around it; none: infinitely far
+  double radius = 0;               ///< of that ball
+  double width = 0;                ///< along its shorter side
+  Vec3d along{};                   ///< from end to end of its middle line, which `center` is the middle of
+  std::optional<Vec3d> facing{};   ///< unit; it shines on this side only
+  std::optional<Vec3d> towards{};  ///< unit; an infinitely far light lies that way
+};
+LightExtent extent(const Light& light);
+
+/// All numbers that say where the light is and how large, none of its colour; of another kind, others.
+std::vector<double> geometry(const Light& light);
 
 }  // namespace opaline
