@@ -39,7 +39,7 @@ struct NearFieldSampler::Places {
   std::vector<std::uint32_t> sets;  // of the points that brought them
 };
 
-NearFieldSampler::NearFieldSampler(const TranslucentGroup& group)
+NearFieldSampler::NearFieldSampler(const Body& group)
     : kernel_(group.kernel), is_own_mesh_(*std::ranges::max_element(group.plan.meshes) + 1) {
   for (const std::uint32_t mesh : group.plan.meshes) is_own_mesh_[mesh] = true;
   const double h = double(kernel_.radius);

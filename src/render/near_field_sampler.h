@@ -21,7 +21,7 @@ namespace opaline {
 class NearFieldSampler {
  public:
   /// group: not without meshes; it must outlive the sampler.
-  explicit NearFieldSampler(const TranslucentGroup& group);
+  explicit NearFieldSampler(const Body& group);
 
   /// Corrects the exitance of the points beside shadow edges.
   /// in    lighting: of the points; own: their irradiance

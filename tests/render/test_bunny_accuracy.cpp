@@ -40,7 +40,7 @@ std::vector<Query> shading_points(int resolution, std::size_t stride) {
 
 std::vector<Exitance> exact_sum(std::size_t samples, std::span<const Query> points) {
   const Prepared prepared(bunny(samples));
-  const TranslucentGroup& group = prepared.pre.groups[0];
+  const Body& group = prepared.bodies[0];
   return evaluate({group.octree, group.kernel, points, {}, EvaluatorKind::brute_force});
 }
 

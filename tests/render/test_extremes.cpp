@@ -153,7 +153,7 @@ TEST(Extremes, Pictures) {
     Scene scene = lit_sphere();
     row.edit(scene);
     const Prepared prepared(scene);
-    const RenderResult result = render({prepared.scene, prepared.world, prepared.rays, prepared.pre.groups});
+    const RenderResult result = render({prepared.scene, prepared.world, prepared.rays, prepared.bodies});
     EXPECT_EQ(result.non_finite, 0u);
     for (const float v : result.image.pixels) ASSERT_TRUE(std::isfinite(v));
     row.expect(sums(result.image), plain);
@@ -198,9 +198,9 @@ TEST(Extremes, CameraDoesNotMoveSamples) {
   Scene other = lit_sphere();
   other.camera = {{900, 20, 0}, {950, 0, 0}, {0, 1, 0}, 20};
   const Prepared a(lit_sphere()), b(other);
-  ASSERT_EQ(a.pre.groups[0].surface.samples.size(), b.pre.groups[0].surface.samples.size());
-  for (std::size_t i = 0; i < a.pre.groups[0].surface.samples.size(); ++i)
-    ASSERT_EQ(a.pre.groups[0].surface.samples[i].position, b.pre.groups[0].surface.samples[i].position);
+  ASSERT_EQ(a.bodies[0].surface.samples.size(), b.bodies[0].surface.samples.size());
+  for (std::size_t i = 0; i < a.bodies[0].surface.samples.size(); ++i)
+    ASSERT_EQ(a.bodies[0].surface.samples[i].position, b.bodies[0].surface.samples[i].position);
 }
 
 }  // namespace

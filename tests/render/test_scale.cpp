@@ -168,13 +168,13 @@ TEST(Scale, ExitanceAtPointsInMillimetres) {
   const Prepared plain(scene);
   const std::vector<Vec3d> points{{3, 22, -2}, {13, 12, -2}};
   const std::vector<Vec3f> normals{{0, 1, 0}, {1, 0, 0}};
-  const auto expected = radiant_exitance(plain.pre.groups[0], plain.world, points, normals, scene.settings);
+  const auto expected = radiant_exitance(plain.bodies[0], plain.world, points, normals, scene.settings);
   EXPECT_GT(min_component(expected[0]), 0);
   for (const double k : {0x1p-30, 0x1p20}) {
     const Prepared large(scaled(scene, k));
     std::vector<Vec3d> far;
     for (const Vec3d& p : points) far.push_back(p * k);
-    EXPECT_EQ(radiant_exitance(large.pre.groups[0], large.world, far, normals, scene.settings), expected);
+    EXPECT_EQ(radiant_exitance(large.bodies[0], large.world, far, normals, scene.settings), expected);
     EXPECT_EQ(large.plan.groups[0].area, plain.plan.groups[0].area * k * k);
     EXPECT_EQ(large.plan.groups[0].spacing, plain.plan.groups[0].spacing * k);
   }

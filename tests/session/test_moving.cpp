@@ -132,7 +132,7 @@ TEST(Moving, BentMesh) {
   const BendingBall ball;
   Session session;
   picture_of(session, ball.scene);
-  const SurfaceSamples before = session.groups()[0].surface;
+  const SurfaceSamples before = session.bodies()[0].surface;
   ball.bend(.01);
   const Image picture = picture_of(session, ball.scene);
   const SessionWork work = session.work();
@@ -142,7 +142,7 @@ TEST(Moving, BentMesh) {
   EXPECT_EQ(work.samples_placed + work.samples_removed + work.samples_divided, 0u);
   EXPECT_EQ(work.samples_carried, before.samples.size());
   EXPECT_EQ(work.lights_traced, 3u);
-  const SurfaceSamples& after = session.groups()[0].surface;
+  const SurfaceSamples& after = session.bodies()[0].surface;
   ASSERT_EQ(after.samples.size(), before.samples.size());
   for (std::size_t i = 0; i < after.samples.size(); ++i) {
     const SurfaceSample &a = before.samples[i], &b = after.samples[i];
@@ -201,11 +201,11 @@ TEST(Moving, StretchedAndSqueezed) {
     const BendingBall ball;
     Session session;
     picture_of(session, ball.scene);
-    const SurfaceSamples before = session.groups()[0].surface;
+    const SurfaceSamples before = session.bodies()[0].surface;
     ball.bend(0, stretch);
     const Image picture = picture_of(session, ball.scene);
     const SessionWork work = session.work();
-    const SurfaceSamples& after = session.groups()[0].surface;
+    const SurfaceSamples& after = session.bodies()[0].surface;
     const std::size_t common = common_samples(before, after);
     EXPECT_EQ(work.samples_carried, common);
     EXPECT_EQ(common + work.samples_removed, before.samples.size());
@@ -250,7 +250,7 @@ TEST(Moving, BodiesThatOutgrewTheirSamples) {
   };
   Session session;
   picture_of(session, sized(1));
-  const std::size_t count = session.groups()[0].surface.samples.size();
+  const std::size_t count = session.bodies()[0].surface.samples.size();
   picture_of(session, sized(3));
   EXPECT_NEAR(double(session.work().samples_carried), double(count), 1);
   for (const double k : {1e4, 1., 1e6, 1e-2}) {
@@ -272,7 +272,7 @@ TEST(Moving, GrownBeyondTheMostSamples) {
   scene.settings.max_samples = 7500;
   Session session;
   picture_of(session, scene);
-  EXPECT_NEAR(double(session.groups()[0].surface.samples.size()), 2600, 100);
+  EXPECT_NEAR(double(session.bodies()[0].surface.samples.size()), 2600, 100);
   scene.shapes[0].to_world = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {}};
   const Image picture = picture_of(session, scene);
   EXPECT_EQ(session.work().samples_carried, 0u);

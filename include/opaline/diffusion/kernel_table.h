@@ -18,6 +18,7 @@ namespace opaline {
 /// it the table is constant, beyond it 0; the range is widened outward to whole octaves of s. Powers of two scale through it exactly.
 class KernelTable {
  public:
+  KernelTable() = default;
   /// r_min, r_max in mm: the distances that will be asked for; the table ends earlier where R_d underflows.
   KernelTable(const DiffuseProfile& profile, double r_min, double r_max);
 

@@ -18,7 +18,7 @@ bool has_mesh(const std::vector<std::uint32_t>& meshes, std::size_t mesh) {
 
 /// What meshes must have in common to share a field: one of the first two, or none of them and the boundary.
 struct Source {
-  const TranslucentGroup* group = nullptr;
+  const Body* group = nullptr;
   const EntrySampler* entries = nullptr;
   float eta = 0;
   friend bool operator==(const Source&, const Source&) = default;
@@ -29,7 +29,7 @@ Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_s
   if (!shape.medium) return {};
   Source source{.eta = float(input.scene.media[*shape.medium].eta)};
   if (input.scene.settings.method == Method::hierarchical)
-    for (const TranslucentGroup& group : input.groups)
+    for (const Body& group : input.groups)
       if (has_mesh(group.plan.meshes, mesh)) source.group = &group;
   for (const EntrySampler& sampler : entry_samplers)
     if (has_mesh(sampler.meshes(), mesh)) source.entries = &sampler;

@@ -12,11 +12,11 @@
 namespace opaline {
 namespace {
 
-bool needs_irradiance(const TranslucentGroup& group) {
+bool needs_irradiance(const Body& group) {
   return group.surface_cache ? group.surface_cache->needs_irradiance() : group.kernel.needs_irradiance();
 }
 
-RgbF crease_deviation(const RenderInput& input, const TranslucentGroup& group) {
+RgbF crease_deviation(const RenderInput& input, const Body& group) {
   const Vec3f eye(into_world(input.world, input.scene.camera.position));
   const std::array<float, 3> error =
       crease_error({group.octree, group.kernel, group.profile, eye, input.scene.settings.instruction_set});
@@ -25,7 +25,7 @@ RgbF crease_deviation(const RenderInput& input, const TranslucentGroup& group) {
 
 }  // namespace
 
-SampleField::SampleField(const RenderInput& input, const TranslucentGroup& group)
+SampleField::SampleField(const RenderInput& input, const Body& group)
     : input_(input),
       group_(group),
       is_noisy_(has_area_lights(input.scene)),

@@ -13,7 +13,7 @@ namespace opaline {
 
 class SampleField : public Field {
  public:
-  SampleField(const RenderInput& input, const TranslucentGroup& group);
+  SampleField(const RenderInput& input, const Body& group);
 
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
@@ -28,7 +28,7 @@ class SampleField : public Field {
                          LeavingLight& light, HeldView::Surface* held) const;
 
   const RenderInput& input_;
-  const TranslucentGroup& group_;
+  const Body& group_;
   bool is_noisy_;
   std::optional<NearFieldSampler> near_field_;  ///< none: the samples tell all
   RgbF creases_{};  ///< what a near field misses beside creases, over the exitance, as a standard deviation
