@@ -51,8 +51,8 @@ double total_diffuse_reflectance(const Dipole& dipole) {
 double invert_dipole_albedo(double total, double boundary_mismatch) {
   if (total >= 1) return 0;
   if (total <= 0) return 1;
-  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1; bisect its logarithm, so that the relative error
-  // of 1 - alpha' is small where the medium hardly absorbs.
+  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1; bisect its logarithm, so that the relative
+  // error of 1 - alpha' is small where the medium hardly absorbs.
   double low = -80, high = 0;
   for (int i = 0; i < 200; ++i) {
     const double middle = 0.5 * (low + high);

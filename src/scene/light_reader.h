@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the scene file gives each kind of light: its keys and their values. The definitions are in lights/, a file
-// a kind.
+// How the scene file gives each kind of light: its keys and their values. The definitions are in lights/, a
+// file a kind.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,8 @@ namespace opaline {
 
 template <class Kind>
 struct LightReader {
-  /// The rows of its section "light.<type>" but for `name`, `type` first; none where it is no entry of `lights`.
+  /// The rows of its section "light.<type>" but for `name`, `type` first; none where it is no entry of
+  /// `lights`.
   static std::vector<KeyInfo> rows();
   /// in    reader: an object with these keys
   /// error Error{bad_input} at the value

@@ -24,9 +24,9 @@ double cpu_seconds() {
   return double(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// Claim: an OBJ face of 200,000 corners is read, with normals and without, in less than two seconds of CPU; its
-// area is the disc's within 1e-3. Measured for twice as many corners: .5 s, and over 13 s, unfinished, where OpenMesh
-// compares each corner with each. Fails if: such a face is left to OpenMesh.
+// Claim: an OBJ face of 200,000 corners is read, with normals and without, in less than two seconds of CPU;
+// its area is the disc's within 1e-3. Measured for twice as many corners: .5 s, and over 13 s, unfinished,
+// where OpenMesh compares each corner with each. Fails if: such a face is left to OpenMesh.
 TEST(MeshLargeFaces, AreReadInTimeThatGrowsWithThem) {
   constexpr std::size_t kCorners = 200000;
   for (const std::string normal : {"", "//1"}) {

@@ -160,7 +160,7 @@ TEST(Extremes, Pictures) {
   }
 }
 
-// Claim: trouble of scale is said before the work, with the likely fix. Source: issue A, sampling. Fails
+// Claim: trouble of scale is said before the work, with the likely fix. Source: plan.h. Fails
 // when: the cap or the check for too few samples is silent.
 TEST(Extremes, ScaleTroubleIsSaid) {
   const auto warning_of = [](const Rgb& sigma_s_prime) {
@@ -176,8 +176,8 @@ TEST(Extremes, ScaleTroubleIsSaid) {
 }
 
 // Claim: samples farther apart than a body is thick are said, with how many it takes; an open surface has no
-// thickness. By hand: a wire of radius r, 2 r^2 pi / 2 r pi = r thick; a ball of 10 mm is 6.7 mm thick. Fails if: a cap
-// on the samples serves a body in silence that it cannot serve.
+// thickness. By hand: a wire of radius r, 2 r^2 pi / 2 r pi = r thick; a ball of 10 mm is 6.7 mm thick. Fails
+// if: a cap on the samples serves a body in silence that it cannot serve.
 TEST(Extremes, BodiesThinnerThanTheirSamplesAreSaid) {
   Scene scene = lit_sphere();
   const auto thin = [&] {

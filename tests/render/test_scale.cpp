@@ -220,9 +220,10 @@ TEST(Scale, CamerasAndLightsOutOfReachAreRefused) {
             std::string::npos);
 }
 
-// Claim: bodies keep their picture inside of a shell 3e7 times as large, whose light they do not see. Tolerance: the
-// world's middle moves, and floats round otherwise, 1e-3 of the brightest pixel. Fails if: lengths are told in units of
-// the shell; the bodies' profiles then have derivatives that floats do not hold (NaN).
+// Claim: bodies keep their picture inside of a shell 3e7 times as large, whose light they do not see.
+// Tolerance: the world's middle moves, and floats round otherwise, 1e-3 of the brightest pixel. Fails if:
+// lengths are told in units of the shell; the bodies' profiles then have derivatives that floats do not hold
+// (NaN).
 TEST(Scale, BodiesInsideOfAHugeShell) {
   Scene scene = plain_scene(ProfileKind::normalized_diffusion);
   scene.shapes.pop_back();  // the floor

@@ -33,8 +33,8 @@ Scene moved_left(const Vec3d& by) {
 // Claim: an object that moved takes its samples along; the other's samples stay, and the light that enters
 // them where no shadow of the moved one fell or falls. The other's pixels are a cold picture's, bit for bit;
 // the moved one's differ by what two samplings of one surface differ, measured 1.2 %, and are the same
-// whatever way it came. Source: the table. Fails if: samples are placed anew; a mesh that may shadow
-// is in no key; carried samples are carried on.
+// whatever way it came. Source: the table in session.h. Fails if: samples are placed anew; a mesh that may
+// shadow is in no key; carried samples are carried on.
 TEST(Moving, RigidObject) {
   Session session;
   picture_of(session, two_balls());
@@ -126,8 +126,8 @@ double sum_of_areas(const SurfaceSamples& surface) {
 // Claim: a mesh that bends keeps its samples on their triangles at their barycentrics, with areas that sum to
 // the new surface, new normals, light and tree, while its file is only read, not checked, and its surface not
 // divided again; the picture differs from a cold one by what two samplings do, and depends on the bend alone,
-// not on how it came about. Source: the table. Tolerance: areas 1e-6; pictures 2 %. Fails if: shares
-// stay as they were (the sum); the session keeps no cells, or no memory of the mesh (the counts).
+// not on how it came about. Source: the table in session.h. Tolerance: areas 1e-6; pictures 2 %. Fails if:
+// shares stay as they were (the sum); the session keeps no cells, or no memory of the mesh (the counts).
 TEST(Moving, BentMesh) {
   const BendingBall ball;
   Session session;

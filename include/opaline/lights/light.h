@@ -12,8 +12,8 @@
 
 namespace opaline {
 
-/// One sample of a light seen from a point: the contribution to irradiance is radiance_weight x cos x Ft x (1 if
-/// not occluded) x emission, emission being the light's colour (intensity, irradiance or radiance).
+/// One sample of a light seen from a point: the contribution to irradiance is radiance_weight x cos x Ft x (1
+/// if not occluded) x emission, emission being the light's colour (intensity, irradiance or radiance).
 struct LightSample {
   Vec3f direction;  ///< unit, from the point towards the light
   float distance;   ///< infinity for directional lights and surroundings
@@ -36,7 +36,8 @@ Light recentred(const Light& light, const Vec3d& origin, double unit = 1);
 
 /// Sample of a light from a point.
 /// in    unit_square: in [0, 1)^2, unused by delta lights; samples: how many share the light's solid angle
-///       normal: unit; surroundings are sampled by its cosine, all others by solid angle (sphere) or area (quad)
+///       normal: unit; surroundings are sampled by its cosine, all others by solid angle (sphere) or area
+/// (quad)
 LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& normal,
                          std::array<double, 2> unit_square, int samples);
 

@@ -41,8 +41,8 @@ struct PrecomputeInput {
   Monitor* monitor = nullptr;
 };
 
-// What Session::prepare computes for each body, stage by stage; `group` is an index into the plan's groups, which
-// chooses random numbers.
+// What Session::prepare computes for each body, stage by stage; `group` is an index into the plan's groups,
+// which chooses random numbers.
 
 std::uint64_t sampling_seed(const Settings& settings, std::size_t group);
 /// cells: unless null, of the samples.
@@ -67,7 +67,9 @@ CloudError cloud_error(const Body& group, const World& world, const Scene& scene
 
 /// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free
 /// path is below the sample spacing, `render` traces shadow rays for the irradiance at its points; this
-/// interpolates it. in    points: world space, mm; normals: unit, outward, one a point out   M_o in W/mm^2
+/// interpolates it.
+/// in    points: world space, mm; normals: unit, outward, one a point
+/// out   M_o in W/mm^2
 /// per point, in their order
 std::vector<RgbF> radiant_exitance(const Body& group, const World& world, std::span<const Vec3d> points,
                                    std::span<const Vec3f> normals, const Settings& settings);

@@ -10,14 +10,15 @@
 namespace opaline {
 
 /// The most places of a group's surface cache where the settings ask for one, and the memory that a place may
-/// take while the cache is made, bytes (measured). A surface that takes more, such as needles cut into squares
-/// of the near field's size, is evaluated at the points of the picture.
+/// take while the cache is made, bytes (measured). A surface that takes more, such as needles cut into
+/// squares of the near field's size, is evaluated at the points of the picture.
 std::size_t most_wanted_places(const GroupPlan& group, const World& world);
 inline constexpr std::size_t kBytesOfPlace = 250;
 
-/// For each group of the plan the most places that a surface cache may have: most_wanted_places if the settings
-/// ask for one, 0 if they ask for another evaluator; if they leave it open a part of the points at which the
-/// camera sees the group, times the pictures. A crop counts as the whole picture, whose bytes it shares.
+/// For each group of the plan the most places that a surface cache may have: most_wanted_places if the
+/// settings ask for one, 0 if they ask for another evaluator; if they leave it open a part of the points at
+/// which the camera sees the group, times the pictures. A crop counts as the whole picture, whose bytes it
+/// shares.
 std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::span<const Body> groups,
                                            std::size_t pictures = 1);
 

@@ -72,8 +72,8 @@ struct MeshFile {
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
-/// Of a built-in curved shape: 4^fineness times as many triangles. 6 leaves .00005 of a sphere's area out, and each one
-/// less four times that.
+/// Of a built-in curved shape: 4^fineness times as many triangles. 6 leaves .00005 of a sphere's area out,
+/// and each one less four times that.
 constexpr int kMostFineness = 6, kLeastFineness = 4;
 
 // Built-in shapes; lengths in mm. `Slab` is a box named for its use: x and z extent, thickness along y.

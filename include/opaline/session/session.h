@@ -85,9 +85,9 @@ class Session {
 
   /// Whether what the camera sees, and how the lights reach it, is kept for the pictures to come: those of
   /// other colours and media then trace neither again. Costs memory (HeldView); not at first.
-  /// mix_lights: pictures that differ by their lights' colours alone may then be sums of others (LightMix), and
-  /// trace no ray beside shadow edges where earlier ones did: their last bits and their noise there depend on
-  /// the pictures before.
+  /// mix_lights: pictures that differ by their lights' colours alone may then be sums of others (LightMix),
+  /// and trace no ray beside shadow edges where earlier ones did: their last bits and their noise there
+  /// depend on the pictures before.
   void hold_view(bool hold, bool mix_lights = false) {
     holds_view_ = hold;
     mixes_lights_ = hold && mix_lights;

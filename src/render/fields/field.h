@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much light leaves a surface where the camera sees it, and how wrong that may be. A method of the program is
-// a field with a file of its own; make_fields.cpp has the table that tells which body takes which.
+// How much light leaves a surface where the camera sees it, and how wrong that may be. A method of the
+// program is a field with a file of its own; make_fields.cpp has the table that tells which body takes which.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light that leaves where it entered: opaque surfaces, and `lambert`, the limit of a vanishing mean free path.
+// Light that leaves where it entered: opaque surfaces, and `lambert`, the limit of a vanishing mean free
+// path.
 #pragma once
 
 #include "opaline/render/render.h"

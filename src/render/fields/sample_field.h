@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exitance of a group's samples: summed at the hits (dual_tree, classic, brute_force), or looked up in its
-// surface cache. What a sharp near field adds to either is traced at the hits.
+// The exitance of a group's samples: summed at the hits (dual_tree, classic, brute_force), or looked up in
+// its surface cache. What a sharp near field adds to either is traced at the hits.
 #pragma once
 
 #include <optional>
