@@ -18,7 +18,7 @@ class StageRunner {
  public:
   explicit StageRunner(const Log& log) : log_(log), interrupt_(monitor_) {}
 
-  /// Runs work();
+  /// Runs work().
   /// error Error{interrupted} before it if the user asked to stop, besides the stage's own. So
   /// the last one, writing, is not cut short between two files.
   template <class Work>

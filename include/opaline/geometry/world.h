@@ -38,7 +38,7 @@ inline Vec3d out_of_world(const World& world, const Vec3d& p) {
   return p * world.unit + world.origin;
 }
 
-/// Meshes of all shapes;
+/// Meshes of all shapes.
 /// error as make_mesh, told at the shape's place in the scene.
 World make_world(const Scene& scene);
 
