@@ -15,7 +15,7 @@ namespace opaline {
 struct MeshFormat {
   std::string_view extension;  ///< of its files, in lower case, with the dot
 
-  /// The mesh in a file's bytes, which the reader may overwrite; see read_mesh.
+  /// The mesh in a file's bytes, which the reader may overwrite or free; see read_mesh.
   /// error Error{bad_input} naming the file, and the line where the format has lines
   SourceMesh (*read)(const std::string& path, std::string& bytes);
 

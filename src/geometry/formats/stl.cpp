@@ -27,6 +27,10 @@ std::size_t claimed_triangles(std::string_view header) {
   return little_endian(header.data() + 80);
 }
 
+std::size_t binary_size(std::string_view header) {
+  return binary_header + claimed_triangles(header) * binary_triangle;
+}
+
 Vec3f binary_position(const char* bytes) {
   Vec3f position;
   for (std::size_t i = 0; i < 3; ++i) position[i] = std::bit_cast<float>(little_endian(bytes + 4 * i));
@@ -34,19 +38,17 @@ Vec3f binary_position(const char* bytes) {
 }
 
 /// Makes a mesh of corners, three a triangle; triangles with two equal corners are left out.
-SourceMesh join_corners(std::vector<Vec3d> corners) {
+SourceMesh join_corners(const std::vector<Vec3f>& corners) {
   SourceMesh mesh;
-  std::vector<std::uint32_t> vertex = weld(corners);
-  std::size_t vertices = 0;
+  std::vector<std::uint32_t> vertex = weld(corners);  // of each corner; first the earliest equal corner
   for (std::size_t corner = 0; corner < corners.size(); ++corner) {
-    if (vertex[corner] != corner) {
+    if (vertex[corner] == corner) {
+      vertex[corner] = std::uint32_t(mesh.positions.size());
+      mesh.positions.push_back(Vec3d(corners[corner]));
+    } else {
       vertex[corner] = vertex[vertex[corner]];
-      continue;
     }
-    corners[vertices] = corners[corner];
-    vertex[corner] = std::uint32_t(vertices++);
   }
-  mesh.positions.assign(corners.begin(), corners.begin() + std::ptrdiff_t(vertices));
   mesh.triangles.reserve(corners.size() / 3);
   for (std::size_t corner = 0; corner < corners.size(); corner += 3) {
     const Triangle triangle{vertex[corner], vertex[corner + 1], vertex[corner + 2]};
@@ -59,30 +61,26 @@ SourceMesh join_corners(std::vector<Vec3d> corners) {
   return mesh;
 }
 
-SourceMesh read_binary(const std::string& path, const std::string& bytes) {
+std::vector<Vec3f> read_binary(const std::string& path, const std::string& bytes) {
   if (bytes.size() < binary_header)
     throw bad_file(path, "truncated STL file", "a header of 84 bytes",
                    std::to_string(bytes.size()) + " bytes");
   const std::size_t triangles = claimed_triangles(bytes);
-  const std::size_t needed = binary_header + triangles * binary_triangle;
+  const std::size_t needed = binary_size(bytes);
   if (bytes.size() < needed)
     throw bad_file(path, "truncated STL file, or not an STL file",
                    std::to_string(triangles) + " triangles: " + std::to_string(needed) + " bytes",
                    std::to_string(bytes.size()));
   require_faces(path, triangles * 3, triangles);
   VertexCheck check;
-  std::vector<Vec3d> corners(triangles * 3);
+  std::vector<Vec3f> corners(triangles * 3);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const std::size_t at = binary_header + i / 3 * binary_triangle + 12 * (i % 3 + 1);
-    corners[i] = Vec3d(binary_position(bytes.data() + at));
-    check.check(corners[i], i, 0);
+    corners[i] = binary_position(bytes.data() + at);
+    check.check(Vec3d(corners[i]), i, 0);
   }
   check.throw_if_any(path);
-  SourceMesh mesh = join_corners(std::move(corners));
-  if (bytes.size() > needed)
-    mesh.warnings.push_back(path + ": " + std::to_string(bytes.size() - needed) +
-                            " bytes after the last triangle are left out");
-  return mesh;
+  return corners;
 }
 
 std::string lower(std::string_view word) {
@@ -98,12 +96,12 @@ class TextStlReader {
  public:
   TextStlReader(const std::string& path, const std::string& bytes) : path_(path), at_(bytes) {}
 
-  SourceMesh run() {
+  std::vector<Vec3f> run() {
     for (; !at_.at_end(); at_.next_line()) statement();
     if (!ended_) throw bad_line(path_, at_.line() - 1, "truncated STL file", "endsolid", "end of file");
     require_faces(path_, corners_.size(), corners_.size() / 3);
     check_.throw_if_any(path_);
-    return join_corners(std::move(corners_));
+    return std::move(corners_);
   }
 
  private:
@@ -130,22 +128,29 @@ class TextStlReader {
         throw bad_line(path_, at_.line(), "bad corner of a triangle", "vertex and three numbers",
                        at_.at_end() && keyword.empty() ? "end of file" : quoted(keyword));
       check_.check(position, corners_.size(), at_.line());
-      corners_.push_back(Vec3d(Vec3f(position)));
+      corners_.push_back(Vec3f(position));
     }
   }
 
   const std::string& path_;
   TextCursor at_;
-  std::vector<Vec3d> corners_;
+  std::vector<Vec3f> corners_;
   VertexCheck check_;
   bool ended_ = false;
 };
 
 SourceMesh read_stl(const std::string& path, std::string& bytes) {
-  const bool exact = bytes.size() >= binary_header &&
-                     bytes.size() == binary_header + claimed_triangles(bytes) * binary_triangle;
+  const bool exact = bytes.size() >= binary_header && bytes.size() == binary_size(bytes);
   const bool text = lower(TextCursor(bytes).word_across_lines()) == "solid" && bytes.find('\0') == bytes.npos;
-  return exact || !text ? read_binary(path, bytes) : TextStlReader(path, bytes).run();
+  const bool binary = exact || !text;
+  const std::vector<Vec3f> corners = binary ? read_binary(path, bytes) : TextStlReader(path, bytes).run();
+  const std::size_t surplus = binary ? bytes.size() - binary_size(bytes) : 0;
+  std::string().swap(bytes);  // the tables of join_corners take its memory
+  SourceMesh mesh = join_corners(corners);
+  if (surplus > 0)
+    mesh.warnings.push_back(path + ": " + std::to_string(surplus) +
+                            " bytes after the last triangle are left out");
+  return mesh;
 }
 
 /// Of a binary file.
@@ -154,7 +159,7 @@ std::uintmax_t announced_length(std::istream& file) {
   if (!file.read(head.data(), head.size())) return 0;
   const std::string_view text(head.data(), head.size());
   if (text.starts_with("solid") && text.find('\0') == text.npos) return 0;
-  return binary_header + claimed_triangles(text) * binary_triangle;
+  return binary_size(text);
 }
 
 }  // namespace
