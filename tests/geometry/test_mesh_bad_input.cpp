@@ -44,7 +44,8 @@ void expect_errors(const std::vector<BadFile>& files) {
 }
 
 // Claim: each of these is an Error{bad_input} naming the file, the line where there are lines, and what is
-// wrong. Source: OBJ, PLY, STL and OFF descriptions. Tolerance: none. Fails if: a check of a reader is left out.
+// wrong. Source: OBJ, PLY, STL and OFF descriptions. Tolerance: none. Fails if: a check of a reader is left
+// out.
 TEST(BadMesh, Obj) {
   expect_errors({
       {"empty.obj", "", "is empty"},

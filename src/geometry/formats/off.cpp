@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Object File Format, text: [ST][C][N]OFF. Colours, texture coordinates and what else follows a vertex or a face
-// on its line are passed over.
+// Object File Format, text: [ST][C][N]OFF. Colours, texture coordinates and what else follows a vertex or a
+// face on its line are passed over.
 #include <algorithm>
 
 #include "file_checks.h"
