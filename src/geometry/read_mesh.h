@@ -11,8 +11,7 @@ namespace opaline {
 /// The triangles of a mesh file, polygons cut into fans.
 /// out   at least one triangle unless all were collapsed; every index in range, every position finite and
 ///       below 1e18; positions as exact as the file has them (STL: float); the file's normals, not
-/// normalised,
-///       with a vertex doubled where OBJ gives it several
+///       normalised, with a vertex doubled where OBJ gives it several
 /// error Error{bad_input} naming the file, and the line where known: missing, not a file, empty, unknown
 ///       extension, truncated, not of its format, bad coordinates or indices, no faces. Memory stays within a
 ///       small multiple of the file's length

@@ -40,8 +40,8 @@ TEST(MeshLargeFaces, AreReadInTimeThatGrowsWithThem) {
 }
 
 // Claim: a large face is cut into the fan of its first corner, with the normals of its corners, its repeated
-// corners left out, and negative indices counted from where it stands.
-// Fails if: fans are counted from another corner, or lose normals.
+// corners left out, and negative indices counted from where it stands. Fails if: fans are counted from another
+// corner, or lose normals.
 TEST(MeshLargeFaces, AreFansOfTheirFirstCorner) {
   constexpr std::size_t kCorners = 1500;
   std::string text = ring(kCorners) + "vn 0 0 1\nvn 0 .6 .8\nf";

@@ -37,7 +37,7 @@ Light recentred(const Light& light, const Vec3d& origin, double unit = 1);
 /// Sample of a light from a point.
 /// in    unit_square: in [0, 1)^2, unused by delta lights; samples: how many share the light's solid angle
 ///       normal: unit; surroundings are sampled by its cosine, all others by solid angle (sphere) or area
-/// (quad)
+///       (quad)
 LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& normal,
                          std::array<double, 2> unit_square, int samples);
 

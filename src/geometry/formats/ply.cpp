@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PLY, text and binary. Of the vertices x, y, z and nx, ny, nz are read, of the faces their vertices; all
-// other properties, and the elements before the faces, are passed over.
+// other properties, and other elements before the faces, are passed over.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -146,7 +146,7 @@ class PlyReader {
                      "element tristrips");
     require_faces(path_, faces_ == nullptr || vertices_ != nullptr ? 1 : 0, faces_ != nullptr ? 1 : 0);
     require_faces(path_, vertices_->count, faces_->count);
-    check_vertex_properties();
+    find_kept_properties();
     const auto indices = std::find_if(faces_->properties.begin(), faces_->properties.end(), is_indices);
     if (indices == faces_->properties.end())
       throw bad_file(path_, "PLY faces without vertices", "property list uchar int vertex_indices", "none");
@@ -160,26 +160,18 @@ class PlyReader {
     return p.is_list && !is_floating(p.type) && (p.name == "vertex_indices" || p.name == "vertex_index");
   }
 
-  void check_vertex_properties() {
+  void find_kept_properties() {
     std::array<int, 6> found{};
     for (const PlyProperty& p : vertices_->properties) {
-      const auto at = std::find(kept_names.begin(), kept_names.end(), p.name);
-      if (at != kept_names.end() && !p.is_list && is_floating(p.type))
-        ++found[std::size_t(at - kept_names.begin())];
+      const auto name = std::ranges::find(kept_names, p.name);
+      const bool is_kept = name != kept_names.end() && !p.is_list && is_floating(p.type);
+      slots_.push_back(is_kept ? std::optional<std::size_t>(name - kept_names.begin()) : std::nullopt);
+      if (is_kept) ++found[*slots_.back()];
     }
     if (found[0] != 1 || found[1] != 1 || found[2] != 1)
       throw bad_file(path_, "PLY vertices without positions",
                      "properties x, y and z of type float or double");
     has_normals_ = found[3] == 1 && found[4] == 1 && found[5] == 1;
-    for (const PlyProperty& p : vertices_->properties) slots_.push_back(kept_slot(p));
-  }
-
-  /// Which of kept_names a vertex property is; none: it is passed over.
-  std::optional<std::size_t> kept_slot(const PlyProperty& p) const {
-    const auto at = std::find(kept_names.begin(), kept_names.end(), p.name);
-    const std::size_t slot = std::size_t(at - kept_names.begin());
-    if (p.is_list || !is_floating(p.type) || slot >= (has_normals_ ? 6u : 3u)) return {};
-    return slot;
   }
 
   void rows(const PlyElement& element) {
@@ -242,7 +234,7 @@ class PlyReader {
   const PlyElement* vertices_ = nullptr;
   const PlyElement* faces_ = nullptr;
   const PlyProperty* indices_ = nullptr;
-  std::vector<std::optional<std::size_t>> slots_;  // which of kept_names each vertex property is
+  std::vector<std::optional<std::size_t>> slots_;  // of each vertex property, its number in kept_names
   bool has_normals_ = false;
   SourceMesh mesh_;
   VertexCheck check_;

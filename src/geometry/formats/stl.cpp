@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// STL, text and binary: triangles, each with corners of its own. Their coordinates are taken as float;
-// corners at the same position become one vertex.
+// STL, text and binary: triangles, each with corners of its own. Coordinates are taken as float; corners at
+// the same position become one vertex.
 #include <algorithm>
 #include <array>
 #include <bit>
