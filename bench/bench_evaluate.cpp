@@ -15,6 +15,7 @@
 #include "opaline/core/stopwatch.h"
 #include "opaline/render/render.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/session/session.h"
 
 namespace {
 
@@ -152,10 +153,12 @@ Scene with_settings(const char* file, std::size_t samples, const std::optional<P
 void run(const char* file, std::size_t samples, const std::optional<ProfileKind>& profile, bool dual_only) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
   const Scene scene = with_settings(file, samples, profile);
-  const World world = make_world(scene);
-  const RayScene rays(world);
-  const Precompute pre = precompute({scene, world, rays, make_plan(scene, world)});
-  const TranslucentGroup& group = pre.groups.at(0);
+  Session session;
+  session.edit(scene);
+  session.prepare();
+  const World& world = session.world();
+  const RayScene& rays = session.rays();
+  const Body& group = session.bodies()[0];
   const std::vector<Query> points = shading_points(scene, world, rays);
   Exact exact{std::max<std::size_t>(1, points.size() / 1500), {}};
   std::vector<Query> some;

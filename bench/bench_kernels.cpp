@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "opaline/core/random.h"
-#include "opaline/diffusion/distance_sampling.h"
+#include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/diffusion/fresnel.h"
 #include "opaline/diffusion/kernel_table.h"
 #include "opaline/geometry/world.h"

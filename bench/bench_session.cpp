@@ -204,7 +204,7 @@ void print_disk_start(Scene scene, std::size_t samples) {
       for (const StageCost& cost : session.costs())
         if (cost.stage != "rays") sum += cost.cpu_seconds;
       seconds->push_back(sum);
-      count = session.groups()[0].surface.samples.size();
+      count = session.bodies()[0].surface.samples.size();
     }
   }
   for (const auto& file : std::filesystem::directory_iterator(folder)) bytes += file.file_size();

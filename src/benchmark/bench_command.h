@@ -26,8 +26,8 @@ struct BenchArguments {
   Log log;
 };
 
-/// Measures each scene's rungs, prints a table and writes the CSV and the report; the exit code: 0, or 3 where
-/// a rung failed, or 1 where one is worse than in earlier results.
+/// Measures each scene's rungs, prints a table and writes the CSV and the report; the exit code: 0, or 3
+/// where a rung failed, or 1 where one is worse than in earlier results.
 /// error Error{bad_input}: a scene, half or earlier results that cannot be used; Error{run_failed}: the
 ///       reference cannot be made, an output not be written; Error{interrupted}: the old outputs stay
 int bench_command(const BenchArguments& arguments);

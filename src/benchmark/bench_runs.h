@@ -37,7 +37,8 @@ std::vector<BenchJob> list_jobs(const std::vector<BenchScene>& scenes);
 std::size_t run_jobs(const BenchArguments& arguments, const BenchFolder& folder, std::vector<BenchJob>& jobs,
                      Monitor& monitor);
 
-/// Renders the pictures of each scene's parts of the error, those that are alike once. error as run_jobs
+/// Renders the pictures of each scene's parts of the error, those that are alike once.
+/// error as run_jobs
 std::vector<BudgetJob> run_budget(const BenchArguments& arguments, const BenchFolder& folder,
                                   const std::vector<BenchScene>& scenes, Monitor& monitor);
 

@@ -42,7 +42,8 @@ std::vector<BenchScene> open_bench_scenes(const BenchArguments& arguments, const
                                           Monitor& monitor);
 
 /// The user's halves, or two direct renderings, kept in and taken from `folder` under names that hold their
-/// key. error Error{bad_input}: halves of another size; Error{run_failed}: a rendering failed
+/// key.
+/// error Error{bad_input}: halves of another size; Error{run_failed}: a rendering failed
 void prepare_reference(const BenchArguments& arguments, const std::string& folder, BenchScene& scene,
                        Monitor& monitor);
 

@@ -21,7 +21,8 @@ bool is_light_of(const LightTransfer& transfer, std::size_t samples);
 bool has_flags(std::span<const char> items, std::size_t item_bytes, std::size_t offset);
 
 /// Nodes divide their parents' samples between them, in depth-first order, to a depth that build_octree can
-/// reach; the root has the samples' area. in    tree: without its children's list
+/// reach; the root has the samples' area.
+/// in    tree: without its children's list
 bool is_tree_of(const Octree& tree, const SurfaceSamples& samples);
 
 bool is_exitance_of(const SurfaceCache& exitance, const World& world, std::span<const std::uint32_t> meshes);

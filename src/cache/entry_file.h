@@ -69,7 +69,8 @@ struct BadEntry {
 
 /// Checks the whole file before anyone looks into it: the header holds the name, where the data sets lie, and
 /// the length and the hash (XXH3, 128 bits) of the rest, and must match byte by byte. Makes the entry the
-/// most recently used, where the folder may be written. in    most_bytes: a larger file is bad and not read;
+/// most recently used, where the folder may be written.
+/// in    most_bytes: a larger file is bad and not read;
 /// what the key stands for cannot have more
 std::variant<CheckedEntry, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name,
                                                          std::uint64_t most_bytes);
@@ -79,7 +80,8 @@ std::variant<CheckedEntry, NoEntry, BadEntry> open_entry(const std::string& fold
 std::string check_entry(const std::string& folder, const EntryName& name);
 
 /// Writes an entry beside its name and renames it; false, and nothing is written, if it is larger than
-/// most_bytes. error Error{run_failed} naming the file: disk full, folder not writable
+/// most_bytes.
+/// error Error{run_failed} naming the file: disk full, folder not writable
 bool write_entry(const std::string& folder, const EntryName& name, std::uint64_t most_bytes,
                  const std::function<void(Hdf5Writer&)>& fill);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "opaline/cache/stage_keys.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {
@@ -20,23 +21,6 @@ Ball ball_around(std::span<const MeshKeys> meshes, const GroupPlan& group) {
     ball.radius = std::max(ball.radius, length(meshes[m].center - ball.center) + meshes[m].radius);
   return ball;
 }
-
-/// Where the light comes from: a ball, or a direction towards it; neither for light from everywhere.
-struct Source {
-  std::optional<Ball> ball;
-  std::optional<Vec3d> direction;
-};
-
-struct SourceOf {
-  Source operator()(const PointLight& light) const { return {Ball{light.position, 0}, {}}; }
-  Source operator()(const DirectionalLight& light) const { return {{}, -light.direction}; }
-  Source operator()(const SphereLight& light) const { return {Ball{light.center, light.radius}, {}}; }
-  Source operator()(const QuadLight& light) const {
-    const double radius = 0.5 * std::max(length(light.u + light.v), length(light.u - light.v));
-    return {Ball{light.corner + 0.5 * (light.u + light.v), radius}, {}};
-  }
-  Source operator()(const Surroundings&) const { return {}; }
-};
 
 /// Whether the hull of both balls meets the third: their mix at t is a ball of the hull, and its gap to the
 /// third is a convex function of t.
@@ -69,9 +53,9 @@ bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const Grou
   // Rays look for the surface beside a sample, too, and leave it at a small distance.
   target.radius = 1.01 * target.radius + 3 * group.spacing / unit;
   const Ball blocker{meshes[mesh].center, meshes[mesh].radius};
-  const Source source = std::visit(SourceOf{}, light.source);
-  if (source.ball) return hull_meets(target, *source.ball, blocker);
-  return !source.direction || sweep_meets(target, *source.direction, blocker);
+  const LightExtent source = extent(light);
+  if (source.center) return hull_meets(target, {*source.center, source.radius}, blocker);
+  return !source.towards || sweep_meets(target, *source.towards, blocker);
 }
 
 }  // namespace opaline

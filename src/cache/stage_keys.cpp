@@ -3,7 +3,7 @@
 
 #include <embree3/rtcore_config.h>
 
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {
@@ -18,16 +18,6 @@ const char* widest_instructions() {
   if (__builtin_cpu_supports("avx")) return "avx";
   return __builtin_cpu_supports("sse4.2") ? "sse4.2" : "sse2";
 }
-
-/// Where a light is and how large, without its colour.
-struct AddPlace {
-  KeyBuilder& key;
-  void operator()(const PointLight& light) const { key.add(light.position); }
-  void operator()(const DirectionalLight& light) const { key.add(light.direction); }
-  void operator()(const SphereLight& light) const { key.add(light.center).add(light.radius); }
-  void operator()(const QuadLight& light) const { key.add(light.corner).add(light.u).add(light.v); }
-  void operator()(const Surroundings&) const {}
-};
 
 }  // namespace
 
@@ -71,7 +61,7 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
   KeyBuilder key("transfer", kTransferVersion);
   key.add(std::string(RTC_VERSION_STRING)).add(std::string(widest_instructions()));
   key.add(samples).add(input.scene.media[plan.medium].eta).add(std::uint64_t(light.source.index()));
-  std::visit(AddPlace{key}, light.source);
+  key.add_array(std::span<const double>(geometry(light)));
   if (!is_delta(light))
     key.add(settings.light_samples).add(light_seed(irradiance_seed(settings, group), light));
   for (std::uint32_t m = 0; m < meshes.size(); ++m)
@@ -109,7 +99,7 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
 StageKey view_light_key(const Light& light) {
   KeyBuilder key("light of the view", 1);
   key.add(std::uint64_t(light.source.index())).add(light_seed(0, light));
-  std::visit(AddPlace{key}, light.source);
+  key.add_array(std::span<const double>(geometry(light)));
   return key.key();
 }
 

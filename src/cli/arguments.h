@@ -84,7 +84,6 @@ using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareAr
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case
-
 /// error Error{bad_input}: an unknown option, a value that is not one, an output that is neither EXR nor PNG
 Command parse_arguments(int argc, const char* const* argv);
 

@@ -34,7 +34,8 @@ std::string plain_text(std::string_view markdown) {
   return text;
 }
 
-/// An option that stands for a key of film or settings, with its documentation and, for a whole number, range.
+/// An option that stands for a key of film or settings, with its documentation and, for a whole number,
+/// range.
 template <class T>
 CLI::Option* add_key(CLI::App& app, const char* name, T& value, std::string_view path) {
   const std::size_t dot = path.find('.');

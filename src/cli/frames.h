@@ -18,7 +18,8 @@ std::optional<std::vector<int>> parse_frames(const std::string& text);
 
 /// Calls work(frame) for each, which says whether it rendered the frame or found it there; what goes wrong
 /// with a frame is printed, naming it, and the others go on. `so_far` is kept up to date. At the end a line
-/// says what became of them all. error Error{run_failed} at the end, naming the frames that failed;
+/// says what became of them all.
+/// error Error{run_failed} at the end, naming the frames that failed;
 /// Error{interrupted} at once
 void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_far,
                 const std::function<bool(int)>& work);

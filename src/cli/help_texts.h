@@ -32,7 +32,8 @@ They are applied first, then each --set in its order: the last one wins.
 
 --target-error is the mean relative error of the diffuse light over the translucent pixels, of the worst channel,
 against the converged --method direct. What the diffusion model itself is off by is not in it, nor what --spp
-does to edges: that stays yours. Small pictures with more and more samples tell what is needed. --verify
+does to edges: that stays yours. A small picture estimates its own error; where that is too much it is made again
+with more samples. --verify
 measures what came of it, at a cost that grows with the square of the accuracy. With --frames it holds for
 settings.reference_frame: settings are chosen there, once, and all frames share them, so that nothing flickers.
 

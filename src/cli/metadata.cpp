@@ -14,11 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Json settings_in_use(const Scene& scene, const World& world, std::span<const TranslucentGroup> translucent) {
+Json settings_in_use(const Scene& scene, const World& world, std::span<const Body> translucent) {
   Json json = Json::parse(settings_json(scene));
   for (const char* asked : {"samples", "sample_spacing"})
     json.erase(asked);  // the groups say what came of it
-  for (const TranslucentGroup& group : translucent)
+  for (const Body& group : translucent)
     json["groups"].push_back({{"name", group.plan.name},
                               {"samples", group.surface.samples.size()},
                               {"spacing_mm", group.surface.spacing() * world.unit}});
@@ -74,8 +74,7 @@ std::string command_again(const RenderArguments& arguments) {
 }
 
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
-                       const World& world, std::span<const TranslucentGroup> translucent,
-                       std::optional<int> frame) {
+                       const World& world, std::span<const Body> translucent, std::optional<int> frame) {
   const std::string name = fs::path(arguments.scene).filename().string();
   Metadata metadata{{"opaline:version", OPALINE_VERSION}, {"opaline:scene", name}};
   if (!hash.empty()) metadata.emplace_back("opaline:scene_hash", hash);

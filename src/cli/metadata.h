@@ -34,8 +34,7 @@ Metadata frame_metadata(const RenderArguments& arguments, const std::string& has
 /// empty; opaline:seed; opaline:settings, JSON of the values in use; opaline:command, a command line that
 /// makes the same picture: outputs, threads and log are not in it; opaline:frame, for one of a range.
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
-                       const World& world, std::span<const TranslucentGroup> groups,
-                       std::optional<int> frame);
+                       const World& world, std::span<const Body> groups, std::optional<int> frame);
 
 /// opaline:timings, JSON: wall and CPU seconds of each stage so far.
 std::pair<std::string, std::string> timings_metadata(const std::vector<StageCost>& costs);

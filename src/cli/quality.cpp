@@ -170,7 +170,7 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
 std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArguments& arguments,
                                             const Session& session, const KnownErrors& errors,
                                             const RenderResult& picture) {
-  if (!arguments.verify || session.groups().empty()) return {};
+  if (!arguments.verify || session.bodies().empty()) return {};
   // An error far below the target need not be known to its last digit.
   const double expected = errors.predicted
                               ? std::max(*errors.predicted, kKnownShare * errors.target.value_or(0))

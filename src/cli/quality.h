@@ -15,7 +15,8 @@ namespace opaline {
 void check_quality(const RenderArguments& arguments);
 
 /// Chooses the settings for --target-error or --time-budget, if one is asked for, and prints them; the
-/// session has the scene. error Error{bad_input}: a method that has nothing to choose, also with --verify; a
+/// session has the scene.
+/// error Error{bad_input}: a method that has nothing to choose, also with --verify; a
 /// classic evaluator
 KnownErrors choose_settings(StageRunner& stages, const RenderArguments& arguments, Session& session);
 

@@ -104,7 +104,7 @@ Summary summarize(const Session& session, const Shading& shading) {
   summary.rays = shading.rays;
   summary.shading_seconds = shading.cpu_seconds;
   summary.embree_seconds = shading.embree_seconds;
-  for (const TranslucentGroup& group : session.groups()) {
+  for (const Body& group : session.bodies()) {
     summary.samples += group.surface.samples.size();
     for (std::size_t l = 0; l < group.transfers.size(); ++l)
       if (group.transfers[l].relative_error > 0)
@@ -128,7 +128,7 @@ void show_refinement(StageRunner& stages, const Session& session, PartialPicture
   partial.show(stages.run("refinement",
                           [&] {
                             return coarse_picture({session.scene(), session.world(), session.rays(),
-                                                   session.groups(), &stages.monitor()},
+                                                   session.bodies(), &stages.monitor()},
                                                   stride);
                           }),
                "refinement");
@@ -202,7 +202,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   errors.measured = verify_picture(stages, arguments, session, errors, shading.picture);
   const RenderArguments repeated = repeating(arguments, session, shading);
   if (arguments.time_budget) hash = scene_hash(repeated.scene, repeated.overrides, scene);
-  image.metadata = make_metadata(repeated, hash, scene, session.world(), session.groups(), frame);
+  image.metadata = make_metadata(repeated, hash, scene, session.world(), session.bodies(), frame);
   if (errors.target || errors.measured)
     image.metadata.emplace_back("opaline:error", compact(errors_json(errors)));
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));

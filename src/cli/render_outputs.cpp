@@ -43,7 +43,7 @@ std::vector<std::string> write_outputs(const RenderArguments& arguments, const S
     written.push_back(path);
   }
   if (!arguments.samples_ply.empty()) {
-    write_samples_ply(arguments.samples_ply, session.groups(), session.world());
+    write_samples_ply(arguments.samples_ply, session.bodies(), session.world());
     written.push_back(arguments.samples_ply);
   }
   if (cut > 0)

@@ -18,7 +18,8 @@ class StageRunner {
  public:
   explicit StageRunner(const Log& log) : log_(log), interrupt_(monitor_) {}
 
-  /// Runs work(); error Error{interrupted} before it if the user asked to stop, besides the stage's own. So
+  /// Runs work().
+  /// error Error{interrupted} before it if the user asked to stop, besides the stage's own. So
   /// the last one, writing, is not cut short between two files.
   template <class Work>
   auto run_unmeasured(const std::string& stage, const Work& work) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "opaline/core/error.h"
 #include "opaline/diffusion/fresnel.h"
 
 namespace opaline {
@@ -33,9 +34,15 @@ ReducedMedium reduce(const ArtistMedium& medium, std::size_t channel, double mis
 ChannelProfile make_channel(const ReducedMedium& medium, ProfileKind kind, double mismatch) {
   if (medium.absorbed >= 1) return std::monostate{};
   const Dipole dipole = make_dipole(medium.mean_free_path, medium.absorbed, mismatch);
-  if (kind == ProfileKind::dipole) return dipole;
-  // Until a fit of its own exists, A(alpha', eta) is the dipole's total.
-  return make_normalized_diffusion(medium.mean_free_path, total_diffuse_reflectance(dipole));
+  switch (kind) {
+    case ProfileKind::dipole:
+      return dipole;
+    case ProfileKind::normalized_diffusion:
+      // Until a fit of its own exists, A(alpha', eta) is the dipole's total.
+      return make_normalized_diffusion(medium.mean_free_path, total_diffuse_reflectance(dipole));
+  }
+  require(false, "a kind of profile that can be made");
+  return {};
 }
 
 template <class Function>
@@ -62,6 +69,18 @@ double diffuse_reflectance_within(const ChannelProfile& profile, double r) {
 
 double total_diffuse_reflectance(const ChannelProfile& profile) {
   return apply_to(profile, [](const auto& p) { return total_diffuse_reflectance(p); });
+}
+
+double sample_diffusion_distance(const ChannelProfile& profile, double beyond) {
+  return apply_to(profile, [beyond](const auto& p) { return sample_diffusion_distance(p, beyond); });
+}
+
+double sample_chord_sphere_radius(const ChannelProfile& profile, double u, double v) {
+  return apply_to(profile, [u, v](const auto& p) { return sample_chord_sphere_radius(p, u, v); });
+}
+
+double slowest_decay(const ChannelProfile& profile) {
+  return apply_to(profile, [](const auto& p) { return slowest_decay(p); });
 }
 
 DiffuseProfile make_diffuse_profile(const Medium& medium, double unit) {

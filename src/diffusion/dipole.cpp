@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/diffusion/dipole.h"
 
+#include <algorithm>
+#include <boost/math/special_functions/lambert_w.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -51,8 +53,8 @@ double total_diffuse_reflectance(const Dipole& dipole) {
 double invert_dipole_albedo(double total, double boundary_mismatch) {
   if (total >= 1) return 0;
   if (total <= 0) return 1;
-  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1; bisect its logarithm, so that the relative error
-  // of 1 - alpha' is small where the medium hardly absorbs.
+  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1; bisect its logarithm, so that the relative
+  // error of 1 - alpha' is small where the medium hardly absorbs.
   double low = -80, high = 0;
   for (int i = 0; i < 200; ++i) {
     const double middle = 0.5 * (low + high);
@@ -62,6 +64,64 @@ double invert_dipole_albedo(double total, double boundary_mismatch) {
       high = middle;
   }
   return std::exp2(0.5 * (low + high));
+}
+
+namespace {
+
+// y = d / z with exp(-s (y - 1)) / y = beyond: s y exp(s y) = s exp(s) / beyond.
+double source_distance_ratio(double s, double beyond) {
+  if (s == 0) return 1 / beyond;
+  const double logarithm = s + std::log(s) - std::log(beyond);
+  if (logarithm < 700) return std::max(1.0, boost::math::lambert_w0(s * std::exp(s) / beyond) / s);
+  double w = logarithm;
+  for (int i = 0; i < 8; ++i) w = logarithm - std::log(w);
+  return std::max(1.0, w / s);
+}
+
+struct Source {
+  double z, s;  // depth, mm; sigma_tr z
+};
+
+// One of the two sources by its share of the total, and what is left of `beyond` in (0, 1]. The virtual one
+// has the far end, where 1 - beyond would keep no digits.
+Source choose_source(const Dipole& dipole, double& beyond) {
+  const double ratio = std::exp(dipole.s_real - dipole.s_virtual), share = ratio / (1 + ratio);
+  if (beyond <= share) {
+    beyond /= share;
+    return {dipole.z_virtual, dipole.s_virtual};
+  }
+  beyond = (beyond - share) * (1 + ratio);
+  return {dipole.z_real, dipole.s_real};
+}
+
+}  // namespace
+
+double sample_diffusion_distance(const Dipole& dipole, double beyond) {
+  const Source source = choose_source(dipole, beyond);
+  const double ratio = source_distance_ratio(source.s, beyond);
+  return source.z * std::sqrt(ratio - 1) * std::sqrt(ratio + 1);
+}
+
+// The share of one source within R is 1 - z/d exp(-sigma_tr (d - z)) (1 + R^2 (1 + sigma_tr d) / (2 d^2)):
+// bisected on d/z, for its tail is a power law without absorption.
+double sample_chord_sphere_radius(const Dipole& dipole, double u, double) {
+  double rest = 1 - u;
+  const Source source = choose_source(dipole, rest);
+  const auto beyond = [&](double y) {
+    return std::exp(-source.s * (y - 1)) / y * (1 + (1 - 1 / (y * y)) / 2 * (1 + source.s * y));
+  };
+  double low = 0, high = 1;  // log2 of y
+  while (beyond(std::exp2(high)) > rest && high < 200) high *= 2;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (beyond(std::exp2(middle)) > rest ? low : high) = middle;
+  }
+  const double y = std::exp2(0.5 * (low + high));
+  return source.z * std::sqrt((y - 1) * (y + 1));
+}
+
+double slowest_decay(const Dipole& dipole) {
+  return dipole.sigma_tr;
 }
 
 }  // namespace opaline

@@ -7,7 +7,8 @@ namespace opaline {
 
 double average_reflectance_outside(double eta) {
   if (eta == 1) return 0;
-  // Below 1 the integrand has a square-root kink at the critical angle; reciprocity maps it to the smooth side.
+  // Below 1 the integrand has a square-root kink at the critical angle; reciprocity maps it to the smooth
+  // side.
   if (eta < 1) return 1 - (1 - average_reflectance_outside(1 / eta)) * eta * eta;
   // Near eta = 1 all of F lies at grazing angles: u^2 = cos resolves them.
   const auto integrand = [eta](double u) {

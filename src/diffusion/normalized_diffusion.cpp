@@ -26,4 +26,25 @@ double total_diffuse_reflectance(const NormalizedDiffusion& profile) {
   return profile.total;
 }
 
+double sample_diffusion_distance(const NormalizedDiffusion& profile, double beyond) {
+  if (beyond >= 1) return 0;
+  const double g = 1 + 4 * beyond * (2 * beyond + std::sqrt(1 + 4 * beyond * beyond)), root = std::cbrt(g);
+  return 3 * profile.d * std::log((1 + 1 / root + root) / (4 * beyond));
+}
+
+// exp(-r/L) / (2 pi r L) gives the density (1 + R/L) exp(-R/L) / (2L): half an exponential, half a gamma of
+// order 2.
+double sample_chord_sphere_radius(const NormalizedDiffusion& profile, double u, double v) {
+  const bool narrow = u < 0.25;
+  const double length = narrow ? profile.d : 3 * profile.d;
+  double rest = narrow ? u * 4 : (u - 0.25) / 0.75;
+  if (rest < 0.5) return -length * std::log1p(-2 * rest);
+  rest = 2 * rest - 1;
+  return -length * (std::log1p(-rest) + std::log(v));
+}
+
+double slowest_decay(const NormalizedDiffusion& profile) {
+  return profile.d > 0 ? 1 / (3 * profile.d) : 0;
+}
+
 }  // namespace opaline

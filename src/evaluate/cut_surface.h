@@ -11,7 +11,8 @@ namespace opaline {
 
 /// Cuts the triangles of some meshes into patches no longer than `longest`, mm. Vertices are shared between
 /// triangles of the mesh's smooth parts: everywhere if it has normals, else where facets meet at small
-/// angles. out   splits, patches and the vertices' positions of the cache; returns the vertices' normals
+/// angles.
+/// out   splits, patches and the vertices' positions of the cache; returns the vertices' normals
 std::vector<Vec3f> cut_surface(const World& world, std::span<const std::uint32_t> meshes, double longest,
                                SurfaceCache& cache);
 

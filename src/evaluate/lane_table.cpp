@@ -9,13 +9,6 @@
 namespace opaline {
 namespace {
 
-double decay_of(const ChannelProfile& profile) {
-  if (const auto* dipole = std::get_if<Dipole>(&profile)) return dipole->sigma_tr;
-  if (const auto* normalized = std::get_if<NormalizedDiffusion>(&profile))
-    return normalized->d > 0 ? 1 / (3 * normalized->d) : 0;
-  return 0;
-}
-
 // The quadratic in t through the second differences of f at the Chebyshev points start + width t.
 template <class Function>
 std::array<double, 3> curvature_of(const Function& f, double start, double width) {
@@ -39,7 +32,7 @@ LaneTable make_lane_table(const DiffuseProfile& profile, double h, double r_max,
   const std::array<double, 4> nodes = chebyshev_points();
   for (std::size_t c = 0; c < 3; ++c) {
     const ChannelProfile& channel = profile.channels[c];
-    table.decay[c] = float(decay_of(channel));
+    table.decay[c] = float(slowest_decay(channel));
     const auto far_kernel = [&](double q) {
       const double r = std::sqrt(std::max(0.0, q - 1)) * scale;
       if (!split) return diffuse_reflectance_profile(channel, std::max(r, h / 10));

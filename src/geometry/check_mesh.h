@@ -31,8 +31,10 @@ struct CheckMemory {
 
 /// Welds vertices that are exactly equal, drops and counts zero-area and duplicate triangles, winds what is
 /// left consistently and closed components outward, fills holes if asked, counts open and non-manifold edges,
-/// and completes the normals. in    positions finite; normals of any length, zero or not finite where there
-/// is none out   at least one triangle, only vertices that a triangle uses. A vertex at which the source has
+/// and completes the normals.
+/// in    positions finite; normals of any length, zero or not finite where there
+/// is none
+/// out   at least one triangle, only vertices that a triangle uses. A vertex at which the source has
 /// several normals
 ///       stays several vertices at exactly the same position. Multiplying all positions by a power of two
 ///       changes nothing but the positions

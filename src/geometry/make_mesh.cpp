@@ -16,8 +16,7 @@ namespace {
 
 struct SourceReader {
   const std::string& name;
-  const SourceMesh* before;
-  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path, before); }
+  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path); }
   template <class Builtin>
   SourceMesh operator()(const Builtin& shape) const {
     return tessellate(shape, name);
@@ -78,8 +77,8 @@ void place(SourceMesh& mesh, const Transform& to_world, const std::string& name)
     for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
-SourceMesh read_source(const Shape& shape, const std::string& name, const SourceMesh* before) {
-  SourceMesh mesh = std::visit(SourceReader{name, before}, shape.source);
+SourceMesh read_source(const Shape& shape, const std::string& name) {
+  SourceMesh mesh = std::visit(SourceReader{name}, shape.source);
   if (const auto* file = std::get_if<MeshFile>(&shape.source))
     if (file->fit_size) fit(mesh, *file->fit_size, name);
   return mesh;
@@ -99,7 +98,7 @@ CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh me
 
 struct MeshMemory::State {
   SourceMesh source;
-  bool is_current = false;  // else a source before the last one: its faces may be the same
+  bool is_current = false;  // else the source has changed since it was read
   CheckMemory check;
   Work work;
 };
@@ -119,14 +118,14 @@ const MeshMemory::Work& MeshMemory::work() const {
 
 CheckedMesh make_mesh(const Shape& shape) {
   const std::string name = shape_label(shape);
-  return make_mesh(shape, name, read_source(shape, name, nullptr), nullptr);
+  return make_mesh(shape, name, read_source(shape, name), nullptr);
 }
 
 CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory) {
   const std::string name = shape_label(shape);
   MeshMemory::State& state = *memory.state_;
   if (!state.is_current) {
-    state.source = read_source(shape, name, &state.source);
+    state.source = read_source(shape, name);
     state.is_current = true;
     ++state.work.read;
   }

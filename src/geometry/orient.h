@@ -28,7 +28,8 @@ bool any_inward(const std::vector<Vec3d>& positions, const std::vector<Triangle>
 /// Which triangles to flip so that triangles sharing an edge of exactly two agree, and closed components face
 /// outward. Where neighbours disagree the larger part of the component wins. A closed component wound inward
 /// inside another one is a cavity and stays, unless the outermost one around it is flipped: then it is
-/// flipped with it. in    vertices shared by neighbours (welded); no triangle with a vertex twice; edges: of
+/// flipped with it.
+/// in    vertices shared by neighbours (welded); no triangle with a vertex twice; edges: of
 /// these
 ///       triangles
 Winding find_winding(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,

@@ -10,15 +10,12 @@ namespace opaline {
 
 /// The triangles of a mesh file, polygons cut into fans.
 /// out   at least one triangle unless all were collapsed; every index in range, every position finite and
-/// below
-///       1e18; positions as exact as the file has them (STL: float); the file's normals, not normalised, with
-///       a vertex doubled where OBJ gives it several
+///       below 1e18; positions as exact as the file has them (STL: float); the file's normals, not
+///       normalised, with a vertex doubled where OBJ gives it several
 /// error Error{bad_input} naming the file, and the line where known: missing, not a file, empty, unknown
 ///       extension, truncated, not of its format, bad coordinates or indices, no faces. Memory stays within a
 ///       small multiple of the file's length
-/// in    before: null, or what an earlier call returned; where the file has no normals and the same faces as
-///       that one's, OpenMesh need not read them again
-SourceMesh read_mesh(const std::string& path, const SourceMesh* before = nullptr);
+SourceMesh read_mesh(const std::string& path);
 
 /// The bytes of a mesh file as they are.
 /// error Error naming the file: missing, with the nearest name in its folder; not a file, empty, not readable

@@ -4,10 +4,11 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
-#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>  // is_polygon_soup_a_polygon_mesh
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
-#include <CGAL/Surface_mesh.h>
+#include <CGAL/boost/graph/graph_traits_TriMesh_ArrayKernelT.h>
 
+#include <OpenMesh/Core/Mesh/DefaultTriMesh.hh>
 #include <algorithm>
 #include <exception>
 #include <map>
@@ -17,8 +18,8 @@ namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
-using SurfaceMesh = CGAL::Surface_mesh<Point>;
-using Halfedge = SurfaceMesh::Halfedge_index;
+using HalfedgeMesh = OpenMesh::TriMesh;  // coordinates in double
+using Halfedge = OpenMesh::HalfedgeHandle;
 
 constexpr std::size_t largest_cubic_hole = 500;  // its search takes time cubic in the number of edges
 
@@ -38,8 +39,8 @@ class HoleFiller {
   }
 
  private:
-  /// CGAL's half-edges take no edge of three triangles and no two fans at one vertex: orient_polygon_soup
-  /// doubles vertices there; original_ leads back.
+  /// Half-edges allow no edge of three triangles and no two fans at one vertex: orient_polygon_soup doubles
+  /// vertices there; original_ leads back.
   void build(const std::vector<Triangle>& triangles) {
     std::vector<std::uint32_t> compact(positions_.size(), 0xffffffff);
     std::vector<Point> points;
@@ -62,7 +63,11 @@ class HoleFiller {
       pmp::orient_polygon_soup(points, polygons);
       trace_back(points, before);
     }
-    pmp::polygon_soup_to_polygon_mesh(points, polygons, mesh_);
+    // CGAL's own way from a soup to OpenMesh would round the points to float
+    for (const Point& p : points) mesh_.add_vertex({p.x(), p.y(), p.z()});
+    for (const auto& [a, b, c] : polygons)
+      mesh_.add_face(mesh_.vertex_handle(unsigned(a)), mesh_.vertex_handle(unsigned(b)),
+                     mesh_.vertex_handle(unsigned(c)));
   }
 
   void trace_back(const std::vector<Point>& points, std::size_t before) {
@@ -72,13 +77,14 @@ class HoleFiller {
     for (std::size_t i = before; i < points.size(); ++i) original_.push_back(by_position.at(points[i]));
   }
 
-  std::uint32_t original(SurfaceMesh::Vertex_index v) const { return original_[std::size_t(v)]; }
+  std::uint32_t original(OpenMesh::VertexHandle v) const { return original_[std::size_t(v.idx())]; }
 
   /// Whether every edge of the border is open in the mesh as it was, not cut where three triangles meet.
   bool is_hole(Halfedge border, std::size_t& edges) const {
     bool open = true;
     for (const Halfedge h : CGAL::halfedges_around_face(border, mesh_)) {
-      const auto [low, high] = std::minmax({original(mesh_.source(h)), original(mesh_.target(h))});
+      const auto [low, high] =
+          std::minmax({original(mesh_.from_vertex_handle(h)), original(mesh_.to_vertex_handle(h))});
       open &= std::binary_search(open_edges_.begin(), open_edges_.end(), Edge{low, high});
       ++edges;
     }
@@ -91,7 +97,7 @@ class HoleFiller {
       result_.unfilled.push_back(edges);
       return;
     }
-    std::vector<SurfaceMesh::Face_index> patch;
+    std::vector<OpenMesh::FaceHandle> patch;
     try {
       pmp::triangulate_hole(mesh_, border, std::back_inserter(patch),
                             CGAL::parameters::do_not_use_cubic_algorithm(edges > largest_cubic_hole));
@@ -106,16 +112,15 @@ class HoleFiller {
     for (const auto face : patch) {
       Triangle triangle{};
       std::size_t k = 0;
-      for (const auto v : CGAL::vertices_around_face(mesh_.halfedge(face), mesh_))
-        triangle[k++] = original(v);
+      for (const auto v : mesh_.fv_range(face)) triangle[k++] = original(v);
       result_.triangles.push_back(triangle);
     }
   }
 
   const std::vector<Vec3d>& positions_;
   const std::vector<Edge>& open_edges_;
-  std::vector<std::uint32_t> original_;  // of each CGAL vertex
-  SurfaceMesh mesh_;
+  std::vector<std::uint32_t> original_;  // of each vertex of mesh_
+  HalfedgeMesh mesh_;
   HoleFilling result_;
 };
 

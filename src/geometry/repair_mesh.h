@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hole filling with CGAL; the one place of this stage that uses it.
+// Hole filling: CGAL's, over OpenMesh's half-edges; the one place of this stage that uses either.
 #pragma once
 
 #include <array>

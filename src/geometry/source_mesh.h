@@ -18,7 +18,6 @@ struct SourceMesh {
   std::vector<Vec3d> positions;
   std::vector<Vec3f> normals;  ///< empty, or one a vertex, of any length; zero where there is none
   std::vector<Triangle> triangles;
-  std::uint64_t faces = 0;    ///< a file's: equal ones were cut into equal triangles; 0: not known
   std::size_t collapsed = 0;  ///< triangles left out already for want of three different corners
   std::vector<std::string> warnings;
 };

@@ -38,9 +38,9 @@ std::uint64_t hash_vector(std::uint64_t hash, const Vec3<T>& v) {
   return hash;
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> weld(const std::vector<Vec3d>& positions, const std::vector<Vec3f>& normals) {
+template <class Position>
+std::vector<std::uint32_t> weld_all(const std::vector<Position>& positions,
+                                    const std::vector<Vec3f>& normals) {
   FirstEqual first(positions.size());
   std::vector<std::uint32_t> same(positions.size());
   const auto equal = [&](std::uint32_t a, std::uint32_t b) {
@@ -52,6 +52,16 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3d>& positions, const std::
     same[v] = first.find_or_insert(v, hash, equal);
   }
   return same;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> weld(const std::vector<Vec3d>& positions, const std::vector<Vec3f>& normals) {
+  return weld_all(positions, normals);
+}
+
+std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
+  return weld_all(positions, {});
 }
 
 std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles) {

@@ -15,6 +15,7 @@ namespace opaline {
 /// For each vertex the first one at exactly the same position (0 and -0 are the same); with normals given, of
 /// exactly the same normal as well.
 std::vector<std::uint32_t> weld(const std::vector<Vec3d>& positions, const std::vector<Vec3f>& normals = {});
+std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions);
 
 /// For each triangle whether an earlier one has the same three vertices, in whatever order.
 std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles);

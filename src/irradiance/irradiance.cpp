@@ -8,7 +8,7 @@
 #include "irradiance/shadow_batch.h"
 #include "irradiance/shadow_edges.h"
 #include "opaline/core/parallel.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {

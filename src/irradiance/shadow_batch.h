@@ -11,7 +11,7 @@
 #include "opaline/core/random.h"
 #include "opaline/diffusion/fresnel.h"
 #include "opaline/geometry/world.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
 

@@ -12,7 +12,8 @@ namespace opaline {
 /// Replaces, light by light, the weight of each sample beside a shadow's edge by its mean over points of the
 /// sample's Voronoi cell; all other weights keep their bits. An edge is where the visible part of the light
 /// changes from one sample to the next; where a surface merely turns away from the light, or nears it, there
-/// is none. in    unblocked: one array a light, what the weights would be were nothing in the way
+/// is none.
+/// in    unblocked: one array a light, what the weights would be were nothing in the way
 void refine_shadow_edges(const IrradianceInput& input, std::span<const std::vector<float>> unblocked,
                          std::span<LightTransfer> transfers);
 

@@ -78,7 +78,7 @@ double ShadingCost::of(const Session& session, const Scene& scene) {
   const auto cost_of = [&](const std::vector<Rectangle>& parts) {
     rest();
     const Stopwatch watch;
-    shade_parts({scene, session.world(), session.rays(), session.groups()}, parts);
+    shade_parts({scene, session.world(), session.rays(), session.bodies()}, parts);
     rest();
     return watch.cost({}).cpu_seconds;
   };

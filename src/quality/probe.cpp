@@ -59,7 +59,7 @@ Scene probe_scene(const Scene& scene, double most_pixels) {
 
 RenderResult probe_picture(const Session& session, Scene probe, std::uint64_t noise, Monitor* monitor) {
   probe.settings.seed = hash_bits(probe.settings.seed, noise);
-  return render({probe, session.world(), session.rays(), session.groups(), monitor});
+  return render({probe, session.world(), session.rays(), session.bodies(), monitor});
 }
 
 std::vector<std::uint8_t> translucent_pixels(const Image& picture) {

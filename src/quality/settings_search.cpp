@@ -65,8 +65,8 @@ bool SettingsSearch::try_surface_cache() {
   scene.settings.evaluator = EvaluatorKind::automatic;
   session.edit(scene);
   session.prepare(monitor);
-  return std::ranges::any_of(session.groups(),
-                             [](const TranslucentGroup& group) { return group.surface_cache.has_value(); });
+  return std::ranges::any_of(session.bodies(),
+                             [](const Body& group) { return group.surface_cache.has_value(); });
 }
 
 double tolerance_for(double error) {

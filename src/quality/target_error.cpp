@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "quality/probe.h"
 #include "quality/settings_search.h"
 

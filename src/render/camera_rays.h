@@ -19,8 +19,8 @@ class CameraRays {
   /// x, y: pixel in the whole picture; sample in [0, samples_per_pixel).
   Ray ray(int x, int y, int sample) const;
 
-  /// Where a point of the world is seen: pixels from the picture's top left, and the depth Z, <= 0 behind the camera,
-  /// where x and y mean nothing.
+  /// Where a point of the world is seen: pixels from the picture's top left, and the depth Z, <= 0 behind the
+  /// camera, where x and y mean nothing.
   struct FilmPlace {
     double x, y, depth;
   };

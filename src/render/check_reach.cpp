@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "opaline/core/error.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {
@@ -12,15 +12,10 @@ namespace {
 constexpr double kFarthest = 0x1p50, kBrightest = 1e30;
 
 /// The largest distance of a light's points from zero, at most some times too large.
-struct ReachOf {
-  double operator()(const PointLight& light) const { return length(light.position); }
-  double operator()(const SphereLight& light) const { return length(light.center) + light.radius; }
-  double operator()(const QuadLight& light) const {
-    return length(light.corner) + length(light.u) + length(light.v);
-  }
-  double operator()(const DirectionalLight&) const { return 0; }
-  double operator()(const Surroundings&) const { return 0; }
-};
+double reach_of(const Light& light) {
+  const LightExtent place = extent(light);
+  return place.center ? length(*place.center) + place.radius : 0;
+}
 
 void check_distance(const Scene& scene, const std::string& what, double distance, double mm) {
   if (distance <= kFarthest) return;
@@ -40,7 +35,7 @@ void check_reach(const Scene& scene, const World& world) {
   for (const Light& light : scene.lights) {
     const Light moved = recentred(light, world.origin, world.unit);
     const std::string name = "the light '" + light.name + "'";
-    check_distance(scene, name, std::visit(ReachOf{}, moved.source), world.unit);
+    check_distance(scene, name, reach_of(moved), world.unit);
     const double brightest = max_component(emission(moved));
     if (brightest > kBrightest)
       throw bad_file(scene.file, name + " is too bright for shapes of this size",

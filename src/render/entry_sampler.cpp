@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "opaline/core/random.h"
-#include "opaline/diffusion/distance_sampling.h"
+#include "opaline/diffusion/diffuse_profile.h"
 
 namespace opaline {
 namespace {

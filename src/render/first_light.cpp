@@ -94,9 +94,9 @@ void enlarge(const Image& coarse, const CoarseGrid& grid, Image& picture) {
   });
 }
 
-std::vector<TranslucentGroup> draft_groups(const PrecomputeInput& input) {
+std::vector<Body> draft_groups(const PrecomputeInput& input) {
   const std::vector<Light> lights = recentred_lights(input.scene, input.world);
-  std::vector<TranslucentGroup> groups;
+  std::vector<Body> groups;
   for (std::size_t g = 0; g < input.plan.groups.size(); ++g) {
     const GroupPlan& plan = input.plan.groups[g];
     const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
@@ -134,7 +134,7 @@ Image first_light(const PrecomputeInput& input) {
   Scene scene = input.scene;
   if (scene.settings.method == Method::direct) scene.settings.method = Method::hierarchical;
   scene.settings.evaluator = EvaluatorKind::dual_tree;
-  std::vector<TranslucentGroup> groups;
+  std::vector<Body> groups;
   if (scene.settings.method == Method::hierarchical)
     groups = draft_groups({scene, input.world, input.rays, input.plan, input.monitor});
   return coarse_picture({scene, input.world, input.rays, groups, input.monitor},

@@ -27,8 +27,8 @@ struct PixelSample {
   bool empty() const { return coverage == 0 && emitted == RgbF{}; }
 };
 
-/// In the order in which store_pixel writes them. `hierarchical` adds its estimated error, `direct` has the variance of
-/// its mean where others have the irradiance.
+/// In the order in which store_pixel writes them. `hierarchical` adds its estimated error, `direct` has the
+/// variance of its mean where others have the irradiance.
 inline std::vector<std::string> layer_names(Method method) {
   std::vector<std::string> names{"R", "G", "B", "A", "Z"};
   const auto add = [&](const std::string& layer, const std::string& parts) {
@@ -53,9 +53,9 @@ inline RgbF pixel_error(const PixelSample& sum, float all) {
   return error;
 }
 
-/// Writes the mean of `count` samples to one pixel: radiance and coverage over all of them; albedo, normal, position,
-/// depth and irradiance over those that met a surface. sum.coverage counts these. Returns 1 if the pixel's
-/// radiance is not finite, else 0.
+/// Writes the mean of `count` samples to one pixel: radiance and coverage over all of them; albedo, normal,
+/// position, depth and irradiance over those that met a surface. sum.coverage counts these. Returns 1 if the
+/// pixel's radiance is not finite, else 0.
 inline std::size_t store_pixel(const PixelSample& sum, int count, Method method, float* out) {
   const float all = 1.0f / float(count), seen = sum.coverage > 0 ? 1.0f / sum.coverage : 0.0f;
   const auto put = [&out](const Vec3f& value, float scale) {

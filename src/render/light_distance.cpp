@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {
@@ -15,16 +15,9 @@ struct Segment {
 using Corners = std::array<Vec3d, 3>;
 
 std::optional<Segment> middle_of(const Light& light, double limit) {
-  if (const auto* point = std::get_if<PointLight>(&light.source)) return Segment{point->position, {}};
-  if (const auto* sphere = std::get_if<SphereLight>(&light.source))
-    if (sphere->radius < limit) return Segment{sphere->center, {}};
-  if (const auto* quad = std::get_if<QuadLight>(&light.source)) {
-    const bool u_is_longer = length(quad->u) > length(quad->v);
-    const Vec3d along = u_is_longer ? quad->u : quad->v, across = u_is_longer ? quad->v : quad->u;
-    const double width = length(cross(along, across)) / length(along);
-    if (width / 2 < limit) return Segment{quad->corner + across * .5, along};
-  }
-  return {};
+  const LightExtent place = extent(light);
+  if (!place.center || place.width / 2 >= limit) return {};
+  return Segment{*place.center - place.along * .5, place.along};
 }
 
 double squared_distance(const Vec3d& p, const Segment& segment) {

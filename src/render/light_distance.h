@@ -14,7 +14,8 @@ namespace opaline {
 /// Distance from the middle of a light to the nearest point of these meshes, mm, if it is below the limit.
 /// The middle is the point, the sphere's centre (seen whole, a sphere lights as a point there would) or the
 /// quad's middle line along its longer side. A light that is twice as wide as the limit or wider has none:
-/// its own width is what it lights at least. Nor have directional lights and surroundings. in    limit: > 0,
+/// its own width is what it lights at least. Nor have directional lights and surroundings.
+/// in    limit: > 0,
 /// mm
 std::optional<double> near_light_distance(const Light& light, const World& world,
                                           std::span<const std::uint32_t> meshes, double limit);

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "opaline/core/random.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {
@@ -70,7 +70,7 @@ struct NearFieldSampler::Places {
   std::vector<std::uint32_t> sets;  // of the points that brought them
 };
 
-NearFieldSampler::NearFieldSampler(const TranslucentGroup& group)
+NearFieldSampler::NearFieldSampler(const Body& group)
     : kernel_(group.kernel), near_(group), is_own_mesh_(*std::ranges::max_element(group.plan.meshes) + 1) {
   for (const std::uint32_t mesh : group.plan.meshes) is_own_mesh_[mesh] = true;
   lattice_ = std::make_unique<IrradianceLattice>(is_own_mesh_, kCoarsest * double(near_.narrowest));

@@ -24,12 +24,12 @@ namespace opaline {
 /// to the power of 3/2. Elsewhere points draw places from their own kernels. Neighbours share these: each
 /// counts as drawn from the mean of the points' own kernels. Points bring as many as goes with the deviation
 /// that is to be expected.
-/// from  balance heuristic: Veach & Guibas 1995, sec. 3; allocation: Neyman 1934; stratified sampling of edges:
-///       Mitchell 1996
+/// from  balance heuristic: Veach & Guibas 1995, sec. 3; allocation: Neyman 1934; stratified sampling of
+///       edges: Mitchell 1996
 class NearFieldSampler {
  public:
   /// group: not without meshes; it must outlive the sampler.
-  explicit NearFieldSampler(const TranslucentGroup& group);
+  explicit NearFieldSampler(const Body& group);
 
   /// Corrects the exitance of the points beside shadow edges.
   /// in    lighting: of the points; own: their irradiance

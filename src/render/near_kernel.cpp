@@ -16,7 +16,7 @@ constexpr double kBeyondReach = 0.02;  // of a kernel
 
 }  // namespace
 
-NearKernel::NearKernel(const TranslucentGroup& group) : radius(group.kernel.radius) {
+NearKernel::NearKernel(const Body& group) : radius(group.kernel.radius) {
   const double h = double(radius);
   std::array<double, kRings> mean_rings{};
   for (std::size_t c = 0; c < 3; ++c) {

@@ -15,7 +15,7 @@ struct NearKernel {
   /// Per channel, whose integral is 1, and their mean, 1/mm^2.
   typedef float Densities __attribute__((vector_size(16)));
 
-  explicit NearKernel(const TranslucentGroup& group);
+  explicit NearKernel(const Body& group);
 
   /// The inverse of the distribution of distances under the channels' mean, mm. in  u: in [0, 1)
   double drawn_distance(double u) const;

@@ -28,14 +28,14 @@ std::uint64_t key_of(const Vec3f& p) {
 
 }  // namespace
 
-bool can_hold_own_light(const World& world, const TranslucentGroup& group) {
+bool can_hold_own_light(const World& world, const Body& group) {
   const auto& own = group.kernel.own_irradiance;
   return group.kernel.needs_irradiance() && std::ranges::all_of(own, [](float s) { return s <= kSharp; }) &&
          std::ranges::none_of(group.plan.meshes,
                               [&](std::uint32_t m) { return world.meshes[m].normals.empty(); });
 }
 
-OwnLight::OwnLight(const PrecomputeInput& input, const TranslucentGroup& group)
+OwnLight::OwnLight(const PrecomputeInput& input, const Body& group)
     : input_(input), group_(group), lights_(recentred_lights(input.scene, input.world)), near_field_(group) {}
 
 void OwnLight::add(std::span<const SurfacePoint> points, std::span<Exitance> exitance,

@@ -13,13 +13,13 @@ namespace opaline {
 /// Whether a cache can hold the light that depends on the irradiance at each place, so that pictures trace no
 /// shadow rays: facets without smooth normals are lit each in its own way, and the shadows of a mean free
 /// path far below the sample spacing are too sharp to interpolate.
-bool can_hold_own_light(const World& world, const TranslucentGroup& group);
+bool can_hold_own_light(const World& world, const Body& group);
 
 /// The light that the shader adds at its points.
 class OwnLight {
  public:
   /// Both must outlive it.
-  OwnLight(const PrecomputeInput& input, const TranslucentGroup& group);
+  OwnLight(const PrecomputeInput& input, const Body& group);
 
   /// As AddOwnLight.
   void add(std::span<const SurfacePoint> points, std::span<Exitance> exitance,
@@ -30,7 +30,7 @@ class OwnLight {
                     std::span<PlaceDoubt> doubts) const;
 
   const PrecomputeInput& input_;
-  const TranslucentGroup& group_;
+  const Body& group_;
   std::vector<Light> lights_;
   NearFieldSampler near_field_;
 };

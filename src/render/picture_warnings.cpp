@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {
@@ -84,22 +84,13 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
                      point_text(box.high, scene.mm_per_unit), where, advice);
 }
 
-/// Middle of a light that has a place, world space.
-std::optional<Vec3d> place_of(const Light& light) {
-  if (const auto* point = std::get_if<PointLight>(&light.source)) return point->position;
-  if (const auto* sphere = std::get_if<SphereLight>(&light.source)) return sphere->center;
-  if (const auto* quad = std::get_if<QuadLight>(&light.source))
-    return quad->corner + .5 * (quad->u + quad->v);
-  return {};
-}
-
 /// What is wrong with single lights, where a picture is too dark.
 std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
   const Bounds box = box_of(world);
   const Vec3d middle = .5 * (box.low + box.high);
   std::vector<std::string> texts;
   for (const Light& light : scene.lights) {
-    const std::optional<Vec3d> place = place_of(light);
+    const std::optional<Vec3d> place = extent(light).center;
     const double distance = place ? length(*place - middle) : 0;
     if (emission(light) == Rgb{})
       texts.push_back(fmt::format("the light {} has no brightness", light.name));
@@ -116,7 +107,7 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
 std::string unit_text(const Scene& scene, double brightest) {
   const double factor = scene.mm_per_unit * scene.mm_per_unit, meant = brightest * factor;
   const bool has_points = std::ranges::any_of(scene.lights, [](const Light& light) {
-    return std::holds_alternative<PointLight>(light.source) && emission(light) != Rgb{};
+    return is_delta(light) && extent(light).center && emission(light) != Rgb{};
   });
   if (!has_points || factor == 1 || meant < double(kAlmostBlack) || meant > 100) return {};
   return fmt::format(
@@ -166,13 +157,13 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
 std::vector<std::string> lamps_turned_away(const Scene& scene, const World& world) {
   std::vector<std::string> texts;
   for (const Light& light : scene.lights) {
-    const auto* lamp = std::get_if<QuadLight>(&light.source);
-    if (lamp == nullptr || world.boxes.empty()) continue;
-    const Vec3d normal = normalized(cross(normalized(lamp->u), normalized(lamp->v)));
+    const LightExtent lamp = extent(light);
+    if (!lamp.facing || world.boxes.empty()) continue;
+    const Vec3d normal = *lamp.facing;
     const bool is_behind = std::ranges::all_of(world.boxes, [&](const Bounds& box) {
       const Vec3d farthest{normal.x > 0 ? box.high.x : box.low.x, normal.y > 0 ? box.high.y : box.low.y,
                            normal.z > 0 ? box.high.z : box.low.z};
-      return dot(normal, farthest - lamp->corner) <= 0;
+      return dot(normal, farthest - *lamp.center) <= 0;
     });
     if (is_behind)
       texts.push_back(

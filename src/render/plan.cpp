@@ -8,7 +8,7 @@
 #include <set>
 
 #include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/render.h"
 #include "opaline/render/surface_caches.h"
@@ -247,8 +247,8 @@ Plan make_plan(const Scene& scene, const World& world) {
     plan.warnings.push_back("the scene has no shapes: the picture shows its surroundings");
   if (scene.lights.empty()) plan.warnings.push_back("the scene has no lights: the picture is black");
   for (std::string& text : lamps_turned_away(scene, world)) plan.warnings.push_back(std::move(text));
-  // Measured: the libraries; for pixels that are not empty 26 floats of layers, and 15 to 23 bytes on their way into
-  // the layers and to the file.
+  // Measured: the libraries; for pixels that are not empty 26 floats of layers, and 15 to 23 bytes on their
+  // way into the layers and to the file.
   const std::size_t seen = seen_pixels(scene, world);
   plan.bytes = 70'000'000 + seen * 136;
   for (const Mesh& mesh : world.meshes) {

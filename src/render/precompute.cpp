@@ -7,21 +7,9 @@
 
 #include "evaluate/cloud_error.h"
 #include "opaline/core/random.h"
-#include "opaline/irradiance/light_sampling.h"
-#include "opaline/render/surface_caches.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
-namespace {
-
-void add_cost(StageCost& total, const StageCost& part) {
-  total.wall_seconds += part.wall_seconds;
-  total.cpu_seconds += part.cpu_seconds;
-  total.system_seconds += part.system_seconds;
-  total.peak_memory = std::max(total.peak_memory, part.peak_memory);
-}
-
-}  // namespace
-
 std::uint64_t sampling_seed(const Settings& settings, std::size_t group) {
   return hash_bits(settings.seed, group);
 }
@@ -81,7 +69,7 @@ namespace {
 constexpr int kFewRays = 8;
 
 // LightTransfer::edge_shift of all lights together, as far as it is due to chance.
-std::array<float, 3> light_shift(const TranslucentGroup& group, const World& world, const Scene& scene) {
+std::array<float, 3> light_shift(const Body& group, const World& world, const Scene& scene) {
   const std::vector<Light> lights = recentred_lights(scene, world);  // as the weights are
   std::array<double, 3> shift{}, sum{};
   for (std::size_t l = 0; l < group.transfers.size(); ++l) {
@@ -103,7 +91,7 @@ std::array<float, 3> light_shift(const TranslucentGroup& group, const World& wor
 
 }  // namespace
 
-CloudError cloud_error(const TranslucentGroup& group, const World& world, const Scene& scene) {
+CloudError cloud_error(const Body& group, const World& world, const Scene& scene) {
   const Settings& settings = scene.settings;
   const auto kernel = [&](double spacing) {
     return make_split_kernel(group.profile, spacing, world.diagonal, settings.near_field,
@@ -116,48 +104,8 @@ CloudError cloud_error(const TranslucentGroup& group, const World& world, const 
   return error;
 }
 
-Precompute precompute(const PrecomputeInput& input) {
-  const std::vector<Light> lights = recentred_lights(input.scene, input.world);
-  Precompute result;
-  StageCost sampling{"sampling"}, irradiance{"irradiance"}, octree{"octree"};
-  for (std::size_t g = 0; g < input.plan.groups.size(); ++g) {
-    const GroupPlan& plan = input.plan.groups[g];
-    const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
-    const Stopwatch sampling_watch;
-    SurfaceSamples surface = place_samples(input, g);
-    add_cost(sampling, sampling_watch.cost({}));
-
-    const Stopwatch kernel_watch;
-    SplitKernel kernel = group_kernel(profile, surface, input.world, input.scene.settings);
-    TranslucentGroup group{plan, profile, std::move(surface), {}, {}, {}, std::move(kernel)};
-    add_cost(octree, kernel_watch.cost({}));
-
-    const Stopwatch irradiance_watch;
-    group.transfers = light_samples(input, g, group.surface.samples, lights);
-    group.irradiance = combine_lights(group.transfers, lights);
-    add_cost(irradiance, irradiance_watch.cost({}));
-
-    const Stopwatch octree_watch;
-    group.octree = gather_flux(group.surface.samples, group.irradiance);
-    group.cloud = cloud_error(group, input.world, input.scene);
-    add_cost(octree, octree_watch.cost({}));
-    result.groups.push_back(std::move(group));
-  }
-  result.costs = {sampling, irradiance, octree};
-  const Stopwatch exitance_watch;
-  const std::vector<std::size_t> most = most_cache_places(input, result.groups);
-  bool made = false;
-  for (std::size_t g = 0; g < most.size(); ++g) {
-    result.groups[g].surface_cache = make_group_cache(input, result.groups[g], most[g]);
-    made = made || result.groups[g].surface_cache;
-  }
-  if (made) result.costs.push_back(exitance_watch.cost("exitance"));
-  return result;
-}
-
-std::vector<RgbF> radiant_exitance(const TranslucentGroup& group, const World& world,
-                                   std::span<const Vec3d> points, std::span<const Vec3f> normals,
-                                   const Settings& settings) {
+std::vector<RgbF> radiant_exitance(const Body& group, const World& world, std::span<const Vec3d> points,
+                                   std::span<const Vec3f> normals, const Settings& settings) {
   std::vector<Query> queries(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     queries[i] = {Vec3f(into_world(world, points[i])), normals[i]};

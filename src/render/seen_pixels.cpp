@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "opaline/render/render.h"
 #include "render/camera_rays.h"
 

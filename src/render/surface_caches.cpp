@@ -36,8 +36,7 @@ std::vector<double> expected_points(const PrecomputeInput& input) {
   return points;
 }
 
-bool is_worth_beginning(const PrecomputeInput& input, const TranslucentGroup& group,
-                        std::size_t most_places) {
+bool is_worth_beginning(const PrecomputeInput& input, const Body& group, std::size_t most_places) {
   return most_places > 0 && double(least_cache_places(input.world, group.plan.meshes, group.kernel)) <=
                                 kBegin / kMost * double(most_places);
 }
@@ -51,8 +50,8 @@ std::size_t most_wanted_places(const GroupPlan& group, const World& world) {
   return kOfVertex * vertices + kOfSample * group.samples;
 }
 
-std::vector<std::size_t> most_cache_places(const PrecomputeInput& input,
-                                           std::span<const TranslucentGroup> groups, std::size_t pictures) {
+std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::span<const Body> groups,
+                                           std::size_t pictures) {
   const EvaluatorKind evaluator = input.scene.settings.evaluator;
   std::vector<std::size_t> most(groups.size());
   if (evaluator == EvaluatorKind::surface_cache)
@@ -65,12 +64,12 @@ std::vector<std::size_t> most_cache_places(const PrecomputeInput& input,
   return most;
 }
 
-bool may_use(const SurfaceCache& cache, const PrecomputeInput& input, const TranslucentGroup& group,
+bool may_use(const SurfaceCache& cache, const PrecomputeInput& input, const Body& group,
              std::size_t most_places) {
   return is_worth_beginning(input, group, most_places) && cache.places() <= most_places;
 }
 
-std::optional<SurfaceCache> make_group_cache(const PrecomputeInput& input, const TranslucentGroup& group,
+std::optional<SurfaceCache> make_group_cache(const PrecomputeInput& input, const Body& group,
                                              std::size_t most_places) {
   if (!is_worth_beginning(input, group, most_places)) return {};
   const Settings& settings = input.scene.settings;

@@ -19,10 +19,9 @@ void append(std::string& bytes, const T& value) {
 
 }  // namespace
 
-void write_samples_ply(const std::string& path, std::span<const TranslucentGroup> groups,
-                       const World& world) {
+void write_samples_ply(const std::string& path, std::span<const Body> groups, const World& world) {
   std::size_t count = 0;
-  for (const TranslucentGroup& group : groups) count += group.surface.samples.size();
+  for (const Body& group : groups) count += group.surface.samples.size();
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment opaline samples: mm, mm^2, W/mm^2\nelement vertex {}\n"
       "property double x\nproperty double y\nproperty double z\n"
@@ -30,7 +29,7 @@ void write_samples_ply(const std::string& path, std::span<const TranslucentGroup
       "property float irradiance_r\nproperty float irradiance_g\nproperty float irradiance_b\n"
       "property uint shape\nend_header\n",
       count);
-  for (const TranslucentGroup& group : groups)
+  for (const Body& group : groups)
     for (std::size_t i = 0; i < group.surface.samples.size(); ++i) {
       const SurfaceSample& s = group.surface.samples[i];
       append(bytes, out_of_world(world, Vec3d(s.position)));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/scene/load_scene.h"
 
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "geometry/formats/mesh_format.h"
 #include "scene/keyed_values.h"
 #include "scene/overrides.h"
 #include "scene/readers.h"
@@ -36,14 +36,11 @@ std::string read_text(const std::string& path) {
 
 /// A mesh needs a light and a camera to be seen.
 void check_is_no_mesh(const std::string& path) {
-  const std::filesystem::path file(path);
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-  for (const char* mesh : {".obj", ".ply", ".stl", ".off"})
-    if (extension == mesh)
-      throw bad_file(path, "is a mesh, not a scene",
-                     "a scene file (JSON) with \"shapes\": [{\"file\": \"" +
-                         printable(file.filename().string()) + "\"}], as scenes/bunny-marble.json");
+  if (find_mesh_format(path) == nullptr) return;
+  throw bad_file(path, "is a mesh, not a scene",
+                 "a scene file (JSON) with \"shapes\": [{\"file\": \"" +
+                     printable(std::filesystem::path(path).filename().string()) +
+                     "\"}], as scenes/bunny-marble.json");
 }
 
 /// Reads the elements of a list, and rejects a name used twice.

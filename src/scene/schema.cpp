@@ -10,19 +10,45 @@
 
 #include "opaline/scene/names.h"
 #include "scene/json_tree.h"
+#include "scene/light_reader.h"
 #include "scene/presets.h"
 #include "scene/settings_table.h"
 
 namespace opaline {
 namespace {
 
-// The light that surrounds the scene is a key of its own.
-constexpr std::span<const std::string_view> kLightTypes = NameList(kLightNames).first(4);
-
 KeyInfo row(std::string_view section, std::string_view key, ValueType type, std::string_view unit,
             const Range& range, std::string default_value, std::string_view meaning,
             std::span<const std::string_view> choices = {}) {
   return {section, key, type, unit, range, std::move(default_value), meaning, choices};
+}
+
+template <class Kind>
+void add_light_rows(std::vector<KeyInfo>& rows) {
+  static const std::string section = "light." + std::string(Kind::kType);
+  std::vector<KeyInfo> keys = LightReader<Kind>::rows();
+  if (keys.empty()) return;
+  KeyInfo name{.key = "name",
+               .type = ValueType::text,
+               .default_value = "\"light0\", ...",
+               .meaning = "what layers, messages and `--set` call it"};
+  keys.insert(keys.begin() + 1, std::move(name));
+  for (KeyInfo& info : keys) {
+    info.section = section;
+    rows.push_back(std::move(info));
+  }
+}
+
+template <class... Kinds>
+std::vector<KeyInfo> light_rows(const std::variant<Kinds...>*) {
+  std::vector<KeyInfo> rows;
+  (add_light_rows<Kinds>(rows), ...);
+  static std::vector<std::string_view> types;
+  for (const KeyInfo& info : rows)
+    if (info.key == "type") types.push_back(info.section.substr(info.section.find('.') + 1));
+  for (KeyInfo& info : rows)
+    if (info.key == "type") info.choices = types;
+  return rows;
 }
 
 std::vector<KeyInfo> all_rows() {
@@ -119,29 +145,6 @@ std::vector<KeyInfo> all_rows() {
       row("shape.transform.rotate", "axis", triple, "", kFiniteNumber, "", "[x, y, z], of any length but 0"),
       row("shape.transform.rotate", "degrees", number, "degrees", kFiniteNumber, "",
           "counter-clockwise when the axis points at you"),
-      row("light.point", "type", choice, "", kFiniteNumber, "", "`\"point\"`", kLightTypes),
-      row("light.point", "name", text, "", kFiniteNumber, "\"light0\", ...",
-          "what layers, messages and `--set` call it"),
-      row("light.point", "position", point, "", kFiniteNumber, "", "where it is"),
-      row("light.point", "intensity", color, "W/sr", kNonNegative, "", "brightness in every direction"),
-      row("light.directional", "type", choice, "", kFiniteNumber, "", "`\"directional\"`: a sun",
-          kLightTypes),
-      row("light.directional", "name", text, "", kFiniteNumber, "", "as above"),
-      row("light.directional", "direction", triple, "", kFiniteNumber, "",
-          "the way its light travels, of any length but 0"),
-      row("light.directional", "irradiance", color, "W/mm²", kNonNegative, "", "on a surface that faces it"),
-      row("light.sphere", "type", choice, "", kFiniteNumber, "", "`\"sphere\"`: a glowing ball", kLightTypes),
-      row("light.sphere", "name", text, "", kFiniteNumber, "", "as above"),
-      row("light.sphere", "center", point, "", kFiniteNumber, "", "its centre"),
-      row("light.sphere", "radius", length, "", kFiniteNumber, "", "its radius"),
-      row("light.sphere", "radiance", color, "W/(mm² sr)", kNonNegative, "", "brightness of its surface"),
-      row("light.quad", "type", choice, "", kFiniteNumber, "",
-          "`\"quad\"`: a flat lamp, shining on the side where u x v points", kLightTypes),
-      row("light.quad", "name", text, "", kFiniteNumber, "", "as above"),
-      row("light.quad", "corner", point, "", kFiniteNumber, "", "one corner"),
-      row("light.quad", "u", point, "", kFiniteNumber, "", "from it along one side"),
-      row("light.quad", "v", point, "", kFiniteNumber, "", "from it along the other, not parallel to `u`"),
-      row("light.quad", "radiance", color, "W/(mm² sr)", kNonNegative, "", "brightness of its surface"),
       row("camera", "position", point, "", kFiniteNumber, "[0, 0, 5]", "of the eye"),
       row("camera", "look_at", point, "", kFiniteNumber, "[0, 0, 0]",
           "the point in the middle of the picture"),
@@ -149,6 +152,9 @@ std::vector<KeyInfo> all_rows() {
           "what is up in the picture; not along the view"),
       row("camera", "field_of_view", number, "degrees", {0, 180, true, true}, "40", "full vertical angle"),
   };
+  const auto camera = std::ranges::find(rows, "camera", &KeyInfo::section);
+  const std::vector<KeyInfo> lights = light_rows(static_cast<const LightSource*>(nullptr));
+  rows.insert(camera, lights.begin(), lights.end());
   for (const Member<Film>& member : film_members()) rows.push_back(member.info);
   for (const Member<Settings>& member : settings_members()) rows.push_back(member.info);
   return rows;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "opaline/core/parallel.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "render/layers.h"
 
 namespace opaline {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "opaline/render/surface_caches.h"
+#include "session/body_keys.h"
 #include "session/light_mix.h"
-#include "session/session_part.h"
 #include "session/shape_key.h"
 
 namespace opaline {
@@ -121,10 +121,10 @@ World Session::loaded_world(const Scene& scene, const std::vector<StageKey>& sou
 void Session::anchor(Scene scene, Monitor* monitor) {
   scene.settings.method = Method::hierarchical;
   edit(std::move(scene));
-  parts_ = arranged_parts();
+  arrange_bodies();
   bring_rays();
-  for (std::size_t g = 0; g < parts_.size(); ++g)
-    bring_samples(parts_[g], {scene_, *world_, *rays_, plan_, monitor}, g);
+  for (std::size_t g = 0; g < bodies_.size(); ++g)
+    bring_samples(bodies_[g], keys_[g], {scene_, *world_, *rays_, plan_, monitor}, g);
   anchored_ = true;
 }
 
@@ -134,15 +134,15 @@ void Session::keep_spacing() {
   const Settings& settings = scene_.settings;
   if (settings.samples) return;
   for (GroupPlan& group : plan_.groups) {
-    const auto part = std::ranges::find_if(parts_, [&](const Part& p) { return p.plan.name == group.name; });
-    if (part == parts_.end() || part->origin.count == 0 || part->origin.count == group.samples ||
-        part->origin.count_was_set || part->origin.spacing_setting != settings.sample_spacing ||
-        has_outgrown(part->origin, group, settings))
+    const auto body = std::ranges::find_if(bodies_, [&](const Body& b) { return b.plan.name == group.name; });
+    if (body == bodies_.end()) continue;
+    const SampleOrigin& origin = keys_[std::size_t(body - bodies_.begin())].origin;
+    if (origin.count == 0 || origin.count == group.samples || origin.count_was_set ||
+        origin.spacing_setting != settings.sample_spacing || has_outgrown(origin, group, settings))
       continue;
-    const double asked = group.area / double(group.samples),
-                 there = part->origin.area / double(part->origin.count);
+    const double asked = group.area / double(group.samples), there = origin.area / double(origin.count);
     if (asked > kDensest * kDensest * there || there > kSparsest * kSparsest * asked) continue;
-    group.samples = part->origin.count;
+    group.samples = origin.count;
     group.spacing = std::sqrt(group.area / double(group.samples));
     group.reason = "as many as there are: near enough to " + group.reason;
   }
@@ -163,35 +163,29 @@ Image Session::first_light(Monitor* monitor) {
 void Session::prepare(Monitor* monitor) {
   if (prepared_) return;
   prepare_rays();
-  const auto timed = [&](const char* stage, const auto& work) {
-    const Stopwatch watch;
-    work();
-    costs_.push_back(watch.cost(stage));
-  };
   prepared_ = !is_needed();
   if (prepared_) return;
-  parts_ = arranged_parts();
+  arrange_bodies();
   const PrecomputeInput input{scene_, *world_, *rays_, plan_, monitor};
   const std::vector<Light> lights = recentred_lights(scene_, *world_);
-  const auto each = [&](const auto& work) {
-    for (std::size_t g = 0; g < parts_.size(); ++g) work(parts_[g], g);
+  const auto each = [&](const char* stage, const auto& work) {
+    const Stopwatch watch;
+    for (std::size_t g = 0; g < bodies_.size(); ++g) work(bodies_[g], keys_[g], g);
+    costs_.push_back(watch.cost(stage));
   };
-  timed("sampling", [&] { each([&](Part& part, std::size_t g) { bring_samples(part, input, g); }); });
-  timed("irradiance",
-        [&] { each([&](Part& part, std::size_t g) { bring_lights(part, input, g, lights); }); });
-  timed("octree", [&] {
-    each([&](Part& part, std::size_t) {
-      bring_tree(part, lights);
-      bring_kernel(part);
-    });
+  each("sampling", [&](Body& body, BodyKeys& known, std::size_t g) { bring_samples(body, known, input, g); });
+  each("irradiance",
+       [&](Body& body, BodyKeys& known, std::size_t g) { bring_lights(body, known, input, g, lights); });
+  each("octree", [&](Body& body, BodyKeys& known, std::size_t) {
+    bring_tree(body, known, lights);
+    bring_kernel(body, known);
+    body.cloud = cloud_error(body, *world_, scene_);
   });
-  assemble();
-  const std::vector<std::size_t> most = most_cache_places(input, groups_, pictures_);
-  const Stopwatch exitance;
-  for (std::size_t g = 0; g < groups_.size(); ++g) bring_exitance(parts_[g], groups_[g], input, most[g]);
-  if (std::ranges::any_of(groups_,
-                          [](const TranslucentGroup& group) { return group.surface_cache.has_value(); }))
-    costs_.push_back(exitance.cost("exitance"));
+  const std::vector<std::size_t> most = most_cache_places(input, bodies_, pictures_);
+  each("exitance",
+       [&](Body& body, BodyKeys& known, std::size_t g) { bring_exitance(body, known, input, most[g]); });
+  if (std::ranges::none_of(bodies_, [](const Body& body) { return body.surface_cache.has_value(); }))
+    costs_.pop_back();
   prepared_ = true;
 }
 
@@ -209,7 +203,7 @@ RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
       return result;
     }
   }
-  RenderResult result = opaline::render({scene_, *world_, *rays_, groups_, monitor, after_tile, view});
+  RenderResult result = opaline::render({scene_, *world_, *rays_, bodies_, monitor, after_tile, view});
   work_.queries += result.queries;
   return result;
 }
@@ -224,14 +218,14 @@ void Session::ready_light_mix(Monitor* monitor) {
 /// After prepare.
 bool Session::can_mix() const {
   return mixes_lights_ &&
-         std::ranges::none_of(groups_, [](const TranslucentGroup& g) { return g.surface_cache.has_value(); });
+         std::ranges::none_of(bodies_, [](const Body& g) { return g.surface_cache.has_value(); });
 }
 
 /// The picture of a scene that differs by its lights' colours.
 Image Session::recoloured(const Scene& scene, HeldView& view, Monitor* monitor) {
   const std::vector<Light> lights = recentred_lights(scene, *world_);
-  std::vector<TranslucentGroup> groups;
-  for (const TranslucentGroup& group : groups_) {
+  std::vector<Body> groups;
+  for (const Body& group : bodies_) {
     const std::vector<RgbF> irradiance = combine_lights(group.transfers, lights);
     groups.push_back({group.plan,
                       group.profile,
@@ -291,43 +285,30 @@ void Session::bring_rays() {
   rays_keys_ = mesh_keys_;
 }
 
-/// A part for each group of the plan, by name; what groups_ held is theirs again.
-std::vector<Session::Part> Session::arranged_parts() {
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    Part& part = parts_[g];
-    TranslucentGroup& group = groups_[g];
-    part.surface = std::move(group.surface);
-    part.transfers = std::move(group.transfers);
-    part.irradiance = std::move(group.irradiance);
-    part.octree = std::move(group.octree);
-    part.kernel = std::move(group.kernel);
-    if (group.surface_cache) part.surface_cache = std::move(group.surface_cache);
-  }
-  groups_.clear();
-  std::vector<Part> parts(plan_.groups.size());
-  for (std::size_t g = 0; g < parts.size(); ++g) {
+/// A body for each group of the plan, with what is known of the one of the same name.
+void Session::arrange_bodies() {
+  std::vector<Body> bodies(plan_.groups.size());
+  std::vector<BodyKeys> keys(plan_.groups.size());
+  for (std::size_t g = 0; g < bodies.size(); ++g) {
     const GroupPlan& plan = plan_.groups[g];
     const auto old = std::ranges::find_if(
-        parts_, [&](const Part& p) { return p.plan.name == plan.name && p.plan.shared == plan.shared; });
-    if (old != parts_.end()) {
-      parts[g] = std::move(*old);
+        bodies_, [&](const Body& b) { return b.plan.name == plan.name && b.plan.shared == plan.shared; });
+    if (old != bodies_.end()) {
+      keys[g] = std::move(keys_[std::size_t(old - bodies_.begin())]);
+      bodies[g] = std::move(*old);
       old->plan.name.clear();
+      if (bodies[g].surface_cache) keys[g].spare_cache = std::move(bodies[g].surface_cache);
+      bodies[g].surface_cache.reset();
     }
-    parts[g].plan = plan;
-    parts[g].profile = make_diffuse_profile(scene_.media[plan.medium], world_->unit);
+    bodies[g].plan = plan;
+    bodies[g].profile = make_diffuse_profile(scene_.media[plan.medium], world_->unit);
   }
-  return parts;
+  bodies_ = std::move(bodies);
+  keys_ = std::move(keys);
 }
 
-void Session::assemble() {
-  for (Part& part : parts_)
-    groups_.push_back({part.plan, part.profile, std::move(part.surface), std::move(part.transfers),
-                       std::move(part.irradiance), std::move(part.octree), std::move(*part.kernel)});
-  for (TranslucentGroup& group : groups_) group.cloud = cloud_error(group, *world_, scene_);
-}
-
-void Session::decide(const Part& part, const std::string& text) {
-  decisions_.push_back(part.plan.name + ": " + text);
+void Session::decide(const Body& body, const std::string& text) {
+  decisions_.push_back(body.plan.name + ": " + text);
 }
 
 }  // namespace opaline

@@ -7,7 +7,8 @@
 
 namespace opaline {
 
-/// Of the file's bytes or the built-in shape's measures. error Error{bad_input} naming a mesh file that is
+/// Of the file's bytes or the built-in shape's measures.
+/// error Error{bad_input} naming a mesh file that is
 /// none
 StageKey source_key(const Shape& shape);
 

@@ -29,8 +29,8 @@ TEST(Csv, RoundTrip) {
 }
 
 // Claim: a text that a spreadsheet would run as a formula is written behind an apostrophe and read without
-// it; figures with a sign stay figures; a note is one cell. Source: csv.h. Fails if: a scene named =1+1.json opens as 2,
-// or -1.5 as text, or a note's comma makes two cells.
+// it; figures with a sign stay figures; a note is one cell. Source: csv.h. Fails if: a scene named =1+1.json
+// opens as 2, or -1.5 as text, or a note's comma makes two cells.
 TEST(Csv, NamesAreNoFormulas) {
   const std::vector<std::string> cells{"=1+1.json", "+a",   "-a",   "@a",   "\t=a",
                                        "'=a",       "-1.5", "-inf", "it's", "'"};

@@ -15,9 +15,9 @@ Settings settings_with(const std::vector<std::string>& overrides) {
 }
 
 // Claim: the five parts of the error (the table in README.md); the two pictures of a part differ in what it
-// names and in nothing else: samples 16 times as many (and the cap with them; light samples so that as many rays are traced), light
-// samples, the exact sum, the near field, the cache. By hand. Fails if: a part's own setting is misspelt (a
-// scene refuses it), or a second one slips in.
+// names and in nothing else: samples 16 times as many (and the cap with them; light samples so that as many
+// rays are traced), light samples, the exact sum, the near field, the cache. By hand. Fails if: a part's own
+// setting is misspelt (a scene refuses it), or a second one slips in.
 TEST(ErrorBudget, OneSettingApart) {
   const std::vector<BudgetPart> parts = error_budget(1000, {});
   std::set<std::string> names;

@@ -89,7 +89,7 @@ TEST(Page, ChartAndText) {
 
 // Claim: the answer before the figures says what an error of 1 % costs and how many times as long direct
 // takes to the same error. By hand: classic reaches 1 % at 8 s, lambert takes 1 s; direct has 8 % after 2 s
-// of shading and 2 of the rest, so 1 % after 2 + 64 * 2 = 130 s. Source: the issue. Fails if: the whole job
+// of shading and 2 of the rest, so 1 % after 2 + 64 * 2 = 130 s. Source: by hand. Fails if: the whole job
 // of direct is scaled, or the ratio is to lambert.
 TEST(Page, AnswerHasTheSpeedUpOverDirect) {
   const std::string page = to_page(small_report());

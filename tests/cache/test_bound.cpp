@@ -34,8 +34,9 @@ struct BoundedCache : ScratchFolder {
   }
 };
 
-// Claim: a new entry makes room for itself; what was read last stays, though written first. Source: the issue
-// ("bounded in size, least recently used"). Fails if: reading does not count as use, or the oldest go last.
+// Claim: a new entry makes room for itself; what was read last stays, though written first. Source:
+// stage_cache.h ("bounded in size, least recently used"). Fails if: reading does not count as use, or the
+// oldest go last.
 TEST(CacheBound, LeastRecentlyUsedGo) {
   const BoundedCache folder(4);
   StageCache cache(folder.path.string(), 3 * folder.one);

@@ -105,7 +105,7 @@ struct Spoiled : ScratchFolder {
 };
 
 // Claim: one bit flipped anywhere is noticed before the file is parsed, and the warning names the file.
-// Source: the issue ("one bit flipped at every 4 KiB"); here also every byte of the header. Tolerance: none.
+// Source: stage_cache.h; here also every byte of the header. Tolerance: none.
 // Fails if: the hash leaves something out; the header's zeros are not compared.
 TEST(CacheEntries, FlippedBits) {
   const Spoiled spoiled;
@@ -124,7 +124,7 @@ TEST(CacheEntries, FlippedBits) {
   EXPECT_GT(checked, 1180u);
 }
 
-// Claim: what is not this entry is said by name and reason and not parsed. Source: the issue. Fails if: a
+// Claim: what is not this entry is said by name and reason and not parsed. Source: stage_cache.h. Fails if: a
 // reason is lost, or HDF5 is asked first (its own file without a header is foreign).
 TEST(CacheEntries, NotThisEntry) {
   const Spoiled spoiled;
@@ -160,8 +160,8 @@ TEST(CacheEntries, NotThisEntry) {
   EXPECT_NE(cache.warning().find("is not a regular file"), std::string::npos) << cache.warning();
 }
 
-// Claim: several bad entries are one warning, and each is replaced by the next result. Source: the issue ("in
-// one warning, recomputed"). Fails if: keep leaves an entry that exists.
+// Claim: several bad entries are one warning, and each is replaced by the next result. Source: stage_cache.h.
+// Fails if: keep leaves an entry that exists.
 TEST(CacheEntries, BadOnesAreReplaced) {
   const Spoiled spoiled;
   put_bytes(spoiled.entry, "x");

@@ -98,7 +98,8 @@ testing::AssertionResult is_whole_or_none(const KilledWriters& killed, int times
 }
 
 // Claim: kill -9 at any moment of a write leaves a whole entry or none, and the next writer is not held up.
-// Source: the issue. Tolerance: none; that kills hit before and after the rename is asked for, too. Fails if:
+// Source: stage_cache.h. Tolerance: none; that kills hit before and after the rename is asked for, too. Fails
+// if:
 // entries are written under their own name.
 TEST(CacheFaults, KilledWriters) {
   EXPECT_TRUE(is_whole_or_none(kill_writers(100), 100));
@@ -108,8 +109,8 @@ TEST(LongCacheFaults, KilledWriters) {
 }
 
 // Claim: a disk that fills up at any point of the write leaves the old entry or none and nothing beside it,
-// says so once, and HDF5 keeps nothing open. Source: the issue; FullDisk. Fails if: a result of HDF5 or of
-// the header's write is not looked at.
+// says so once, and HDF5 keeps nothing open. Source: stage_cache.h; FullDisk. Fails if: a result of HDF5 or
+// of the header's write is not looked at.
 TEST(CacheFaults, FullDisk) {
   const ScratchFolder folder;
   const SurfaceSamples samples = some_samples(4000);
@@ -134,7 +135,7 @@ TEST(CacheFaults, FullDisk) {
 }
 
 // Claim: from a folder that may not be written entries are read; what is new is said not to be kept. Source:
-// the issue. Root may write everywhere, so it becomes nobody. Fails if: a hit must be marked as used.
+// stage_cache.h. Root may write everywhere, so it becomes nobody. Fails if: a hit must be marked as used.
 TEST(CacheFaults, ReadOnlyFolder) {
   const ScratchFolder folder;
   StageCache(folder.path.string()).keep_samples(key(1), some_samples(100), kMeshes);
@@ -162,8 +163,8 @@ TEST(CacheFaults, NoFolder) {
 }
 
 // Claim: processes that fill one small cache with the same entries at once, while others go for room, find
-// whole entries or none and complain of nothing. Source: the issue. Fails if: temporaries share a name, or a
-// vanished file is an error.
+// whole entries or none and complain of nothing. Source: stage_cache.h. Fails if: temporaries share a name,
+// or a vanished file is an error.
 TEST(CacheFaults, TwoProcesses) {
   const ScratchFolder folder;
   const auto fill = [&] {

@@ -20,7 +20,7 @@ TEST(StageVersions, ComputeWhatTheyDid) {
   scene.shapes.push_back(blocker);
   scene.lights = {point_light({0, 40, 30}, {1, 2, 3})};
   const Prepared box(scene);
-  const TranslucentGroup& group = box.pre.groups[0];
+  const Body& group = box.bodies[0];
 
   KeyBuilder samples("samples", 0), light("light", 0), tree("tree", 0);
   samples.add_array(std::span(group.surface.samples));

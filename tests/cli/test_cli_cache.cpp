@@ -31,8 +31,8 @@ bool is_all_from_the_cache(const Outcome& outcome) {
 }
 
 // Claim: with a cache, cold or warm, the bytes of the pictures are those without; a warm run takes all from
-// it, and says so. Source: the issue. Fails if: an entry is not found again by another process, or the
-// metadata tells of the cache.
+// it, and says so. Source: the help of cache. Fails if: an entry is not found again by another process, or
+// the metadata tells of the cache.
 TEST(CliCache, WarmRunIsTheSame) {
   const CachedScene folder;
   ASSERT_EQ(run_program({"render", folder.scene, "-o", folder.file("plain.exr"), "--quiet"}).exit_code, 0);
@@ -67,8 +67,8 @@ TEST(CliCache, DamageIsSaidAndMended) {
   EXPECT_EQ(run_program({"cache", "verify", folder.cache}).exit_code, 0);
 }
 
-// Claim: a full disk costs the cache, not the picture: exit 0 and a warning. Source: the issue. The limit
-// holds the EXR of 32 x 32 pixels but not the samples. Fails if: keep throws.
+// Claim: a full disk costs the cache, not the picture: exit 0 and a warning. Source: the help of cache. The
+// limit holds the EXR of 32 x 32 pixels but not the samples. Fails if: keep throws.
 TEST(CliCache, FullDiskCostsNoPicture) {
   const CachedScene folder;
   const Outcome outcome =

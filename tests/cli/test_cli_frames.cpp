@@ -180,7 +180,8 @@ TEST(CliFrames, Resumes) {
   EXPECT_EQ(rendered("1-4"), 1u);
 }
 
-// Claim: a bad frame is named, the others are rendered, and the exit code is 3. Source: the issue. Fails if:
+// Claim: a bad frame is named, the others are rendered, and the exit code is 3. Source: the help of render.
+// Fails if:
 // the first failure ends the run, or is forgotten.
 TEST(CliFrames, OneBadFrame) {
   const Shot shot;

@@ -29,8 +29,8 @@ TEST(CliInfo, PlanAsTextAndJson) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-// Claim: the model's error in a thin plate is said, beside random walks; not where a plate is thick, or a body is
-// none. Fails if: the truth is left out, or a ball is taken for a plate.
+// Claim: the model's error in a thin plate is said, beside random walks; not where a plate is thick, or a
+// body is none. Fails if: the truth is left out, or a ball is taken for a plate.
 TEST(CliInfo, ModelErrorOfPlates) {
   const std::string plate = std::string(OPALINE_SCENES_DIR) + "/backlit-slab.json";
   const Outcome thin = run_program({"info", plate});

@@ -52,8 +52,8 @@ double mean(const std::vector<float>& values) {
 
 // Claim: with partial pictures and a viewer the files' bytes are those without. The viewer has the picture
 // created once, then two coarse ones of nearly the brightness of the last, then tiles, and in the end what
-// the file holds. Source: the issue; tev's protocol as its src/Ipc.cpp reads it. Fails if: a packet's length
-// leaves itself out; the last tiles are not sent; the refinement changes what is rendered.
+// the file holds. Source: the help of render; tev's protocol as its src/Ipc.cpp reads it. Fails if: a
+// packet's length leaves itself out; the last tiles are not sent; the refinement changes what is rendered.
 TEST(CliPartial, ViewerEndsWithThePicture) {
   const PartialScene ball;
   ASSERT_EQ(ball.render({"-o", ball.png}).exit_code, 0);
@@ -81,7 +81,8 @@ TEST(CliPartial, ViewerEndsWithThePicture) {
   EXPECT_NE(picture.whole[0], picture.whole[1]);
 }
 
-// Claim: a crop's pixels lie where the file has them; each frame has a picture of its own. Source: the issue.
+// Claim: a crop's pixels lie where the file has them; each frame has a picture of its own. Source: the help
+// of render.
 // Fails if: a tile's place is that in the whole picture.
 TEST(CliPartial, CropAndFrames) {
   const PartialScene ball;

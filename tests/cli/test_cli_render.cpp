@@ -189,9 +189,9 @@ TEST(CliRender, JsonLog) {
 }
 
 #ifndef __SANITIZE_ADDRESS__  // which takes memory of its own
-// Claim: the plan's memory is an upper bound, and at most 1.3 times what is taken, for small and large pictures, all
-// layers, area lights and a plate. Fails if: empty pixels count (1.7 at 2048 x 2048), or what is on its way into the
-// file does not (.95).
+// Claim: the plan's memory is an upper bound, and at most 1.3 times what is taken, for small and large
+// pictures, all layers, area lights and a plate. Fails if: empty pixels count (1.7 at 2048 x 2048), or what
+// is on its way into the file does not (.95).
 TEST(CliRender, PlansTheMemoryItTakes) {
   const std::string scenes = std::string(OPALINE_SCENES_DIR) + "/";
   const std::vector<std::vector<std::string>> jobs{

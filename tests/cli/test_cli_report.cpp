@@ -45,7 +45,7 @@ std::string record(const SceneFolder& folder, const std::string& name) {
 // Claim: a report holds its page, its figures twice, the parts of the error, and for each rung an EXR, its
 // PNG and its error's; the error of each rung is what `opaline compare --halves` says of the EXR it kept. A
 // second time nothing is run again but what was damaged, and the same folder is no worse than itself.
-// Source: the help of bench; the issue. Tolerance: seven digits of the CSV. Fails if: the picture kept is not
+// Source: the help of bench. Tolerance: seven digits of the CSV. Fails if: the picture kept is not
 // the one measured (another rung's, or rounded to half), or a run's record is not looked at.
 TEST(CliReport, FolderIsWholeAndKept) {
   const SceneFolder folder;
@@ -147,8 +147,8 @@ TEST(CliReport, CannotBeWritten) {
 }
 
 // Claim: an interruption leaves the old page as it was and what is finished as whole records, which the next
-// run takes up. Source: the issue. Fails if: the page is opened for writing at the start, or records are
-// written in place.
+// run takes up. Source: the help of bench. Fails if: the page is opened for writing at the start, or records
+// are written in place.
 TEST(CliReport, InterruptedGoesOn) {
   const SceneFolder folder;
   const std::vector<std::string> line =
@@ -190,9 +190,9 @@ std::map<std::string, double> parts_with(const SceneFolder& folder,
 // Claim: what is spoilt shows in the part where it belongs and not in the others: a coarse tree in the
 // hierarchy, few rays to the lamp in the irradiance, few samples in the sampling. Sampling and irradiance are
 // not told apart wholly: fewer samples average less of the rays' noise, and 2 rays from a shading point are
-// noise that no number of samples takes away. Source: the issue. Tolerance: at least three times the part, at
-// most twice another; measured 100, 4.8 and 5 times. Fails if: the two pictures of a part differ in something
-// else, or are those of another.
+// noise that no number of samples takes away. Source: the help of bench. Tolerance: at least three times the
+// part, at most twice another; measured 100, 4.8 and 5 times. Fails if: the two pictures of a part differ in
+// something else, or are those of another.
 TEST(LongCliReport, SpoiltPartShows) {
   const SceneFolder folder;
   const struct {
@@ -214,9 +214,10 @@ TEST(LongCliReport, SpoiltPartShows) {
 // Claim: translucency stays cheap beside plain paint: of a marble ball of 20k samples at 192 x 192 pixels the
 // shading costs at most 5 times lambert's by the dual tree and 2.5 times by the surface cache, the whole job
 // at most 3 times. Source: measured with this test's command, three times: 2.5 to 2.7, 1.2 to 1.3, 2.3 to 2.6
-// (the job of lambert is a fifth shorter since only the layers that are asked for are written); ratios of one round
-// each, so that the machine cancels. Tolerance: about twice that for the shading, for machines shared with other tests. Fails if: points are evaluated one by one (the classic traversal's shading is 9
-// times lambert's), or sampling takes three times as long.
+// (the job of lambert is a fifth shorter since only the layers that are asked for are written); ratios of one
+// round each, so that the machine cancels. Tolerance: about twice that for the shading, for machines shared
+// with other tests. Fails if: points are evaluated one by one (the classic traversal's shading is 9 times
+// lambert's), or sampling takes three times as long.
 TEST(CliReport, RatiosStaySmall) {
   const SceneFolder folder;
   const Outcome outcome =

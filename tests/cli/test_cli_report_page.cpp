@@ -84,9 +84,9 @@ void insert_before(std::string& page, const std::string& mark, const std::string
 // Claim: no error and no missing file; the slider moves the edge between picture and reference (to a quarter
 // here, within a pixel); a mark tells its figures when focused and shows its picture on Enter; each number in
 // the page is the CSV's, to the three digits it shows; the paper is light or dark as the reader prefers;
-// nothing hangs over the side. Source: the issue. Tolerance: half of the third digit, 1 % of the width. Fails
-// if: the script throws, the clip does not follow the slider, a picture's name is wrong, or a column is
-// another's.
+// nothing hangs over the side. Source: the help of bench. Tolerance: half of the third digit, 1 % of the
+// width. Fails if: the script throws, the clip does not follow the slider, a picture's name is wrong, or a
+// column is another's.
 TEST(LongCliReportPage, InABrowser) {
   const SceneFolder folder;
   ASSERT_EQ(run_program({"bench", folder.scene, "-o", folder.file("report"), "--quick", "--resolution",

@@ -66,8 +66,9 @@ TEST(MachineMemory, AContainerOfVersion1LimitsIt) {
   EXPECT_EQ(available_memory(machine.root()), 30000u);
 }
 
-// Claim: a limit of the address space counts, less what of it is taken. Source: getrlimit(2). Tolerance: a limit
-// that is higher by a part leaves that part more, but for what the heap grew by between. Fails if: only /proc is read.
+// Claim: a limit of the address space counts, less what of it is taken. Source: getrlimit(2). Tolerance: a
+// limit that is higher by a part leaves that part more, but for what the heap grew by between. Fails if: only
+// /proc is read.
 TEST(MachineMemory, AnAddressSpaceLimitCounts) {
   const FakeMachine machine;
   rlimit before{};

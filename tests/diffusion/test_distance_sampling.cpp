@@ -2,7 +2,7 @@
 // Random distances of the profiles.
 #include "diffusion/diffusion_test.h"
 #include "opaline/core/random.h"
-#include "opaline/diffusion/distance_sampling.h"
+#include "opaline/diffusion/diffuse_profile.h"
 #include "support/statistics.h"
 
 namespace opaline {

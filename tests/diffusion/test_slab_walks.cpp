@@ -11,10 +11,10 @@ namespace {
 constexpr std::size_t kWalks = 100000;
 constexpr double kTolerance = 4 * 0.5 / 316;  // four standard errors
 
-// Claim: random walks are the truth of a plate that absorbs nothing, without a boundary. Source: the heat that
-// radiation carries between black walls, Heaslet & Warming 1965 (as in Siegel & Howell, Thermal Radiation Heat
-// Transfer): .9157, .7040, .5532, .3900, .2077 at optical thickness .1, .5, 1, 2, 5. Fails if: light enters
-// other than by the cosine, or a step is not exponential.
+// Claim: random walks are the truth of a plate that absorbs nothing, without a boundary. Source: the heat
+// that radiation carries between black walls, Heaslet & Warming 1965 (as in Siegel & Howell, Thermal
+// Radiation Heat Transfer): .9157, .7040, .5532, .3900, .2077 at optical thickness .1, .5, 1, 2, 5. Fails if:
+// light enters other than by the cosine, or a step is not exponential.
 TEST(SlabWalks, ConservativePlates) {
   const std::pair<double, double> through[] = {{.1, .9157}, {.5, .7040}, {1, .5532}, {2, .3900}, {5, .2077}};
   for (const auto& [thickness, expected] : through) {
@@ -32,9 +32,9 @@ TEST(SlabWalks, BeersLaw) {
   EXPECT_EQ(light.back, 0);
 }
 
-// Claim: light is reflected inside as Fresnel says. Source: in a plate too thin to scatter, light that entered at an
-// angle with the reflectance F leaves at the far face or the near one as 1 : F, F + F^3 + ... = F / (1 + F) of it at
-// the near one; averaged here over cos Ft(cos). Fails if: eta stands upside down inside.
+// Claim: light is reflected inside as Fresnel says. Source: in a plate too thin to scatter, light that
+// entered at an angle with the reflectance F leaves at the far face or the near one as 1 : F, F + F^3 + ... =
+// F / (1 + F) of it at the near one; averaged here over cos Ft(cos). Fails if: eta stands upside down inside.
 TEST(SlabWalks, Boundaries) {
   double expected = 0, entered = 0;
   for (int i = 0; i < 10000; ++i) {

@@ -2,6 +2,7 @@
 // Runs a target over its corpus, and then over mutations of it that a seed decides, in processes of their
 // own: an input that crashes one, keeps it busy for 20 s or takes a GiB of memory is written down and named.
 //   fuzz_obj CORPUS... [--executions N] [--seconds S] [--seed K]
+#include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/time.h>
@@ -146,6 +147,8 @@ int run(const Options& options) {
 }  // namespace opaline::fuzz
 
 int main(int argc, char** argv) {
+  // A library's threads share one arena: 64 MiB of address space for each would count as memory.
+  ::mallopt(M_ARENA_MAX, 1);
   // No threads: they would not be there in the processes that are forked.
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   return opaline::fuzz::run(opaline::fuzz::options_of(argc, argv));

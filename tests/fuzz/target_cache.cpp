@@ -28,7 +28,7 @@ struct Computed {
     session.edit(parse_scene(kScene, "scene.json"));
     session.prepare();
   }
-  const TranslucentGroup& group() const { return session.groups().front(); }
+  const Body& group() const { return session.bodies().front(); }
 };
 
 StageKey hash_of(std::string_view listing, std::string_view payload) {
@@ -58,7 +58,7 @@ void look_up(const SurfaceCache& exitance, const World& world, std::uint32_t mes
 }
 
 void evaluate_with(const Octree& tree, const Computed& computed) {
-  TranslucentGroup group = computed.group();
+  Body group = computed.group();
   group.octree = tree;
   group.surface_cache.reset();
   for (const EvaluatorKind evaluator : {EvaluatorKind::dual_tree, EvaluatorKind::classic}) {
@@ -72,7 +72,7 @@ void evaluate_with(const Octree& tree, const Computed& computed) {
 
 void try_entry(const std::string& stage, StageCache& cache, const StageKey& key, const Computed& computed) {
   const World& world = computed.session.world();
-  const TranslucentGroup& group = computed.group();
+  const Body& group = computed.group();
   if (stage == "samples") cache.find_samples(key, {world, group.plan.meshes, group.plan.samples});
   if (stage == "light") cache.find_light(key, group.surface.samples.size());
   if (stage == "octree")

@@ -44,8 +44,8 @@ void expect_errors(const std::vector<BadFile>& files) {
 }
 
 // Claim: each of these is an Error{bad_input} naming the file, the line where there are lines, and what is
-// wrong. Source: the issue's list of bad input; OBJ, PLY, STL and OFF descriptions. Tolerance: none. Fails
-// if: a check of the scan is left out (OpenMesh returns true for most of these files, or aborts).
+// wrong. Source: OBJ, PLY, STL and OFF descriptions. Tolerance: none. Fails if: a check of a reader is left
+// out.
 TEST(BadMesh, Obj) {
   expect_errors({
       {"empty.obj", "", "is empty"},
@@ -144,7 +144,7 @@ TEST(BadMesh, Off) {
   });
 }
 
-// Claim: a missing file and a folder are errors of their own. Source: the issue. Tolerance: none. Fails if:
+// Claim: a missing file and a folder are errors of their own. Source: read_mesh.h. Tolerance: none. Fails if:
 // the file is opened without asking what it is (a folder opens).
 TEST(BadMesh, MissingFileAndFolder) {
   const auto error = [](const std::string& path) {
@@ -163,7 +163,7 @@ TEST(BadMesh, MissingFileAndFolder) {
 }
 
 // Claim: a PLY that claims four billion vertices or faces is refused at once, in memory that its few bytes
-// explain. Source: the issue; OpenMesh would reserve hundreds of GB. Tolerance: 1 s and 16 MB, thousands of
+// explain. Source: read_mesh.h. Tolerance: 1 s and 16 MB, thousands of
 // times what is needed and a thousandth of what is claimed. Fails if: counts are not checked against the
 // file's length first.
 TEST(BadMesh, ClaimOfFourBillionIsCheap) {
@@ -189,8 +189,8 @@ TEST(BadMesh, ClaimOfFourBillionIsCheap) {
 }
 
 // Claim: no cut and no flipped byte of a good file crashes, and what is accepted is finite and in range.
-// Source: the issue ("truncated, binary garbage"). Tolerance: none. Fails if: a scan lets through what
-// OpenMesh asserts on or reads out of range.
+// Source: read_mesh.h. Tolerance: none. Fails if: a reader trusts a
+// count or an index.
 TEST(BadMesh, CutAndDamagedFilesAreErrorsOrMeshes) {
   const std::vector<std::pair<std::string, std::string>> files{
       {"a.obj", obj(cube()) + "vn 0 0 1\nf 1//1 2//1 3//1\n"},

@@ -35,8 +35,8 @@ TEST(MeshNormals, CubeCornersPointAlongDiagonals) {
 }
 
 // Claim: normals of OBJ corners are kept where one vertex has several (flat faces stay flat), and the mesh
-// still counts as closed. Source: the brief; OpenMesh keeps the last one met. Tolerance: float rounding.
-// Fails if: the importer keeps one normal a vertex, or edges are counted without welding.
+// still counts as closed. Source: read_mesh.h. Tolerance: float rounding.
+// Fails if: the reader keeps one normal a vertex, or edges are counted without welding.
 TEST(MeshNormals, ObjCornersKeepTheirOwn) {
   const Soup soup = cube();
   std::string text;

@@ -31,8 +31,8 @@ void expect_scaled(const CheckedMesh& mesh, const CheckedMesh& scaled, double sc
     ASSERT_EQ(mesh.mesh.positions[v] * scale, scaled.mesh.positions[v]);
 }
 
-// Claim: as the file's name says, for repair, hole filling and normals alike. By hand: scaling by a power of two
-// rounds nothing. Tolerance: none. Fails if: any threshold is an absolute length, area or volume.
+// Claim: as the file's name says, for repair, hole filling and normals alike. By hand: scaling by a power of
+// two rounds nothing. Tolerance: none. Fails if: any threshold is an absolute length, area or volume.
 TEST(MeshScale, PowersOfTwoAreExact) {
   const Soup soup = troubled();
   const CheckedMesh mesh = load(soup, true);

@@ -42,9 +42,10 @@ Image truth_of(Scene scene) {
   return cold_picture(scene);
 }
 
-// Claim: the measured error is at most the target, and the predicted one is within a factor 2.5 of it. Source:
-// target_error.h. The truth is off by less than a fifth of the least target here. Fails if: samples are not added
-// where the first guess is too few, or the scene's own samples or tolerance stay.
+// Claim: the measured error is at most the target, and the predicted one is within a factor 2.5 of it.
+// Source:
+// target_error.h. The truth is off by less than a fifth of the least target here. Fails if: samples are not
+// added where the first guess is too few, or the scene's own samples or tolerance stay.
 TEST(TargetError, IsReached) {
   for (const Scene& scene : small_scenes()) {
     const Image truth = truth_of(scene);
@@ -104,8 +105,8 @@ TEST(TargetError, SameBytesForAnyThreads) {
   EXPECT_TRUE(same_pixels(pictures[0], pictures[1]));
 }
 
-// Claim: shadow rays are added where their noise alone would break the promise and samples may not be more, and
-// only there. Fails if: the two pictures share their random numbers, or delta lights count.
+// Claim: shadow rays are added where their noise alone would break the promise and samples may not be more,
+// and only there. Fails if: the two pictures share their random numbers, or delta lights count.
 TEST(TargetError, AddsShadowRaysWhereTheirNoiseIsTooMuch) {
   Scene scene = small_scenes()[2];
   scene.settings.light_samples = 1;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well the samples stand for the surface on a real mesh: bunny-marble (the scene that ./scenes/demo renders).
+// How well the samples stand for the surface on a real mesh: bunny-marble (the scene that ./scenes/demo
+// renders).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +41,7 @@ std::vector<Query> shading_points(int resolution, std::size_t stride) {
 
 std::vector<Exitance> exact_sum(std::size_t samples, std::span<const Query> points) {
   const Prepared prepared(bunny(samples));
-  const TranslucentGroup& group = prepared.pre.groups[0];
+  const Body& group = prepared.bodies[0];
   return evaluate({group.octree, group.kernel, points, {}, EvaluatorKind::brute_force});
 }
 
@@ -59,8 +60,9 @@ Error error_between(const std::vector<Exitance>& a, const std::vector<Exitance>&
   return {sum / double(errors.size()), errors[errors.size() * 99 / 100]};
 }
 
-// Claim: the exact sum over 100k samples is within 1 % (mean) of the one over 600k. Source: issue A; the long test below
-// goes to 3M. Measured: mean .3 %, p99 1.5 %. Fails when: shares are equal instead of Voronoi cells (mean 2 %).
+// Claim: the exact sum over 100k samples is within 1 % (mean) of the one over 600k. Source: README.md, "How
+// accurate it is"; the long test below goes to 3M. Measured: mean .3 %, p99 1.5 %. Fails when: shares are
+// equal instead of Voronoi cells (mean 2 %).
 TEST(BunnyAccuracy, HundredThousandSamples) {
   const std::vector<Query> points = shading_points(64, 12);
   ASSERT_GT(points.size(), 100u);
@@ -70,7 +72,8 @@ TEST(BunnyAccuracy, HundredThousandSamples) {
   EXPECT_LT(error.p99, 0.05);
 }
 
-// Claim: the mean error falls with the number of samples, to at most 1 % at 100k, against 3M samples. Source: issue A.
+// Claim: the mean error falls with the number of samples, to at most 1 % at 100k, against 3M samples. Source:
+// README.md, "How accurate it is".
 TEST(LongBunnyAccuracy, AgainstThreeMillionSamples) {
   const std::vector<Query> points = shading_points(64, 3);
   const std::vector<Exitance> reference = exact_sum(3'000'000, points);
@@ -114,8 +117,9 @@ std::vector<double> blurred(const std::vector<double>& ratio, int width) {
   return result;
 }
 
-// Claim: no mottling at 100k samples: the ratio to a 3M-sample picture, minus its own 8-pixel blur, is at most .5 % rms.
-// Source: issue A. Fails when: the near field is not split off.
+// Claim: no mottling at 100k samples: the ratio to a 3M-sample picture, minus its own 8-pixel blur, is at
+// most .5 % rms.
+// Source: README.md, "How accurate it is". Fails when: the near field is not split off.
 TEST(LongBunnyAccuracy, NoMottling) {
   const std::vector<double> picture_100k = picture(100'000), reference = picture(3'000'000);
   std::vector<double> ratio(reference.size());

@@ -7,6 +7,7 @@
 #include "opaline/image/metrics.h"
 #include "opaline/render/direct.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/session/session.h"
 
 namespace opaline {
 namespace {
@@ -25,10 +26,9 @@ Scene scene_of(const Row& row, const std::vector<std::string>& more) {
 
 Image hierarchical(const Row& row) {
   const Scene scene = scene_of(row, {});
-  const World world = make_world(scene);
-  const RayScene rays(world);
-  const Precompute samples = precompute({scene, world, rays, make_plan(scene, world)});
-  return render({scene, world, rays, samples.groups}).image;
+  Session session;
+  session.edit(scene);
+  return session.render().image;
 }
 
 Image half(const Row& row, int seed) {

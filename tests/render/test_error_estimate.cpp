@@ -7,6 +7,7 @@
 #include "opaline/image/metrics.h"
 #include "opaline/render/render.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/session/session.h"
 
 namespace opaline {
 namespace {
@@ -16,10 +17,9 @@ RenderResult picture(const std::string& name, const std::vector<std::string>& mo
                                      "film.filter=box"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   const Scene scene = load_scene(std::string(OPALINE_SCENES_DIR) + "/" + name + ".json", overrides);
-  const World world = make_world(scene);
-  const RayScene rays(world);
-  const Precompute samples = precompute({scene, world, rays, make_plan(scene, world)});
-  return render({scene, world, rays, samples.groups});
+  Session session;
+  session.edit(scene);
+  return session.render();
 }
 
 /// Mean relative error of the diffuse light where translucent surfaces are seen, worst channel.

@@ -153,14 +153,14 @@ TEST(Extremes, Pictures) {
     Scene scene = lit_sphere();
     row.edit(scene);
     const Prepared prepared(scene);
-    const RenderResult result = render({prepared.scene, prepared.world, prepared.rays, prepared.pre.groups});
+    const RenderResult result = render({prepared.scene, prepared.world, prepared.rays, prepared.bodies});
     EXPECT_EQ(result.non_finite, 0u);
     for (const float v : result.image.pixels) ASSERT_TRUE(std::isfinite(v));
     row.expect(sums(result.image), plain);
   }
 }
 
-// Claim: trouble of scale is said before the work, with the likely fix. Source: issue A, sampling. Fails
+// Claim: trouble of scale is said before the work, with the likely fix. Source: plan.h. Fails
 // when: the cap or the check for too few samples is silent.
 TEST(Extremes, ScaleTroubleIsSaid) {
   const auto warning_of = [](const Rgb& sigma_s_prime) {
@@ -176,8 +176,8 @@ TEST(Extremes, ScaleTroubleIsSaid) {
 }
 
 // Claim: samples farther apart than a body is thick are said, with how many it takes; an open surface has no
-// thickness. By hand: a wire of radius r, 2 r^2 pi / 2 r pi = r thick; a ball of 10 mm is 6.7 mm thick. Fails if: a cap
-// on the samples serves a body in silence that it cannot serve.
+// thickness. By hand: a wire of radius r, 2 r^2 pi / 2 r pi = r thick; a ball of 10 mm is 6.7 mm thick. Fails
+// if: a cap on the samples serves a body in silence that it cannot serve.
 TEST(Extremes, BodiesThinnerThanTheirSamplesAreSaid) {
   Scene scene = lit_sphere();
   const auto thin = [&] {
@@ -198,9 +198,9 @@ TEST(Extremes, CameraDoesNotMoveSamples) {
   Scene other = lit_sphere();
   other.camera = {{900, 20, 0}, {950, 0, 0}, {0, 1, 0}, 20};
   const Prepared a(lit_sphere()), b(other);
-  ASSERT_EQ(a.pre.groups[0].surface.samples.size(), b.pre.groups[0].surface.samples.size());
-  for (std::size_t i = 0; i < a.pre.groups[0].surface.samples.size(); ++i)
-    ASSERT_EQ(a.pre.groups[0].surface.samples[i].position, b.pre.groups[0].surface.samples[i].position);
+  ASSERT_EQ(a.bodies[0].surface.samples.size(), b.bodies[0].surface.samples.size());
+  for (std::size_t i = 0; i < a.bodies[0].surface.samples.size(); ++i)
+    ASSERT_EQ(a.bodies[0].surface.samples[i].position, b.bodies[0].surface.samples[i].position);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "opaline/core/stopwatch.h"
 #include "opaline/render/first_light.h"
+#include "opaline/session/session.h"
 #include "support/scenes.h"
 
 namespace opaline {
@@ -33,7 +34,7 @@ double cpu_seconds(const std::function<void()>& work) {
 }
 
 // Claim: the first picture takes less than a tenth of the CPU time of samples and picture (without loading
-// and the ray structure, which both need). Source: the issue. Median of five; measured: .06. Fails if:
+// and the ray structure, which both need). Source: first_light.h. Median of five; measured: .06. Fails if:
 // it has all samples.
 TEST(FirstLight, TakesATenth) {
   const Scene scene = torus_and_wall(512, 512);
@@ -44,8 +45,9 @@ TEST(FirstLight, TakesATenth) {
   for (int i = 0; i < 5; ++i) {
     const double first = cpu_seconds([&] { first_light({scene, world, rays, plan}); });
     const double whole = cpu_seconds([&] {
-      const Precompute clouds = precompute({scene, world, rays, plan});
-      render({scene, world, rays, clouds.groups});
+      Session session;
+      session.edit(scene);
+      session.render();
     });
     shares.push_back(first / whole);
   }
@@ -73,7 +75,7 @@ TEST(FirstLight, ShowsThePicture) {
   const Prepared torus(torus_and_wall(203, 149));
   const Image picture = torus.picture(),
               first = first_light({torus.scene, torus.world, torus.rays, torus.plan}),
-              next = coarse_picture({torus.scene, torus.world, torus.rays, torus.pre.groups}, 4);
+              next = coarse_picture({torus.scene, torus.world, torus.rays, torus.bodies}, 4);
   EXPECT_LT(difference(first, picture), .15);
   EXPECT_LT(difference(next, picture), difference(first, picture) / 2);
 }
@@ -105,8 +107,8 @@ TEST(FirstLight, Crop) {
   const Prepared whole(scene);
   const std::array<int, 4> crop{37, 41, 121, 93};
   scene.film.crop = crop;
-  const Image all = coarse_picture({whole.scene, whole.world, whole.rays, whole.pre.groups}, 8),
-              part = coarse_picture({scene, whole.world, whole.rays, whole.pre.groups}, 8);
+  const Image all = coarse_picture({whole.scene, whole.world, whole.rays, whole.bodies}, 8),
+              part = coarse_picture({scene, whole.world, whole.rays, whole.bodies}, 8);
   ASSERT_EQ(part.width, 84);
   ASSERT_EQ(part.height, 52);
   for (int y = 0; y < part.height; ++y)
@@ -126,7 +128,7 @@ TEST(FirstLight, TilesAreDone) {
   std::mutex mutex;
   Image seen;
   std::size_t pixels = 0;
-  const Image picture = render({ball.scene, ball.world, ball.rays, ball.pre.groups, nullptr,
+  const Image picture = render({ball.scene, ball.world, ball.rays, ball.bodies, nullptr,
                                 [&](const Image& image, const Rectangle& done) {
                                   const std::lock_guard lock(mutex);
                                   if (seen.pixels.empty()) {

@@ -83,7 +83,7 @@ const std::vector<std::string> kKeys{"mm_per_unit",
 std::string fault_of(const std::vector<std::string>& overrides) {
   try {
     const Prepared scene(parse_scene(kScene, "sweep.json", overrides));
-    const RenderResult result = render({scene.scene, scene.world, scene.rays, scene.pre.groups});
+    const RenderResult result = render({scene.scene, scene.world, scene.rays, scene.bodies});
     if (result.non_finite > 0) return std::to_string(result.non_finite) + " values are not finite";
     const Image& image = result.image;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {

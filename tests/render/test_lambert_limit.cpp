@@ -26,7 +26,7 @@ TEST(LambertLimit, VanishingMeanFreePath) {
   for (const double mean_free_path : {1e-3, 1e-6}) {
     Scene scene = lit_torus(mean_free_path, std::nullopt);
     const Prepared prepared(scene);
-    EXPECT_LE(prepared.pre.groups[0].surface.samples.size(), 22000u);
+    EXPECT_LE(prepared.bodies[0].surface.samples.size(), 22000u);
     EXPECT_FALSE(prepared.plan.warnings.empty());  // far more samples wanted than allowed: said
     const Image subsurface = prepared.picture();
     scene.settings.method = Method::lambert;

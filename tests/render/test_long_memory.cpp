@@ -24,7 +24,7 @@ TEST(LongMemory, TenMillionSamplesFitInTwoGiB) {
   EXPECT_GT(prepared.picture().pixels.size(), 0u);
   RecordProperty("peak_bytes", std::to_string(peak_memory()));
   EXPECT_LT(peak_memory(), std::size_t(2) << 30);
-  const SurfaceSamples& surface = prepared.pre.groups[0].surface;
+  const SurfaceSamples& surface = prepared.bodies[0].surface;
   const double n = double(surface.samples.size());
   EXPECT_NEAR(n / 1e7, 1, 0.05);
   EXPECT_GE(surface.radius / std::sqrt(2 / std::sqrt(3.) * surface.area / n), 0.65);

@@ -24,10 +24,10 @@ std::vector<std::string> warnings_of(const Scene& scene) {
   return make_plan(scene, make_world(scene)).warnings;
 }
 
-// Claim: a light nearer to a translucent surface than its samples are to each other is warned of, once, by name,
-// with distance, on triangles far larger than the spacing; a wide one and one further off are not. Source: between
-// samples nothing knows of a spot of light that is smaller. Fails when: distances are taken to vertices, or the
-// light is not recentred.
+// Claim: a light nearer to a translucent surface than its samples are to each other is warned of, once, by
+// name, with distance, on triangles far larger than the spacing; a wide one and one further off are not.
+// Source: between samples nothing knows of a spot of light that is smaller. Fails when: distances are taken
+// to vertices, or the light is not recentred.
 TEST(NearLights, AreWarnedOf) {
   const Rgb white{1, 1, 1};
   const struct {
@@ -60,8 +60,8 @@ TEST(NearLights, AreWarnedOf) {
   }
 }
 
-// Claim: what has no samples is near to no light: opaque shapes, and the Lambert method. Fails when: all meshes are
-// asked.
+// Claim: what has no samples is near to no light: opaque shapes, and the Lambert method. Fails when: all
+// meshes are asked.
 TEST(NearLights, OnlyWhereSamplesAre) {
   Scene scene = box_under(PointLight{{93, 120.5, 104}, {1, 1, 1}});
   scene.settings.method = Method::lambert;
@@ -81,9 +81,9 @@ double brute_distance(const std::vector<Piece>& pieces, const Vec3d& start, cons
   return least;
 }
 
-// Claim: the distance is that from a dense cloud on the surface, which is larger by at most a piece's size, wherever
-// the light is. Source: the cloud. Fails when: the ball around a triangle is too small, or the search along a tube
-// stops short.
+// Claim: the distance is that from a dense cloud on the surface, which is larger by at most a piece's size,
+// wherever the light is. Source: the cloud. Fails when: the ball around a triangle is too small, or the
+// search along a tube stops short.
 TEST(NearLights, DistanceAsFromADenseCloud) {
   const World world = world_of({TorusShape{{}, 20, 6}});
   const std::vector<Piece> pieces = dense_pieces(world, .05);

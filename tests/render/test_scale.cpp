@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "opaline/core/error.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "opaline/render/direct.h"
 #include "opaline/render/render.h"
 #include "support/scenes.h"
@@ -168,13 +168,13 @@ TEST(Scale, ExitanceAtPointsInMillimetres) {
   const Prepared plain(scene);
   const std::vector<Vec3d> points{{3, 22, -2}, {13, 12, -2}};
   const std::vector<Vec3f> normals{{0, 1, 0}, {1, 0, 0}};
-  const auto expected = radiant_exitance(plain.pre.groups[0], plain.world, points, normals, scene.settings);
+  const auto expected = radiant_exitance(plain.bodies[0], plain.world, points, normals, scene.settings);
   EXPECT_GT(min_component(expected[0]), 0);
   for (const double k : {0x1p-30, 0x1p20}) {
     const Prepared large(scaled(scene, k));
     std::vector<Vec3d> far;
     for (const Vec3d& p : points) far.push_back(p * k);
-    EXPECT_EQ(radiant_exitance(large.pre.groups[0], large.world, far, normals, scene.settings), expected);
+    EXPECT_EQ(radiant_exitance(large.bodies[0], large.world, far, normals, scene.settings), expected);
     EXPECT_EQ(large.plan.groups[0].area, plain.plan.groups[0].area * k * k);
     EXPECT_EQ(large.plan.groups[0].spacing, plain.plan.groups[0].spacing * k);
   }
@@ -220,9 +220,10 @@ TEST(Scale, CamerasAndLightsOutOfReachAreRefused) {
             std::string::npos);
 }
 
-// Claim: bodies keep their picture inside of a shell 3e7 times as large, whose light they do not see. Tolerance: the
-// world's middle moves, and floats round otherwise, 1e-3 of the brightest pixel. Fails if: lengths are told in units of
-// the shell; the bodies' profiles then have derivatives that floats do not hold (NaN).
+// Claim: bodies keep their picture inside of a shell 3e7 times as large, whose light they do not see.
+// Tolerance: the world's middle moves, and floats round otherwise, 1e-3 of the brightest pixel. Fails if:
+// lengths are told in units of the shell; the bodies' profiles then have derivatives that floats do not hold
+// (NaN).
 TEST(Scale, BodiesInsideOfAHugeShell) {
   Scene scene = plain_scene(ProfileKind::normalized_diffusion);
   scene.shapes.pop_back();  // the floor

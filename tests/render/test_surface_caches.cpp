@@ -19,7 +19,7 @@ Scene torus_scene(int side, int samples_per_pixel) {
 }
 
 bool has_cache(const Scene& scene) {
-  return Prepared(scene).pre.groups.at(0).surface_cache.has_value();
+  return Prepared(scene).bodies[0].surface_cache.has_value();
 }
 
 // Claim: left to itself a picture of many points has a surface cache and one of few has none, by pixels and
@@ -82,7 +82,7 @@ TEST(SurfaceCaches, FollowTheTolerance) {
   scene.settings.evaluator = EvaluatorKind::surface_cache;
   const auto places = [&](double tolerance) {
     scene.settings.tolerance = tolerance;
-    return Prepared(scene).pre.groups.at(0).surface_cache->places();
+    return Prepared(scene).bodies[0].surface_cache->places();
   };
   const double coarse = double(places(.005)), fine = double(places(.001));
   RecordProperty("coarse", std::to_string(coarse));

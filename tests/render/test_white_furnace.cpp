@@ -7,12 +7,12 @@
 namespace opaline::test {
 namespace {
 
-// Claim: without absorption under uniform radiance 1, a sphere sends back CDF(2R) Ft + F towards the camera: all but
-// what the infinite plane would have returned from beyond 2R. Source: energy convention of render.h; M_o = E CDF(2R)
-// holds for any radial profile on a sphere. Tolerance .7 % over the picture (64 surroundings rays and
-// 20k samples), 3 % a pixel (largest sampling error measured: 2.7 %).
-// Fails when: Ft is left out of E (E is 10 % high), F_bar is replaced by the internal F_dr, or areas do not sum to
-// the mesh area.
+// Claim: without absorption under uniform radiance 1, a sphere sends back CDF(2R) Ft + F towards the camera:
+// all but what the infinite plane would have returned from beyond 2R. Source: energy convention of render.h;
+// M_o = E CDF(2R) holds for any radial profile on a sphere. Tolerance .7 % over the picture (64 surroundings
+// rays and 20k samples), 3 % a pixel (largest sampling error measured: 2.7 %).
+// Fails when: Ft is left out of E (E is 10 % high), F_bar is replaced by the internal F_dr, or areas do not
+// sum to the mesh area.
 void expect_furnace(ProfileKind profile, double eta) {
   const double radius = 25, mean_free_path = 0.5;
   Scene scene = single_shape(SphereShape{{}, radius}, grey_medium(mean_free_path, 0, eta, profile), 20000);

@@ -17,9 +17,9 @@ std::string between_backticks(const std::string& line) {
   return end == std::string::npos ? "" : line.substr(begin + 1, end - begin - 1);
 }
 
-// Claim: the tables of scenes/README.md are the rows of the schema, each in the table of its section, with the checks
-// and defaults that the reader uses. Fails if a row, a range or a default changes on one side alone; then take over the
-// lines that it prints.
+// Claim: the tables of scenes/README.md are the rows of the schema, each in the table of its section, with
+// the checks and defaults that the reader uses. Fails if a row, a range or a default changes on one side
+// alone; then take over the lines that it prints.
 TEST(SceneDocumentation, HasTheRowsOfTheSchema) {
   std::ifstream in(scenes + "/README.md");
   ASSERT_TRUE(in);

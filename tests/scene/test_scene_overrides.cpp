@@ -43,8 +43,8 @@ TEST(SceneOverrides, NewMediumWithANearName) {
 }
 
 // Claim: an error in an overridden value names the override; one in the file beside it still names the file;
-// an override that leads nowhere says why, and what was meant. Source: load_scene.h. Fails if parse_tree drops override_index, or a
-// mistyped medium is taken for a new one.
+// an override that leads nowhere says why, and what was meant. Source: load_scene.h. Fails if parse_tree
+// drops override_index, or a mistyped medium is taken for a new one.
 TEST(SceneOverrides, Errors) {
   struct Case {
     std::string override_text, file;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "render/layers.h"
 #include "session/light_mix.h"
 #include "support/scenes.h"

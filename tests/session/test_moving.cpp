@@ -33,8 +33,8 @@ Scene moved_left(const Vec3d& by) {
 // Claim: an object that moved takes its samples along; the other's samples stay, and the light that enters
 // them where no shadow of the moved one fell or falls. The other's pixels are a cold picture's, bit for bit;
 // the moved one's differ by what two samplings of one surface differ, measured 1.2 %, and are the same
-// whatever way it came. Source: the table. Fails if: samples are placed anew; a mesh that may shadow
-// is in no key; carried samples are carried on.
+// whatever way it came. Source: the table in session.h. Fails if: samples are placed anew; a mesh that may
+// shadow is in no key; carried samples are carried on.
 TEST(Moving, RigidObject) {
   Session session;
   picture_of(session, two_balls());
@@ -126,13 +126,13 @@ double sum_of_areas(const SurfaceSamples& surface) {
 // Claim: a mesh that bends keeps its samples on their triangles at their barycentrics, with areas that sum to
 // the new surface, new normals, light and tree, while its file is only read, not checked, and its surface not
 // divided again; the picture differs from a cold one by what two samplings do, and depends on the bend alone,
-// not on how it came about. Source: the table. Tolerance: areas 1e-6; pictures 2 %. Fails if: shares
-// stay as they were (the sum); the session keeps no cells, or no memory of the mesh (the counts).
+// not on how it came about. Source: the table in session.h. Tolerance: areas 1e-6; pictures 2 %. Fails if:
+// shares stay as they were (the sum); the session keeps no cells, or no memory of the mesh (the counts).
 TEST(Moving, BentMesh) {
   const BendingBall ball;
   Session session;
   picture_of(session, ball.scene);
-  const SurfaceSamples before = session.groups()[0].surface;
+  const SurfaceSamples before = session.bodies()[0].surface;
   ball.bend(.01);
   const Image picture = picture_of(session, ball.scene);
   const SessionWork work = session.work();
@@ -142,7 +142,7 @@ TEST(Moving, BentMesh) {
   EXPECT_EQ(work.samples_placed + work.samples_removed + work.samples_divided, 0u);
   EXPECT_EQ(work.samples_carried, before.samples.size());
   EXPECT_EQ(work.lights_traced, 3u);
-  const SurfaceSamples& after = session.groups()[0].surface;
+  const SurfaceSamples& after = session.bodies()[0].surface;
   ASSERT_EQ(after.samples.size(), before.samples.size());
   for (std::size_t i = 0; i < after.samples.size(); ++i) {
     const SurfaceSample &a = before.samples[i], &b = after.samples[i];
@@ -201,11 +201,11 @@ TEST(Moving, StretchedAndSqueezed) {
     const BendingBall ball;
     Session session;
     picture_of(session, ball.scene);
-    const SurfaceSamples before = session.groups()[0].surface;
+    const SurfaceSamples before = session.bodies()[0].surface;
     ball.bend(0, stretch);
     const Image picture = picture_of(session, ball.scene);
     const SessionWork work = session.work();
-    const SurfaceSamples& after = session.groups()[0].surface;
+    const SurfaceSamples& after = session.bodies()[0].surface;
     const std::size_t common = common_samples(before, after);
     EXPECT_EQ(work.samples_carried, common);
     EXPECT_EQ(common + work.samples_removed, before.samples.size());
@@ -250,7 +250,7 @@ TEST(Moving, BodiesThatOutgrewTheirSamples) {
   };
   Session session;
   picture_of(session, sized(1));
-  const std::size_t count = session.groups()[0].surface.samples.size();
+  const std::size_t count = session.bodies()[0].surface.samples.size();
   picture_of(session, sized(3));
   EXPECT_NEAR(double(session.work().samples_carried), double(count), 1);
   for (const double k : {1e4, 1., 1e6, 1e-2}) {
@@ -272,7 +272,7 @@ TEST(Moving, GrownBeyondTheMostSamples) {
   scene.settings.max_samples = 7500;
   Session session;
   picture_of(session, scene);
-  EXPECT_NEAR(double(session.groups()[0].surface.samples.size()), 2600, 100);
+  EXPECT_NEAR(double(session.bodies()[0].surface.samples.size()), 2600, 100);
   scene.shapes[0].to_world = {{3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {}};
   const Image picture = picture_of(session, scene);
   EXPECT_EQ(session.work().samples_carried, 0u);

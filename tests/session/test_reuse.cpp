@@ -50,7 +50,7 @@ void expect_row(const Row& row) {
   expect_row(row, true);
 }
 
-// Claim: camera, film and exposure cost camera rays and evaluation alone. Source: the table.
+// Claim: camera, film and exposure cost camera rays and evaluation alone. Source: the table in session.h.
 TEST(Reuse, CameraAndFilm) {
   for (const Row& row : {
            Row{"nothing", [](Scene&) {}},
@@ -106,7 +106,7 @@ TEST(Reuse, SurfaceCache) {
   EXPECT_GT(many.work().places_evaluated, 0u);
 }
 
-// Claim: colours and power of all kinds of lights trace no ray from a sample. Source: the table.
+// Claim: colours and power of all kinds of lights trace no ray from a sample. Source: the table in session.h.
 TEST(Reuse, LightColour) {
   expect_row({"point",
               [](Scene& s) {
@@ -208,7 +208,7 @@ TEST(Reuse, LightColoursAgainAndAgain) {
 }
 
 // Claim: a medium's coefficients and profile, and what evaluation is asked for, cost evaluation alone; eta
-// the light that enters that medium's group. Source: the table.
+// the light that enters that medium's group. Source: the table in session.h.
 TEST(Reuse, Medium) {
   expect_row({"coefficients", [](Scene& s) {
                 s.media[0].coefficients = PhysicalMedium{{.01, .02, .03}, {1, 2, 3}};
@@ -223,7 +223,7 @@ TEST(Reuse, Medium) {
 }
 
 // Claim: a light that moved, came, went, changed its size or its name (its random numbers) costs its own rays
-// from each group, and no other's; lights of no area have no random numbers. Source: the table.
+// from each group, and no other's; lights of no area have no random numbers. Source: the table in session.h.
 TEST(Reuse, Lights) {
   expect_row(
       {"point moved", [](Scene& s) { std::get<PointLight>(s.lights[0].source).position.x = 9; }, 2, true});
@@ -339,7 +339,7 @@ TEST(Reuse, SpacingStillValid) {
   }
 }
 
-// Claim: what no row of the table knows is computed again where it matters, and said. Source: the issue's
+// Claim: what no row of the table knows is computed again where it matters, and said. Source: session.h's
 // last row. Fails if: seed or count are in no key.
 TEST(Reuse, AnythingElse) {
   const std::vector<std::function<void(Scene&)>> edits = {

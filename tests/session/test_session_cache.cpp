@@ -61,7 +61,7 @@ TEST(SessionCache, SurfaceCacheIsFound) {
   }
 }
 
-// Claim: a spoiled entry costs its stage alone and one warning; the picture is the same. Source: the issue.
+// Claim: a spoiled entry costs its stage alone and one warning; the picture is the same. Source: session.h.
 // Fails if: the result is computed but the key's entry not replaced (the second time warns again).
 TEST(SessionCache, SpoiledEntry) {
   const ScratchFolder folder;

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "opaline/irradiance/irradiance.h"
-#include "opaline/irradiance/light_sampling.h"
+#include "opaline/lights/light.h"
 #include "support/surfaces.h"
 
 namespace opaline::test {

@@ -8,6 +8,7 @@
 
 #include "opaline/render/render.h"
 #include "opaline/scene/scene.h"
+#include "opaline/session/session.h"
 
 namespace opaline::test {
 
@@ -50,22 +51,23 @@ inline Light point_light(const Vec3d& position, const Rgb& intensity) {
   return {"point", PointLight{position, intensity}};
 }
 
-/// Stages of a scene up to the precompute.
+/// A scene and what is prepared of it.
 struct Prepared {
-  Scene scene;
-  World world;
-  RayScene rays;
-  Plan plan;
-  Precompute pre;
+  Session session;
+  const Scene& scene;
+  const World& world;
+  const RayScene& rays;
+  const Plan& plan;
+  std::span<const Body> bodies;
 
   explicit Prepared(Scene s)
-      : scene(std::move(s)),
-        world(make_world(scene)),
-        rays(world),
-        plan(make_plan(scene, world)),
-        pre(precompute({scene, world, rays, plan})) {}
+      : scene((session.edit(std::move(s)), session.prepare(), session.scene())),
+        world(session.world()),
+        rays(session.rays()),
+        plan(session.plan()),
+        bodies(session.bodies()) {}
 
-  Image picture() const { return render({scene, world, rays, pre.groups}).image; }
+  Image picture() const { return render({scene, world, rays, bodies}).image; }
 };
 
 /// The group's samples with irradiance set by hand, as a tree.

@@ -30,7 +30,8 @@ std::string problem_of(const std::string& folder, const CacheEntry& entry);
 
 /// Removes the least recently used entries until the rest has at most this many bytes, and what writers that
 /// were killed more than an hour ago left behind. One process at a time; readers and writers go on meanwhile.
-/// Folders stay. in    wait: asked every 10 ms while another process holds the lock: false gives up, and
+/// Folders stay.
+/// in    wait: asked every 10 ms while another process holds the lock: false gives up, and
 /// nothing is removed; none:
 ///       waits as long as it takes
 /// out   the entries removed

@@ -23,15 +23,16 @@ std::vector<MeshKeys> mesh_keys(const World& world);
 /// Of a group's samples placed anew: its meshes, their count and random numbers.
 StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group);
 
-/// Of the samples of key `from`, carried along to the group's meshes as they are now. in    unit: of the world
-/// they come from over that of this one
+/// Of the samples of key `from`, carried along to the group's meshes as they are now.
+/// in    unit: of the world they come from over that of this one
 StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes,
                              double unit);
 
 /// Of the light that enters at samples from one light: the samples, where and how large the light is but not
 /// its colour, the index of refraction, random numbers, and every mesh that could throw a shadow from this
 /// light onto the group. Shadow rays are Embree's: its version and the machine's instruction set belong to
-/// it. in    light: recentred
+/// it.
+/// in    light: recentred
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light);
 
@@ -43,14 +44,17 @@ StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes);
 
 /// Of which surfaces the camera's rays meet are of which kind, lights that hide some included, and of the
-/// random numbers that lights are sampled with there. in    lights: recentred
+/// random numbers that lights are sampled with there.
+/// in    lights: recentred
 StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights);
 
-/// Of how one light reaches them: where it is and how large, but not its colour. in    light: recentred
+/// Of how one light reaches them: where it is and how large, but not its colour.
+/// in    light: recentred
 StageKey view_light_key(const Light& light);
 
 /// Whether a mesh could be in the way between a light and a group's meshes, to judge by the balls around them
-/// all; at most too cautious. in    light: recentred; unit: World::unit
+/// all; at most too cautious.
+/// in    light: recentred; unit: World::unit
 bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
                 const Light& light, double unit);
 

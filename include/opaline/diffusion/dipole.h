@@ -31,4 +31,9 @@ double total_diffuse_reflectance(const Dipole& dipole);
 /// 1 - alpha' below 1e-12). total in [0, 1].
 double invert_dipole_albedo(double total, double boundary_mismatch);
 
+/// As those of ChannelProfile (diffuse_profile.h).
+double sample_diffusion_distance(const Dipole& profile, double beyond);
+double sample_chord_sphere_radius(const Dipole& profile, double u, double v);
+double slowest_decay(const Dipole& profile);
+
 }  // namespace opaline

@@ -14,10 +14,12 @@
 namespace opaline {
 
 /// R_d as piecewise cubics in s = (r / length_scale)^2, 32 segments an octave of s, found from the bits of s.
-/// Between r_min and r_max the error is below 4e-6 of R_d wherever R_d is above 1e-9 of its largest value; below
-/// it the table is constant, beyond it 0; the range is widened outward to whole octaves of s. Powers of two scale through it exactly.
+/// Between r_min and r_max the error is below 4e-6 of R_d wherever R_d is above 1e-9 of its largest value;
+/// below it the table is constant, beyond it 0; the range is widened outward to whole octaves of s. Powers of
+/// two scale through it exactly.
 class KernelTable {
  public:
+  KernelTable() = default;
   /// r_min, r_max in mm: the distances that will be asked for; the table ends earlier where R_d underflows.
   KernelTable(const DiffuseProfile& profile, double r_min, double r_max);
 

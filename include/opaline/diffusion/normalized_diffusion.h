@@ -20,4 +20,9 @@ double diffuse_reflectance_profile(const NormalizedDiffusion& profile, double r)
 double diffuse_reflectance_within(const NormalizedDiffusion& profile, double r);
 double total_diffuse_reflectance(const NormalizedDiffusion& profile);
 
+/// As those of ChannelProfile (diffuse_profile.h).
+double sample_diffusion_distance(const NormalizedDiffusion& profile, double beyond);
+double sample_chord_sphere_radius(const NormalizedDiffusion& profile, double u, double v);
+double slowest_decay(const NormalizedDiffusion& profile);
+
 }  // namespace opaline

@@ -114,8 +114,8 @@ struct EvaluateInput {
 /// path is under the sample spacing 2.5e-3. Queries that are not finite get 0. `classic`: each query walks
 /// the tree from its root and takes a node as one flux at its centroid when the node's area over its squared
 /// distance is at most max_solid_angle and it lies wholly beyond h; leaves are summed sample by sample.
-/// `brute_force`: every sample, the limit of max_solid_angle -> 0 but for the order of sums. from  Jensen &
-/// Buhler 2002 sec. 3; near field: see SplitKernel
+/// `brute_force`: every sample, the limit of max_solid_angle -> 0 but for the order of sums.
+/// from  Jensen & Buhler 2002 sec. 3; near field: see SplitKernel
 std::vector<Exitance> evaluate(const EvaluateInput& input);
 
 /// Kernel evaluations and nodes visited by one classic query: what its time is made of.

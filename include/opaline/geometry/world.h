@@ -15,8 +15,8 @@
 
 namespace opaline {
 
-/// Every shape's mesh in the order of Scene::shapes, moved so that zero is near the middle of them all, and in
-/// a unit of length that suits them: sums of floats far from the origin lose what they are made of, and
+/// Every shape's mesh in the order of Scene::shapes, moved so that zero is near the middle of them all, and
+/// in a unit of length that suits them: sums of floats far from the origin lose what they are made of, and
 /// squares and cubes of very small or large lengths leave a float's range. All later stages compute in this
 /// space. A point p of it is p * unit + origin in the scene.
 struct World {
@@ -38,7 +38,8 @@ inline Vec3d out_of_world(const World& world, const Vec3d& p) {
   return p * world.unit + world.origin;
 }
 
-/// Meshes of all shapes; error as make_mesh, told at the shape's place in the scene.
+/// Meshes of all shapes.
+/// error as make_mesh, told at the shape's place in the scene.
 World make_world(const Scene& scene);
 
 /// The same world as make_world's, bit for bit, after an edit that left some shapes as they were.

@@ -19,9 +19,10 @@ struct TargetError {
 };
 
 /// Edits the session to the scene with the spacing of samples, tolerance, evaluator and, where shadow rays
-/// are too few, light_samples of a picture whose own estimate (estimated_relative_error) keeps a margin to this
-/// error. It begins with as many samples as usually do, and adds some until a small picture is within it. The
-/// evaluator is chosen only if the scene leaves it open. Bytes do not depend on the number of threads.
+/// are too few, light_samples of a picture whose own estimate (estimated_relative_error) keeps a margin to
+/// this error. It begins with as many samples as usually do, and adds some until a small picture is within
+/// it. The evaluator is chosen only if the scene leaves it open. Bytes do not depend on the number of
+/// threads.
 /// in    scene: hierarchical, evaluator not classic, which has no tolerance; its samples, sample_spacing and
 ///       tolerance are replaced; target: relative, > 0
 /// out   measured errors are at most the target in about 95 % of scenes (bench_target_error)

@@ -15,8 +15,8 @@
 namespace opaline {
 
 /// Kept from one picture to the next by Session::hold_view: 20 bytes a camera ray, and where the ray met a
-/// surface 4, 4 a light (8 where the light's error is estimated, too), and 40 where there is room for them; 12 a
-/// light more where the near field is kept.
+/// surface 4, 4 a light (8 where the light's error is estimated, too), and 40 where there is room for them;
+/// 12 a light more where the near field is kept.
 struct HeldView {
   struct CameraHit {
     std::uint32_t mesh, triangle;  ///< Hit::kMiss: none

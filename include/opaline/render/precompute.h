@@ -19,14 +19,15 @@
 
 namespace opaline {
 
-struct TranslucentGroup {
+/// Translucent shapes that share samples and one tree, and what has been computed of them.
+struct Body {
   GroupPlan plan;
   DiffuseProfile profile;
   SurfaceSamples surface;
   std::vector<LightTransfer> transfers;  ///< one a light
   std::vector<RgbF> irradiance;          ///< one a sample, all lights
   Octree octree;
-  SplitKernel kernel;
+  SplitKernel kernel = {};
   CloudError cloud = {};                           ///< of the samples with this irradiance and kernel
   std::optional<SurfaceCache> surface_cache = {};  ///< the exitance everywhere, where that is cheaper than at
                                                    ///< the points of the picture
@@ -40,15 +41,8 @@ struct PrecomputeInput {
   Monitor* monitor = nullptr;
 };
 
-struct Precompute {
-  std::vector<TranslucentGroup> groups;
-  std::vector<StageCost> costs;  ///< sampling, irradiance, octree, and exitance if a surface cache was made
-};
-
-Precompute precompute(const PrecomputeInput& input);
-
-// Its stages, for callers that keep some of their results; `group` is an index into the plan's groups, which
-// chooses random numbers.
+// What Session::prepare computes for each body, stage by stage; `group` is an index into the plan's groups,
+// which chooses random numbers.
 
 std::uint64_t sampling_seed(const Settings& settings, std::size_t group);
 /// cells: unless null, of the samples.
@@ -69,18 +63,19 @@ SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& su
                          const Settings& settings);
 
 /// Of a group with its transfers, tree and kernel.
-CloudError cloud_error(const TranslucentGroup& group, const World& world, const Scene& scene);
+CloudError cloud_error(const Body& group, const World& world, const Scene& scene);
 
 /// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free
 /// path is below the sample spacing, `render` traces shadow rays for the irradiance at its points; this
-/// interpolates it. in    points: world space, mm; normals: unit, outward, one a point out   M_o in W/mm^2
+/// interpolates it.
+/// in    points: world space, mm; normals: unit, outward, one a point
+/// out   M_o in W/mm^2
 /// per point, in their order
-std::vector<RgbF> radiant_exitance(const TranslucentGroup& group, const World& world,
-                                   std::span<const Vec3d> points, std::span<const Vec3f> normals,
-                                   const Settings& settings);
+std::vector<RgbF> radiant_exitance(const Body& group, const World& world, std::span<const Vec3d> points,
+                                   std::span<const Vec3f> normals, const Settings& settings);
 
 /// Writes all samples as a binary PLY: x y z, nx ny nz, area, irradiance r g b, shape; world space, mm.
 /// error Error{run_failed} naming the file
-void write_samples_ply(const std::string& path, std::span<const TranslucentGroup> groups, const World& world);
+void write_samples_ply(const std::string& path, std::span<const Body> groups, const World& world);
 
 }  // namespace opaline

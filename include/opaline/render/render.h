@@ -30,7 +30,7 @@ struct RenderInput {
   const Scene& scene;
   const World& world;
   const RayScene& rays;
-  std::span<const TranslucentGroup> groups = {};  ///< of the precompute; not needed by Method::lambert
+  std::span<const Body> groups = {};  ///< of the precompute; not needed by Method::lambert
   Monitor* monitor = nullptr;
   AfterTile after_tile = {};
   HeldView* view = nullptr;  ///< of an earlier picture that saw the same, or new; kept up to kMostHeldBytes

@@ -49,7 +49,9 @@ inline bool same_sheet(const Vec3f& a, const Vec3f& b) {
 }
 
 /// Samples whose places depend on the surface and the seed alone: not on the view, the lights, or the
-/// threads. out   every triangle's centroid has a sample of its sheet within two radii from  dart throwing in
+/// threads.
+/// out   every triangle's centroid has a sample of its sheet within two radii
+/// from  dart throwing in
 /// phase groups (Wei 2008) over a hash grid; shares: surface_shares
 ///       cells: unless null, each sample's; they take a sixth of the time more
 SurfaceSamples sample_surface(const SamplingInput& input, SurfaceCells* cells = nullptr);

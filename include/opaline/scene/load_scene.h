@@ -11,9 +11,11 @@
 namespace opaline {
 
 /// Reads and checks a scene file; lengths are converted to mm by its mm_per_unit.
-/// in    overrides: "media.marble.eta=1.4": a path of keys (array elements by index or by "name") and a JSON value
+/// in    overrides: "media.marble.eta=1.4": a path of keys (array elements by index or by "name") and a JSON
+/// value
 ///       (a value that is not JSON is taken as a string), applied before checking
-/// error Error{bad_input} with file, line and column, what was expected, what was found, and the nearest valid
+/// error Error{bad_input} with file, line and column, what was expected, what was found, and the nearest
+/// valid
 ///       name: no such file, broken JSON, unknown or duplicate key, wrong type, value out of range
 /// frame: which one, of values and mesh files that change.
 Scene load_scene(const std::string& path, std::span<const std::string> overrides = {}, int frame = 1);

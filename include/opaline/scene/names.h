@@ -24,8 +24,6 @@ inline constexpr std::array<std::string_view, 3> kNearIrradianceNames{"mixed", "
 inline constexpr std::array<std::string_view, 4> kInstructionSetNames{"automatic", "baseline", "avx2",
                                                                       "avx512"};
 inline constexpr std::array<std::string_view, 2> kEntryStrategyNames{"disc_axes", "chords"};
-inline constexpr std::array<std::string_view, 5> kLightNames{"point", "directional", "sphere", "quad",
-                                                             "surroundings"};
 
 constexpr NameList names_of(ProfileKind) {
   return kProfileNames;
@@ -61,8 +59,7 @@ std::string_view name_of(Enumeration value) {
 }
 
 inline std::string_view name_of(const LightSource& source) {
-  static_assert(kLightNames.size() == std::variant_size_v<LightSource>);
-  return kLightNames[source.index()];
+  return std::visit([](const auto& light) { return light.kType; }, source);
 }
 
 }  // namespace opaline

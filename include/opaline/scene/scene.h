@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -71,8 +72,8 @@ struct MeshFile {
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
-/// Of a built-in curved shape: 4^fineness times as many triangles. 6 leaves .00005 of a sphere's area out, and each one
-/// less four times that.
+/// Of a built-in curved shape: 4^fineness times as many triangles. 6 leaves .00005 of a sphere's area out,
+/// and each one less four times that.
 constexpr int kMostFineness = 6, kLeastFineness = 4;
 
 // Built-in shapes; lengths in mm. `Slab` is a box named for its use: x and z extent, thickness along y.
@@ -127,27 +128,32 @@ struct Shape {
 // ---- lights ---------------------------------------------------------------------------------------------
 
 struct PointLight {
+  static constexpr std::string_view kType = "point";
   Vec3d position;
   Rgb intensity;  ///< W/sr; irradiance at distance d mm is intensity / d^2 in W/mm^2
   friend bool operator==(const PointLight&, const PointLight&) = default;
 };
 struct DirectionalLight {
+  static constexpr std::string_view kType = "directional";
   Vec3d direction;  ///< unit, the way the light travels
   Rgb irradiance;   ///< on a surface that faces it, W/mm^2
   friend bool operator==(const DirectionalLight&, const DirectionalLight&) = default;
 };
 struct SphereLight {
+  static constexpr std::string_view kType = "sphere";
   Vec3d center;
   double radius;
   Rgb radiance;
   friend bool operator==(const SphereLight&, const SphereLight&) = default;
 };
 struct QuadLight {  ///< emits on the side of u x v only
+  static constexpr std::string_view kType = "quad";
   Vec3d corner, u, v;
   Rgb radiance;
   friend bool operator==(const QuadLight&, const QuadLight&) = default;
 };
 struct Surroundings {  ///< the same radiance from everywhere
+  static constexpr std::string_view kType = "surroundings";
   Rgb radiance;
   friend bool operator==(const Surroundings&, const Surroundings&) = default;
 };

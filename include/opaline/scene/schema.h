@@ -39,9 +39,9 @@ enum class ValueType {
 
 /// What one key of the scene file takes and means.
 struct KeyInfo {
-  std::string_view
-      section;  ///< of the file: "scene", "medium", "shape.sphere", "light.point", "settings", ...
-  std::string_view key;
+  /// Of the file: "scene", "medium", "shape.sphere", "light.point", "settings", ...
+  std::string_view section = {};
+  std::string_view key = {};
   ValueType type = ValueType::object;
   std::string_view unit = {};      ///< as documented; empty: none
   Range range = kFiniteNumber;     ///< of each number

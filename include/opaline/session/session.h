@@ -85,9 +85,9 @@ class Session {
 
   /// Whether what the camera sees, and how the lights reach it, is kept for the pictures to come: those of
   /// other colours and media then trace neither again. Costs memory (HeldView); not at first.
-  /// mix_lights: pictures that differ by their lights' colours alone may then be sums of others (LightMix), and
-  /// trace no ray beside shadow edges where earlier ones did: their last bits and their noise there depend on
-  /// the pictures before.
+  /// mix_lights: pictures that differ by their lights' colours alone may then be sums of others (LightMix),
+  /// and trace no ray beside shadow edges where earlier ones did: their last bits and their noise there
+  /// depend on the pictures before.
   void hold_view(bool hold, bool mix_lights = false) {
     holds_view_ = hold;
     mixes_lights_ = hold && mix_lights;
@@ -118,9 +118,9 @@ class Session {
   const Scene& scene() const { return scene_; }
   const World& world() const { return *world_; }
   const Plan& plan() const { return plan_; }
-  const RayScene& rays() const { return *rays_; }                       ///< after prepare
-  std::span<const TranslucentGroup> groups() const { return groups_; }  ///< after prepare
-  const SessionWork& work() const { return work_; }                     ///< of the last edit and since
+  const RayScene& rays() const { return *rays_; }           ///< after prepare
+  std::span<const Body> bodies() const { return bodies_; }  ///< after prepare
+  const SessionWork& work() const { return work_; }         ///< of the last edit and since
   const std::vector<std::string>& decisions() const {
     return decisions_;
   }  ///< what was kept, and what not; a line each
@@ -128,7 +128,7 @@ class Session {
   const std::vector<StageCost>& costs() const { return costs_; }
 
  private:
-  struct Part;
+  struct BodyKeys;
   /// What loading a shape found; the key is its source's, of zeros where loading failed.
   struct ShapeMemory {
     std::string name;
@@ -142,22 +142,21 @@ class Session {
                      const std::vector<StageKey>& shapes, SessionWork& work);
   void keep_spacing();
   void bring_rays();
-  std::vector<Part> arranged_parts();
-  void bring_samples(Part& part, const PrecomputeInput& input, std::size_t group);
-  void keep_samples(Part& part);
-  void place_anew(Part& part, const PrecomputeInput& input, std::size_t group, const StageKey& key);
-  void carry_along(Part& part, const PrecomputeInput& input, const StageKey& key);
-  void bring_lights(Part& part, const PrecomputeInput& input, std::size_t group,
+  void arrange_bodies();
+  void bring_samples(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group);
+  void keep_samples(Body& body, BodyKeys& known);
+  void place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
+                  const StageKey& key);
+  void carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input, const StageKey& key);
+  void bring_lights(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
                     const std::vector<Light>& lights);
-  void bring_tree(Part& part, const std::vector<Light>& lights);
-  void bring_kernel(Part& part);
-  void bring_exitance(Part& part, TranslucentGroup& group, const PrecomputeInput& input,
-                      std::size_t most_places);
-  void assemble();
+  void bring_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights);
+  void bring_kernel(Body& body, BodyKeys& known);
+  void bring_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t most_places);
   HeldView* held_view();
   bool can_mix() const;
   Image recoloured(const Scene& scene, HeldView& view, Monitor* monitor);
-  void decide(const Part& part, const std::string& text);
+  void decide(const Body& body, const std::string& text);
 
   StageCache* cache_;
   Scene scene_;
@@ -169,8 +168,8 @@ class Session {
   std::unique_ptr<RayScene> rays_;
   RayBuild rays_build_ = RayBuild::careful;
   std::vector<MeshKeys> rays_keys_;
-  std::vector<Part> parts_;  // a group's, without what groups_ holds
-  std::vector<TranslucentGroup> groups_;
+  std::vector<Body> bodies_;
+  std::vector<BodyKeys> keys_;  // one a body
   std::size_t pictures_ = 1;
   bool holds_view_ = false, mixes_lights_ = false;
   HeldView view_;

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh_scan.h"
+#include "file_checks.h"
 
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
 namespace opaline {
+namespace {
+
+bool is_in_range(const Vec3d& v) {
+  return std::abs(v.x) < coordinate_limit && std::abs(v.y) < coordinate_limit &&
+         std::abs(v.z) < coordinate_limit;  // false for NaN as well
+}
+
+}  // namespace
 
 void VertexCheck::check(const Vec3d& p, std::size_t index, int line) {
-  const bool good = std::abs(p.x) < coordinate_limit && std::abs(p.y) < coordinate_limit &&
-                    std::abs(p.z) < coordinate_limit;  // false for NaN as well
-  if (good) return;
+  if (is_in_range(p)) return;
   if (bad_++ > 0) return;
   first_index_ = index;
   first_line_ = line;
@@ -26,6 +32,10 @@ void VertexCheck::throw_if_any(const std::string& path) const {
                  count + " a coordinate that is not finite or too large, the first is vertex " +
                      std::to_string(first_index_ + 1),
                  "finite coordinates below 1e18", got);
+}
+
+Vec3f usable_normal(const Vec3d& normal) {
+  return is_in_range(normal) ? Vec3f(normal) : Vec3f();
 }
 
 Error bad_line(const std::string& path, int line, std::string message, std::string expected,

@@ -2,11 +2,11 @@
 // Wavefront OBJ: v, vn and f are read; what else a file says is counted and said.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <unordered_set>
 #include <utility>
 
-#include "mesh_scan.h"
+#include "file_checks.h"
+#include "mesh_format.h"
 #include "text_cursor.h"
 
 namespace opaline {
@@ -110,12 +110,7 @@ class ObjReader {
     mesh_.positions.push_back(position);
   }
 
-  /// One that is not finite, or huge, is none.
-  void normal(TextCursor& at) {
-    const Vec3d value = three_numbers(at, "normal");
-    const bool good = is_finite(value) && max_component(component_max(value, -value)) < coordinate_limit;
-    normals_.push_back(good ? Vec3f(value) : Vec3f());
-  }
+  void normal(TextCursor& at) { normals_.push_back(usable_normal(three_numbers(at, "normal"))); }
 
   /// One index of a corner, made zero-based; negative ones count back from the latest.
   std::int64_t index(std::string_view text, std::size_t count, const char* what, const TextCursor& at) const {
@@ -235,10 +230,12 @@ class ObjReader {
   int first_unread_line_ = 0, first_material_line_ = 0;
 };
 
-}  // namespace
-
 SourceMesh read_obj(const std::string& path, std::string& bytes) {
   return ObjReader(path, bytes).run();
 }
+
+}  // namespace
+
+constinit const MeshFormat obj_format{".obj", read_obj};
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words, numbers and line numbers of a text held in memory; what the scans of text mesh files share.
+// Words, numbers and line numbers of a text held in memory; what the readers of text mesh files share.
 #pragma once
 
 #include <charconv>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One group's results, each with its key; a key of zeros stands for a result that is not there.
+// The keys of one body's results; a key of zeros stands for a result that is not there.
 #pragma once
 
 #include "opaline/session/session.h"
@@ -14,7 +14,7 @@ struct SampleOrigin {
   std::uint64_t seed = 0;
   std::size_t count = 0;       // asked for
   double area = 0;             // of the surface then, mm^2
-  SurfaceSamples surface;      // while the part's own are carried; else the part's own are these
+  SurfaceSamples surface;      // while the body's own are carried; else the body's own are these
   SurfaceCells cells;          // of these samples; empty until a surface bends where no edits were expected
   bool count_was_set = false;  // by settings.samples
   std::optional<double> spacing_setting;
@@ -24,20 +24,13 @@ struct SampleOrigin {
 /// the scene allows, or, where the scene sets their number, a small part of that.
 bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings);
 
-struct Session::Part {
-  GroupPlan plan;
-  DiffuseProfile profile;
+/// What a body's results were computed from.
+struct Session::BodyKeys {
   SampleOrigin origin;
-  StageKey samples_key, tree_key, kernel_key;
-  SurfaceSamples surface;
-  std::vector<std::uint32_t> meshes;  // that the surface's samples name
-  std::vector<StageKey> light_keys;
-  std::vector<LightTransfer> transfers;  // one a light
-  std::vector<RgbF> irradiance;
-  Octree octree;
-  std::optional<SplitKernel> kernel;
-  StageKey exitance_key;
-  std::optional<SurfaceCache> surface_cache;  // the group's while it is of use for the picture
+  StageKey samples_key, tree_key, kernel_key, exitance_key;
+  std::vector<std::uint32_t> meshes;        // that the samples name
+  std::vector<StageKey> light_keys;         // of the transfers
+  std::optional<SurfaceCache> spare_cache;  // of no use for the picture at hand
 
   bool is_carried() const { return samples_key != origin.key; }
 };

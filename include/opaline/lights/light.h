@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light that arrives at a surface point from one light of the scene, as shadow rays with weights.
+// The lights of a scene, whatever their kind: where they are, and what arrives at a point from them.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "opaline/core/vec3.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {
 
-/// One sample of a light seen from a point: the contribution to irradiance is radiance_weight x cos x Ft x (1 if
-/// not occluded) x emission, emission being the light's colour (intensity, irradiance or radiance).
+/// One sample of a light seen from a point: the contribution to irradiance is radiance_weight x cos x Ft x (1
+/// if not occluded) x emission, emission being the light's colour (intensity, irradiance or radiance).
 struct LightSample {
   Vec3f direction;  ///< unit, from the point towards the light
   float distance;   ///< infinity for directional lights and surroundings
@@ -34,7 +36,8 @@ Light recentred(const Light& light, const Vec3d& origin, double unit = 1);
 
 /// Sample of a light from a point.
 /// in    unit_square: in [0, 1)^2, unused by delta lights; samples: how many share the light's solid angle
-///       normal: unit; surroundings are sampled by its cosine, all others by solid angle (sphere) or area (quad)
+///       normal: unit; surroundings are sampled by its cosine, all others by solid angle (sphere) or area
+///       (quad)
 LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& normal,
                          std::array<double, 2> unit_square, int samples);
 
@@ -45,5 +48,22 @@ struct EmitterHit {
   RgbF radiance{};
 };
 EmitterHit intersect_emitter(const Light& light, const Vec3f& origin, const Vec3f& direction, float far);
+
+/// Radiance that a ray sees of the light if it meets nothing.
+RgbF background(const Light& light, const Vec3f& direction);
+
+/// Where a light is. A light with neither centre nor direction is all around.
+struct LightExtent {
+  std::optional<Vec3d> center{};   ///< of a ball around it; none: infinitely far
+  double radius = 0;               ///< of that ball
+  double width = 0;                ///< along its shorter side
+  Vec3d along{};                   ///< from end to end of its middle line, which `center` is the middle of
+  std::optional<Vec3d> facing{};   ///< unit; it shines on this side only
+  std::optional<Vec3d> towards{};  ///< unit; an infinitely far light lies that way
+};
+LightExtent extent(const Light& light);
+
+/// All numbers that say where the light is and how large, none of its colour; of another kind, others.
+std::vector<double> geometry(const Light& light);
 
 }  // namespace opaline

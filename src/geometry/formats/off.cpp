@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Object File Format, text: [ST][C][N]OFF. OpenMesh understands neither comments nor counts on the header's
-// line nor colours of faces without a C in the header, and forgets the header when it reads from memory; so
-// all but counts, coordinates and indices is blanked, and normals are kept here.
+// Object File Format, text: [ST][C][N]OFF. Colours, texture coordinates and what else follows a vertex or a
+// face on its line are passed over.
 #include <algorithm>
 
-#include "mesh_scan.h"
+#include "file_checks.h"
+#include "mesh_format.h"
 #include "text_cursor.h"
 
 namespace opaline {
 namespace {
 
-class OffScanner {
+class OffReader {
  public:
-  OffScanner(const std::string& path, std::string& bytes) : path_(path), bytes_(bytes), at_(bytes) {}
+  OffReader(const std::string& path, std::string& bytes) : path_(path), bytes_(bytes), at_(bytes) {}
 
-  MeshScan run() {
+  SourceMesh run() {
     blank_comments();
     header();
     counts();
@@ -22,20 +22,14 @@ class OffScanner {
     for (std::int64_t i = 0; i < faces_; ++i) face();
     require_faces(path_, std::size_t(vertices_), std::size_t(faces_));
     check_.throw_if_any(path_);
-    scan_.corners = hash_.value();
-    scan_.faces = hash_.faces();
-    return std::move(scan_);
+    return std::move(mesh_);
   }
 
  private:
-  void blank(std::size_t first, std::size_t end) {
-    std::fill(bytes_.begin() + std::ptrdiff_t(first), bytes_.begin() + std::ptrdiff_t(end), ' ');
-  }
-
   void blank_comments() {
     for (std::size_t at = bytes_.find('#'); at != bytes_.npos; at = bytes_.find('#', at)) {
       const std::size_t end = std::min(bytes_.find('\n', at), bytes_.size());
-      blank(at, end);
+      std::fill(bytes_.begin() + std::ptrdiff_t(at), bytes_.begin() + std::ptrdiff_t(end), ' ');
     }
   }
 
@@ -48,8 +42,6 @@ class OffScanner {
     if (rest != "OFF")
       throw bad_line(path_, at_.line(), "this is not an OFF file of three dimensions",
                      "OFF, COFF, NOFF or STOFF", quoted(word));
-    blank(0, at_.offset());
-    bytes_[0] = '\n';  // OpenMesh takes the first line for the header, unread
   }
 
   std::int64_t integer(const char* what) {
@@ -74,14 +66,12 @@ class OffScanner {
       throw bad_file(path_, "the header claims more than the file holds",
                      std::to_string(vertices_) + " vertices and " + std::to_string(faces_) + " faces",
                      std::to_string(left) + " bytes after the header");
-    scan_.positions.reserve(std::size_t(vertices_));
+    mesh_.positions.reserve(std::size_t(vertices_));
+    constexpr std::int64_t smallest_triangle = 7;  // bytes: "3 0 1 2"
+    mesh_.triangles.reserve(std::size_t(std::min(faces_, left / smallest_triangle)));
   }
 
-  /// Drops what is left of this line (colours, texture coordinates).
   void end_line() {
-    const std::size_t first = at_.offset();
-    const std::size_t end = at_.line_end();
-    blank(first, end);
     if (!at_.at_end()) at_.next_line();
   }
 
@@ -98,11 +88,9 @@ class OffScanner {
 
   void vertex() {
     const Vec3d position = three_numbers("vertex", true);
-    check_.check(position, scan_.positions.size(), at_.line());
-    scan_.positions.push_back(position);
-    const std::size_t extra = at_.offset();
-    if (has_normals_) scan_.normals.push_back(Vec3f(three_numbers("normal", false)));
-    blank(extra, at_.offset());
+    check_.check(position, mesh_.positions.size(), at_.line());
+    mesh_.positions.push_back(position);
+    if (has_normals_) mesh_.normals.push_back(usable_normal(three_numbers("normal", false)));
     end_line();
   }
 
@@ -111,33 +99,33 @@ class OffScanner {
     if (corners > std::int64_t(bytes_.size() - at_.offset()) / 2 + 1)
       throw bad_line(path_, at_.line(), "a face claims more corners than the file holds", "",
                      std::to_string(corners));
+    PolygonFan fan(mesh_);
     for (std::int64_t i = 0; i < corners; ++i) {
       const std::int64_t vertex = integer("vertex index in a face");
       if (vertex >= vertices_)
         throw bad_line(path_, at_.line(), "vertex index out of range in a face",
                        "0 to " + std::to_string(vertices_ - 1), std::to_string(vertex));
-      hash_.add(std::uint64_t(vertex));
+      fan.add_corner(std::uint32_t(vertex));
     }
-    hash_.end_face();
-    if (corners >= 3) scan_.triangles += std::size_t(corners) - 2;
-    if (corners < 3) ++scan_.collapsed;
+    fan.finish();
     end_line();
   }
 
   const std::string& path_;
   std::string& bytes_;
   TextCursor at_;
-  MeshScan scan_;
+  SourceMesh mesh_;
   VertexCheck check_;
-  CornerHash hash_;
   std::int64_t vertices_ = 0, faces_ = 0;
   bool has_normals_ = false;
 };
 
+SourceMesh read_off(const std::string& path, std::string& bytes) {
+  return OffReader(path, bytes).run();
+}
+
 }  // namespace
 
-MeshScan scan_off(const std::string& path, std::string& bytes) {
-  return OffScanner(path, bytes).run();
-}
+constinit const MeshFormat off_format{".off", read_off};
 
 }  // namespace opaline

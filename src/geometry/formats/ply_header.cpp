@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "mesh_scan.h"
+#include "file_checks.h"
 #include "text_cursor.h"
 
 namespace opaline {
@@ -119,10 +119,6 @@ class HeaderReader {
 
 std::size_t byte_size(PlyScalar type) {
   return types[std::size_t(type)].size;
-}
-
-std::string ply_type_name(PlyScalar type) {
-  return std::string(types[std::size_t(type)].short_name);
 }
 
 PlyHeader read_ply_header(const std::string& path, const std::string& bytes) {

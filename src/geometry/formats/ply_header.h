@@ -41,7 +41,4 @@ struct PlyHeader {
 /// error Error{bad_input} with the line
 PlyHeader read_ply_header(const std::string& path, const std::string& bytes);
 
-/// The name OpenMesh knows a type by; a list's length must be of its int, uint8 or uint16.
-std::string ply_type_name(PlyScalar type);
-
 }  // namespace opaline

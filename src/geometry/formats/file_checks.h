@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the readers of all mesh formats check and build alike.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "geometry/source_mesh.h"
+#include "opaline/core/error.h"
+#include "opaline/core/vec3.h"
+
+namespace opaline {
+
+/// Coordinates must stay below this: Embree drops triangles beyond 1.8e18 without a word.
+inline constexpr double coordinate_limit = 1e18;
+
+/// Counts the vertices whose coordinates are not finite or too large, so that one error names them all.
+class VertexCheck {
+ public:
+  /// line: 1-based, 0 in binary files
+  void check(const Vec3d& position, std::size_t index, int line);
+  void throw_if_any(const std::string& path) const;
+
+ private:
+  std::size_t bad_ = 0, first_index_ = 0;
+  int first_line_ = 0;
+  Vec3d first_;
+};
+
+/// A file's normal, or zero, which means none, if it is not finite or too large.
+Vec3f usable_normal(const Vec3d& normal);
+
+/// Cuts a polygon, given corner by corner, into the triangles between its first corner and its other edges.
+class PolygonFan {
+ public:
+  explicit PolygonFan(SourceMesh& mesh) : mesh_(mesh) {}
+
+  void add_corner(std::uint32_t vertex) {
+    if (corners_ == 0) first_ = vertex;
+    if (corners_ >= 2) mesh_.triangles.push_back({first_, last_, vertex});
+    last_ = vertex;
+    ++corners_;
+  }
+  /// After the last corner.
+  void finish() { mesh_.collapsed += corners_ < 3; }
+
+ private:
+  SourceMesh& mesh_;
+  std::uint32_t first_ = 0, last_ = 0;
+  std::size_t corners_ = 0;
+};
+
+/// Bad input at a line of a file.
+Error bad_line(const std::string& path, int line, std::string message, std::string expected = {},
+               std::string got = {});
+
+/// error "the mesh has no faces" or "no vertices" where that is so
+void require_faces(const std::string& path, std::size_t vertices, std::size_t faces);
+
+}  // namespace opaline

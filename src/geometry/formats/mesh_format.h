@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The mesh formats. Each has a file of its own in this folder, which holds all that is particular to it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <istream>
+#include <string>
+#include <string_view>
+
+#include "geometry/source_mesh.h"
+
+namespace opaline {
+
+struct MeshFormat {
+  std::string_view extension;  ///< of its files, in lower case, with the dot
+
+  /// The mesh in a file's bytes, which the reader may overwrite or free; see read_mesh.
+  /// error Error{bad_input} naming the file, and the line where the format has lines
+  SourceMesh (*read)(const std::string& path, std::string& bytes);
+
+  /// The length of the whole file as its header announces it; 0 if it does not. Null: the format never does.
+  std::uintmax_t (*announced_length)(std::istream& file) = nullptr;
+};
+
+extern const MeshFormat obj_format, ply_format, stl_format, off_format;
+
+inline constexpr std::array mesh_formats{&obj_format, &ply_format, &stl_format, &off_format};
+
+/// The format that a file's name ends in, in upper or lower case; null if it is none of them.
+const MeshFormat* find_mesh_format(const std::string& path);
+
+}  // namespace opaline

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/lights/light.h"
+
+#include "lights/light_of.h"
+#include "opaline/core/random.h"
+
+namespace opaline {
+namespace {
+
+/// use(light of its kind, what that kind can do).
+template <class Use>
+auto by_kind(const Light& light, const Use& use) {
+  return std::visit([&]<class Kind>(const Kind& kind) { return use(kind, LightOf<Kind>()); }, light.source);
+}
+
+}  // namespace
+
+Rgb emission(const Light& light) {
+  return by_kind(light, [](const auto& kind, auto of) { return of.emission(kind); });
+}
+
+bool is_delta(const Light& light) {
+  return by_kind(light, [](const auto&, auto of) { return of.is_delta(); });
+}
+
+std::uint64_t light_seed(std::uint64_t seed, const Light& light) {
+  std::uint64_t name = 0;
+  for (const char c : light.name) name = hash_bits(name, std::uint8_t(c));
+  return hash_bits(seed, name);
+}
+
+Light recentred(const Light& light, const Vec3d& origin, double unit) {
+  Light moved = light;
+  moved.source = by_kind(
+      light, [&](const auto& kind, auto of) { return LightSource(of.recentred(kind, origin, unit)); });
+  return moved;
+}
+
+LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& normal,
+                         std::array<double, 2> unit_square, int samples) {
+  return by_kind(
+      light, [&](const auto& kind, auto of) { return of.sample(kind, point, normal, unit_square, samples); });
+}
+
+EmitterHit intersect_emitter(const Light& light, const Vec3f& origin, const Vec3f& direction, float far) {
+  return by_kind(light,
+                 [&](const auto& kind, auto of) { return of.intersect(kind, origin, direction, far); });
+}
+
+RgbF background(const Light& light, const Vec3f& direction) {
+  return by_kind(light, [&](const auto& kind, auto of) { return of.background(kind, direction); });
+}
+
+LightExtent extent(const Light& light) {
+  return by_kind(light, [](const auto& kind, auto of) { return of.extent(kind); });
+}
+
+std::vector<double> geometry(const Light& light) {
+  return by_kind(light, [](const auto& kind, auto of) { return of.geometry(kind); });
+}
+
+}  // namespace opaline

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a kind of light can do. Each kind has a file that defines all of it, and how the scene file gives it
+// (scene/light_reader.h); a kind without one of these does not link.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "opaline/lights/light.h"
+
+namespace opaline {
+
+template <class Kind>
+struct LightOf {
+  static Rgb emission(const Kind& light);
+  static bool is_delta();
+  /// The light in a world's space, as recentred says.
+  static Kind recentred(Kind light, const Vec3d& origin, double unit);
+  static LightSample sample(const Kind& light, const Vec3f& point, const Vec3f& normal,
+                            std::array<double, 2> unit_square, int samples);
+  /// Where a ray meets the light itself before `far`; no hit for lights without an area.
+  static EmitterHit intersect(const Kind& light, const Vec3f& origin, const Vec3f& direction, float far);
+  /// What a ray that meets nothing sees of it; 0 unless it is all around.
+  static RgbF background(const Kind& light, const Vec3f& direction);
+  static LightExtent extent(const Kind& light);
+  /// All numbers that say where it is and how large, none of its colour.
+  static std::vector<double> geometry(const Kind& light);
+};
+
+}  // namespace opaline

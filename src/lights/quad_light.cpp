@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A flat lamp that shines on one side.
+#include <algorithm>
+#include <cmath>
+
+#include "lights/light_of.h"
+#include "scene/light_reader.h"
+#include "scene/readers.h"
+
+namespace opaline {
+
+template <>
+std::vector<KeyInfo> LightReader<QuadLight>::rows() {
+  using enum ValueType;
+  return {{.key = "type",
+           .type = choice,
+           .meaning = "`\"quad\"`: a flat lamp, shining on the side where u x v points"},
+          {.key = "corner", .type = point, .meaning = "one corner"},
+          {.key = "u", .type = point, .meaning = "from it along one side"},
+          {.key = "v", .type = point, .meaning = "from it along the other, not parallel to `u`"},
+          {.key = "radiance",
+           .type = color,
+           .unit = "W/(mm² sr)",
+           .range = kNonNegative,
+           .meaning = "brightness of its surface"}};
+}
+
+template <>
+QuadLight LightReader<QuadLight>::read(const ObjectReader& reader, double mm_per_unit) {
+  const Value v_value = reader.need("v");
+  const Vec3d u = reader.need("u").point(mm_per_unit), v = v_value.point(mm_per_unit);
+  check_parallelogram(u, v, v_value);
+  return {reader.need("corner").point(mm_per_unit), u, v, reader.need("radiance").color()};
+}
+
+template <>
+Rgb LightOf<QuadLight>::emission(const QuadLight& light) {
+  return light.radiance;
+}
+
+template <>
+bool LightOf<QuadLight>::is_delta() {
+  return false;
+}
+
+template <>
+QuadLight LightOf<QuadLight>::recentred(QuadLight light, const Vec3d& origin, double unit) {
+  light.corner = (light.corner - origin) / unit;
+  light.u = light.u / unit;
+  light.v = light.v / unit;
+  return light;
+}
+
+template <>
+LightSample LightOf<QuadLight>::sample(const QuadLight& light, const Vec3f& point, const Vec3f&,
+                                       std::array<double, 2> unit_square, int samples) {
+  const Vec3d to_light = light.corner + light.u * unit_square[0] + light.v * unit_square[1] - Vec3d(point);
+  const double d2 = dot(to_light, to_light);
+  const Vec3d area_normal = cross(light.u, light.v);  // as long as the area
+  const double facing = -dot(area_normal, to_light);
+  if (!(d2 > 0) || facing <= 0) return {};
+  const double d = std::sqrt(d2);
+  return {Vec3f(to_light / d), float(d), float(facing / (d2 * d * samples))};
+}
+
+template <>
+EmitterHit LightOf<QuadLight>::intersect(const QuadLight& light, const Vec3f& origin, const Vec3f& direction,
+                                         float far) {
+  const Vec3d o(origin), d(direction);
+  const Vec3d n = cross(light.u, light.v);
+  const double facing = dot(d, n);
+  if (facing >= 0) return {};
+  const double t = dot(light.corner - o, n) / facing;
+  if (!(t > 0 && t < far)) return {};
+  const Vec3d p = o + d * t - light.corner;
+  const double n2 = dot(n, n), u = dot(cross(p, light.v), n) / n2, v = dot(cross(light.u, p), n) / n2;
+  if (u >= 0 && u <= 1 && v >= 0 && v <= 1) return {true, float(t), RgbF(light.radiance)};
+  return {};
+}
+
+template <>
+RgbF LightOf<QuadLight>::background(const QuadLight&, const Vec3f&) {
+  return {};
+}
+
+template <>
+LightExtent LightOf<QuadLight>::extent(const QuadLight& light) {
+  const double radius = 0.5 * std::max(length(light.u + light.v), length(light.u - light.v));
+  const bool u_is_longer = length(light.u) > length(light.v);
+  const Vec3d along = u_is_longer ? light.u : light.v, across = u_is_longer ? light.v : light.u;
+  return {.center = light.corner + 0.5 * (light.u + light.v),
+          .radius = radius,
+          .width = length(cross(along, across)) / length(along),
+          .along = along,
+          .facing = normalized(cross(normalized(light.u), normalized(light.v)))};
+}
+
+template <>
+std::vector<double> LightOf<QuadLight>::geometry(const QuadLight& light) {
+  return {light.corner.x, light.corner.y, light.corner.z, light.u.x, light.u.y,
+          light.u.z,      light.v.x,      light.v.y,      light.v.z};
+}
+
+}  // namespace opaline

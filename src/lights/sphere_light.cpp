@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A ball that glows.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lights/light_of.h"
+#include "scene/light_reader.h"
+
+namespace opaline {
+
+template <>
+std::vector<KeyInfo> LightReader<SphereLight>::rows() {
+  using enum ValueType;
+  return {{.key = "type", .type = choice, .meaning = "`\"sphere\"`: a glowing ball"},
+          {.key = "center", .type = point, .meaning = "its centre"},
+          {.key = "radius", .type = length, .meaning = "its radius"},
+          {.key = "radiance",
+           .type = color,
+           .unit = "W/(mm² sr)",
+           .range = kNonNegative,
+           .meaning = "brightness of its surface"}};
+}
+
+template <>
+SphereLight LightReader<SphereLight>::read(const ObjectReader& reader, double mm_per_unit) {
+  return {reader.need("center").point(mm_per_unit), reader.need("radius").length(mm_per_unit),
+          reader.need("radiance").color()};
+}
+
+template <>
+Rgb LightOf<SphereLight>::emission(const SphereLight& light) {
+  return light.radiance;
+}
+
+template <>
+bool LightOf<SphereLight>::is_delta() {
+  return false;
+}
+
+template <>
+SphereLight LightOf<SphereLight>::recentred(SphereLight light, const Vec3d& origin, double unit) {
+  light.center = (light.center - origin) / unit;
+  light.radius /= unit;
+  return light;
+}
+
+// Uniform over the cone that the sphere fills; from inside it, over all directions.
+template <>
+LightSample LightOf<SphereLight>::sample(const SphereLight& light, const Vec3f& point, const Vec3f&,
+                                         std::array<double, 2> unit_square, int samples) {
+  const Vec3d to_center = light.center - Vec3d(point);
+  const double d2 = dot(to_center, to_center), r2 = light.radius * light.radius;
+  const double phi = 2 * std::numbers::pi * unit_square[1];
+  const bool inside = d2 <= r2;
+  // 1 - cos of the cone's half angle, without cancellation for a small, far sphere.
+  const double sin2 = inside ? 1 : r2 / d2;
+  const double one_minus_cos = inside ? 2 : sin2 / (1 + std::sqrt(1 - sin2));
+  const double drop = one_minus_cos * unit_square[0], cosine = 1 - drop,
+               sine = std::sqrt(std::max(0.0, drop * (2 - drop)));
+  const Vec3d axis = inside ? Vec3d{0, 0, 1} : to_center / std::sqrt(d2);
+  Vec3d x, y;
+  tangent_frame(axis, x, y);
+  const Vec3d direction = x * (sine * std::cos(phi)) + y * (sine * std::sin(phi)) + axis * cosine;
+  const double along = dot(to_center, direction), miss2 = d2 - along * along;
+  const double half_chord = std::sqrt(std::max(0.0, r2 - miss2));
+  const double distance = inside ? along + half_chord : along - half_chord;
+  return {Vec3f(direction), float(distance), float(2 * std::numbers::pi * one_minus_cos / samples)};
+}
+
+template <>
+EmitterHit LightOf<SphereLight>::intersect(const SphereLight& light, const Vec3f& origin,
+                                           const Vec3f& direction, float far) {
+  const Vec3d o(origin), d(direction);
+  const Vec3d to_center = light.center - o;
+  const double a = dot(d, d), b = dot(to_center, d);
+  const Vec3d closest = to_center - d * (b / a);
+  const double inside = light.radius * light.radius - dot(closest, closest);
+  if (inside < 0) return {};
+  const double half = std::sqrt(inside / a), t = b / a - half > 0 ? b / a - half : b / a + half;
+  if (t > 0 && t < far) return {true, float(t), RgbF(light.radiance)};
+  return {};
+}
+
+template <>
+RgbF LightOf<SphereLight>::background(const SphereLight&, const Vec3f&) {
+  return {};
+}
+
+template <>
+LightExtent LightOf<SphereLight>::extent(const SphereLight& light) {
+  return {.center = light.center, .radius = light.radius, .width = 2 * light.radius};
+}
+
+template <>
+std::vector<double> LightOf<SphereLight>::geometry(const SphereLight& light) {
+  return {light.center.x, light.center.y, light.center.z, light.radius};
+}
+
+}  // namespace opaline

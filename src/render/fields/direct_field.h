@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `direct`: the places where light entered are drawn at random, unbiased and noisy.
+#pragma once
+
+#include "render/direct_exitance.h"
+#include "render/fields/field.h"
+
+namespace opaline {
+
+class DirectField : public Field {
+ public:
+  DirectField(const EntrySampler& sampler, float eta) : sampler_(sampler), eta_(eta) {}
+
+  LeavingLight at(const SurfaceHits&, PointIrradianceInput lighting, const Pass& pass,
+                  HeldView::Surface*) const override {
+    return {.exitance = direct_exitance({sampler_, lighting, pass.entry_samples}),
+            .irradiance = {},
+            .error = {},
+            .noise = {},
+            .bias = {}};
+  }
+  float eta() const override { return eta_; }
+
+ private:
+  const EntrySampler& sampler_;
+  float eta_;
+};
+
+}  // namespace opaline

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How much light leaves a surface where the camera sees it, and how wrong that may be. A method of the
+// program is a field with a file of its own; make_fields.cpp has the table that tells which body takes which.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "opaline/geometry/world.h"
+#include "opaline/irradiance/irradiance.h"
+#include "opaline/render/held_view.h"
+
+namespace opaline {
+
+/// One of several independent estimates of the same picture; only `direct` makes more than one.
+struct Pass {
+  std::uint64_t index = 0;
+  int entry_samples = 0;  ///< of each camera ray
+};
+
+/// The hits of a batch of camera rays that one field answers for, one entry a hit in each array.
+struct SurfaceHits {
+  std::vector<SurfacePoint> points;
+  std::vector<Hit> hits;            ///< mesh, triangle, barycentrics
+  std::vector<std::uint64_t> keys;  ///< choose the random numbers of a hit
+  std::vector<std::uint32_t> rays;  ///< their places in the batch
+};
+
+/// Light that leaves, one entry a hit, W/mm^2; an array that the field does not know is empty.
+struct LeavingLight {
+  std::vector<RgbF> exitance;    ///< radiant exitance M_o
+  std::vector<RgbF> irradiance;  ///< E at the hit
+  std::vector<RgbF> error;       ///< expected |error| of the exitance that neighbouring hits share
+  std::vector<Rgb> noise;        ///< variance of the exitance of each hit by itself
+  std::vector<RgbF> bias;        ///< that the noise gives the exitance
+};
+
+class Field {
+ public:
+  virtual ~Field() = default;
+  /// in    lighting: of the hits' points, with the boundary of eta()
+  ///       held: what was found at the same hits before, added to; or null
+  virtual LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
+                          HeldView::Surface* held) const = 0;
+  /// Index of refraction of the boundary that light enters through; 0: none, an opaque surface.
+  virtual float eta() const = 0;
+  /// Whether the exitance is summed over samples, point by point.
+  virtual bool asks_samples() const { return false; }
+};
+
+/// Irradiance at the hits, by shadow rays unless it is held.
+std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, HeldView::Surface* held);
+
+}  // namespace opaline

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that leaves where it entered: opaque surfaces, and `lambert`, the limit of a vanishing mean free
+// path.
+#pragma once
+
+#include "opaline/render/render.h"
+#include "render/fields/field.h"
+
+namespace opaline {
+
+class LocalField : public Field {
+ public:
+  /// albedos: of each mesh of the world, the reflectance or the total diffuse reflectance.
+  LocalField(const RenderInput& input, std::span<const RgbF> albedos, float eta);
+
+  LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
+                  HeldView::Surface* held) const override;
+  float eta() const override { return eta_; }
+
+ private:
+  std::vector<RgbF> albedos_;
+  float eta_;
+  bool estimates_error_, is_noisy_;
+};
+
+}  // namespace opaline

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/fields/make_fields.h"
+
+#include <algorithm>
+
+#include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/lights/light.h"
+#include "render/fields/direct_field.h"
+#include "render/fields/local_field.h"
+#include "render/fields/sample_field.h"
+
+namespace opaline {
+namespace {
+
+bool has_mesh(const std::vector<std::uint32_t>& meshes, std::size_t mesh) {
+  return std::ranges::find(meshes, mesh) != meshes.end();
+}
+
+/// What meshes must have in common to share a field: one of the first two, or none of them and the boundary.
+struct Source {
+  const Body* group = nullptr;
+  const EntrySampler* entries = nullptr;
+  float eta = 0;
+  friend bool operator==(const Source&, const Source&) = default;
+};
+
+Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_samplers, std::size_t mesh) {
+  const Shape& shape = input.scene.shapes[mesh];
+  if (!shape.medium) return {};
+  Source source{.eta = float(input.scene.media[*shape.medium].eta)};
+  if (input.scene.settings.method == Method::hierarchical)
+    for (const Body& group : input.groups)
+      if (has_mesh(group.plan.meshes, mesh)) source.group = &group;
+  for (const EntrySampler& sampler : entry_samplers)
+    if (has_mesh(sampler.meshes(), mesh)) source.entries = &sampler;
+  return source;
+}
+
+std::unique_ptr<Field> make_field(const RenderInput& input, const Source& source,
+                                  std::span<const RgbF> albedos) {
+  if (source.group != nullptr) return std::make_unique<SampleField>(input, *source.group);
+  if (source.entries != nullptr) return std::make_unique<DirectField>(*source.entries, source.eta);
+  return std::make_unique<LocalField>(input, albedos, source.eta);
+}
+
+std::vector<RgbF> albedos_of(const Scene& scene) {
+  std::vector<RgbF> albedos;
+  for (const Shape& shape : scene.shapes)
+    albedos.push_back(
+        RgbF(shape.medium ? make_diffuse_profile(scene.media[*shape.medium]).total : shape.reflectance));
+  return albedos;
+}
+
+}  // namespace
+
+Fields make_fields(const RenderInput& input, std::span<const EntrySampler> entry_samplers) {
+  const std::vector<RgbF> albedos = albedos_of(input.scene);
+  Fields fields;
+  std::vector<Source> sources;
+  for (std::size_t mesh = 0; mesh < input.world.meshes.size(); ++mesh) {
+    const Source source = source_of(input, entry_samplers, mesh);
+    const auto known = std::ranges::find(sources, source);
+    fields.of_mesh.push_back(std::size_t(known - sources.begin()));
+    if (known != sources.end()) continue;
+    sources.push_back(source);
+    fields.all.push_back(make_field(input, source, albedos));
+  }
+  return fields;
+}
+
+bool has_area_lights(const Scene& scene) {
+  return !std::ranges::all_of(scene.lights, is_delta);
+}
+
+std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, HeldView::Surface* held) {
+  if (held == nullptr) return irradiance_at(lighting);
+  held->lights.resize(lighting.lights.size());
+  for (std::size_t l = 0; l < held->lights.size(); ++l)
+    if (held->lights[l].weights.empty()) held->lights[l] = transfers_at(lighting, l);
+  return combine_lights(held->lights, lighting);
+}
+
+}  // namespace opaline

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which field answers for which mesh.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "opaline/render/render.h"
+#include "render/entry_sampler.h"
+#include "render/fields/field.h"
+
+namespace opaline {
+
+struct Fields {
+  std::vector<std::unique_ptr<Field>> all;
+  std::vector<std::size_t> of_mesh;  ///< an index into `all` for each mesh of the world
+};
+
+/// in    entry_samplers: of Method::direct, one a group; must outlive the fields, as the input
+Fields make_fields(const RenderInput& input, std::span<const EntrySampler> entry_samplers);
+
+/// Whether any light is seen directly or has more than one direction, so that shadow rays are noisy.
+bool has_area_lights(const Scene& scene);
+
+}  // namespace opaline

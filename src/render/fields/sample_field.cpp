@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/fields/sample_field.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "evaluate/crease_error.h"
+#include "evaluate/surface_patch.h"
+#include "render/fields/make_fields.h"
+#include "render/selection_bias.h"
+
+namespace opaline {
+namespace {
+
+bool needs_irradiance(const Body& group) {
+  return group.surface_cache ? group.surface_cache->needs_irradiance() : group.kernel.needs_irradiance();
+}
+
+RgbF crease_deviation(const RenderInput& input, const Body& group) {
+  const Vec3f eye(into_world(input.world, input.scene.camera.position));
+  const std::array<float, 3> error =
+      crease_error({group.octree, group.kernel, group.profile, eye, input.scene.settings.instruction_set});
+  return RgbF{error[0], error[1], error[2]} * std::sqrt(float(std::numbers::pi) / 2);
+}
+
+}  // namespace
+
+SampleField::SampleField(const RenderInput& input, const Body& group)
+    : input_(input),
+      group_(group),
+      is_noisy_(has_area_lights(input.scene)),
+      creases_(crease_deviation(input, group)) {
+  if (needs_irradiance(group)) near_field_.emplace(group);
+}
+
+LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass&,
+                             HeldView::Surface* held) const {
+  LeavingLight light;
+  if (near_field_) {
+    light.noise.resize(hits.points.size());
+    if (is_noisy_) lighting.variance = light.noise;
+    light.irradiance = irradiance_at_hits(lighting, held);
+    lighting.variance = {};
+  }
+  std::vector<Exitance> exitance =
+      group_.surface_cache ? looked_up(hits, light.irradiance)
+                           : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
+  if (near_field_) refine_near_field(lighting, exitance, light, held);
+  for (std::vector<RgbF>* values : {&light.exitance, &light.error, &light.irradiance})
+    values->reserve(exitance.size());
+  for (const Exitance& e : exitance) {
+    light.exitance.push_back(e.exitance);
+    light.error.push_back(e.error + e.exitance * creases_);
+    if (!near_field_) light.irradiance.push_back(e.irradiance);
+  }
+  return light;
+}
+
+std::vector<Exitance> SampleField::summed(const SurfaceHits& hits, std::span<const RgbF> irradiance,
+                                          QueryPackets* packets) const {
+  std::vector<Query> queries;
+  queries.reserve(hits.points.size());
+  for (const SurfacePoint& point : hits.points) queries.push_back({point.position, point.normal});
+  const Settings& settings = input_.scene.settings;
+  return evaluate({group_.octree, group_.kernel, queries, irradiance, settings.evaluator, settings.tolerance,
+                   settings.max_solid_angle, settings.instruction_set, group_.cloud, nullptr, packets});
+}
+
+std::vector<Exitance> SampleField::looked_up(const SurfaceHits& hits,
+                                             std::span<const RgbF> irradiance) const {
+  std::vector<Exitance> exitance;
+  exitance.reserve(hits.hits.size());
+  for (std::size_t i = 0; i < hits.hits.size(); ++i) {
+    const Hit& hit = hits.hits[i];
+    exitance.push_back(group_.surface_cache->at(hit.mesh, hit.triangle, hit.u, hit.v,
+                                                irradiance.empty() ? nullptr : &irradiance[i]));
+  }
+  return exitance;
+}
+
+// The irradiance at the hit is noisy, and beside a shadow edge not that of its near field.
+void SampleField::refine_near_field(const PointIrradianceInput& lighting, std::vector<Exitance>& exitance,
+                                    LeavingLight& light, HeldView::Surface* held) const {
+  const auto& share = group_.kernel.own_irradiance;
+  for (std::size_t i = 0; i < light.noise.size(); ++i) {
+    const Rgb own(own_part(share, exitance[i], RgbF(1)));
+    light.noise[i] = light.noise[i] * own * own;
+  }
+  const std::vector<Rgb> noise = light.noise;
+  const bool keeps = held != nullptr && input_.view->keeps_near_field && input_.view->has_room;
+  const std::vector<std::uint32_t> refined = near_field_->refine(
+      lighting, light.irradiance, exitance, light.noise, keeps ? &held->near_field : nullptr);
+  if (is_noisy_ && !refined.empty())
+    light.bias = selection_bias({share, light.irradiance, exitance, noise, refined});
+}
+
+}  // namespace opaline

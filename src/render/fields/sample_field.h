@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The exitance of a group's samples: summed at the hits (dual_tree, classic, brute_force), or looked up in
+// its surface cache. What a sharp near field adds to either is traced at the hits.
+#pragma once
+
+#include <optional>
+
+#include "opaline/render/render.h"
+#include "render/fields/field.h"
+#include "render/near_field_sampler.h"
+
+namespace opaline {
+
+class SampleField : public Field {
+ public:
+  SampleField(const RenderInput& input, const Body& group);
+
+  LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
+                  HeldView::Surface* held) const override;
+  float eta() const override { return float(group_.profile.eta); }
+  bool asks_samples() const override { return true; }
+
+ private:
+  std::vector<Exitance> summed(const SurfaceHits& hits, std::span<const RgbF> irradiance,
+                               QueryPackets* packets) const;
+  std::vector<Exitance> looked_up(const SurfaceHits& hits, std::span<const RgbF> irradiance) const;
+  void refine_near_field(const PointIrradianceInput& lighting, std::vector<Exitance>& exitance,
+                         LeavingLight& light, HeldView::Surface* held) const;
+
+  const RenderInput& input_;
+  const Body& group_;
+  bool is_noisy_;
+  std::optional<NearFieldSampler> near_field_;  ///< none: the samples tell all
+  RgbF creases_{};  ///< what a near field misses beside creases, over the exitance, as a standard deviation
+};
+
+}  // namespace opaline
