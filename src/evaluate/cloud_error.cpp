@@ -6,6 +6,7 @@
 
 #include "evaluate/near_samples.h"
 #include "evaluate/point_sums.h"
+#include "evaluate/refined_stake.h"
 #include "opaline/sampling/sample_surface.h"
 
 namespace opaline {
@@ -27,8 +28,6 @@ constexpr double kAtCreases = 1.6, kManyCreases = 0.02, kLeast = 0.03, kMost = 1
 constexpr double kLeastHierarchy = 0.005, kMostHierarchy = 0.15;
 // Of what solid angles suggest: the mean error of the nodes of `classic`, at least and at most.
 constexpr double kLeastFlattened = 0.02, kMostFlattened = 4;
-// As much at stake is looked at more closely beside shadow edges (NearFieldSampler).
-constexpr float kRefined = 0.02f;
 // Darker than this part of the brightest, errors are absolute.
 constexpr float kDark = 1e-3f;
 
@@ -85,7 +84,7 @@ Trials trials_at_samples(const Octree& tree) {
 bool is_refined(const SplitKernel& kernel, const Exitance& e, const RgbF& own) {
   for (std::size_t c = 0; c < 3; ++c) {
     const float share = kernel.own_irradiance[c];
-    if (e.near[c] * share * (1 - share) * std::abs(own[c] - e.irradiance[c]) > kRefined * e.exitance[c])
+    if (e.near[c] * share * (1 - share) * std::abs(own[c] - e.irradiance[c]) > kRefinedStake * e.exitance[c])
       return true;
   }
   return false;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "evaluate/near_samples.h"
+#include "evaluate/refined_stake.h"
 #include "opaline/core/random.h"
 
 namespace opaline {
@@ -28,8 +29,6 @@ constexpr double kWhole = 0.8;
 // kMost.
 constexpr float kDark = 1e-3f;
 constexpr double kMost = 2;
-// Less of the exitance at stake is not refined by shadow rays (NearFieldSampler).
-constexpr float kRefined = 0.02f;
 
 Vec3f position_of(const TreeSample& s) {
   return {s.x, s.y, s.z};
@@ -188,7 +187,7 @@ TrialError error_of(const SplitKernel& kernel, const NearLight& light, const Exi
   const double own = double(irradiance[c]), share = double(kernel.own_irradiance[c]),
                taken = double(e.near[c]);
   double used = share * own + (1 - share) * double(e.irradiance[c]), exitance = double(e.exitance[c]);
-  if (taken * share * std::abs(own - used) > double(kRefined) * exitance) {
+  if (taken * share * std::abs(own - used) > double(kRefinedStake) * exitance) {
     exitance += taken * (own - used);
     used = own;
   }

@@ -8,11 +8,11 @@
 namespace opaline {
 namespace {
 
-// Places count in full up to where the cosine of their normal with the point's is one over this, and less
-// beyond, as the reflectance of a plane says little about what turns away. Measured on the rim of the bunny's
-// ear at 2048 x 2048: the largest error is 5.8 %, where all count in full 11.6 %; 1 leaves p99 1.54 in place
-// of 1.36 %.
-constexpr float kFacing = 1.5f;
+// Places at a grazing angle to a point are rarely drawn and then count the more. Their cosine counts as this
+// at least, or a few of them would decide the mean. Measured on the rim of the bunny's ear at 2048 x 2048
+// with drawn places only, against a finer lattice: largest error 13.6 % with the density of the straight
+// distance and no cosine, 8.9 % with .05, 8.6 % with .1 to .35, 9.3 % with .5.
+constexpr float kGrazing = 0.2f;
 
 }  // namespace
 
@@ -35,7 +35,9 @@ NearFieldMeans::NearFieldMeans(const NearKernel& kernel, std::span<const Surface
   }
 }
 
-// The kernels of all points at a place; 0 where it faces away from the point.
+// The kernels of all points at a place, which are 0 where it faces away from the point, and how densely each
+// point draws places there. The kernel depends on the straight distance. A point draws a distance in its
+// tangent plane and finds the place along its normal: the steeper the surface, the farther apart the places.
 void NearFieldMeans::find_densities(const SurfacePoint& place) {
   constexpr float kOutside = NearKernel::kRings;
   const float rings = kOutside / kernel_.radius;
@@ -43,9 +45,15 @@ void NearFieldMeans::find_densities(const SurfacePoint& place) {
   const float gx = place.geometric.x, gy = place.geometric.y, gz = place.geometric.z;
   for (std::size_t m = 0; m < end_; ++m) {
     const float dx = x_[m] - px, dy = y_[m] - py, dz = z_[m] - pz;
+    const float square = dx * dx + dy * dy + dz * dz, height = dx * nx_[m] + dy * ny_[m] + dz * nz_[m];
+    const float flat = square - height * height, cosine = nx_[m] * gx + ny_[m] * gy + nz_[m] * gz;
     // Without a branch, so that compilers take several points at once.
-    const float r = std::sqrt(dx * dx + dy * dy + dz * dz) * rings, within = r < kOutside ? r : kOutside;
-    ring_[m] = int(nx_[m] * gx + ny_[m] * gy + nz_[m] * gz > 0 ? within : kOutside);
+    const float r = std::sqrt(square) * rings, within = r < kOutside ? r : kOutside;
+    const float drawn = std::sqrt(flat > 0 ? flat : 0) * rings,
+                drawn_within = drawn < kOutside ? drawn : kOutside;
+    ring_[m] = int(cosine > 0 ? within : kOutside);
+    drawn_ring_[m] = int(cosine > 0 && height * height <= flat ? drawn_within : kOutside);
+    found_[m] = drawn_[m] * (cosine > kGrazing ? cosine : kGrazing);
   }
   for (std::size_t m = 0; m < end_; ++m) here_[m] = kernel_.densities[std::size_t(ring_[m])];
 }
@@ -54,10 +62,9 @@ void NearFieldMeans::add_drawn(std::span<const SurfacePoint> places,
                                std::span<const std::span<const RgbF>> entered) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     find_densities(places[i]);
-    std::array<Densities, kAtOnce> sums{};
-    for (std::size_t m = 0; m < end_; m += kAtOnce)
-      for (std::size_t k = 0; k < kAtOnce; ++k) sums[k] += here_[m + k] * drawn_[m + k];
-    const float expected = (sums[0] + sums[1] + (sums[2] + sums[3]))[3];  // places per mm^2 here
+    float expected = 0;  // places per mm^2 here
+    for (std::size_t m = 0; m < end_; ++m)
+      expected += kernel_.densities[std::size_t(drawn_ring_[m])][3] * found_[m];
     if (!(expected > 0)) continue;
     const Densities inverse = Densities{} + 1 / expected;
     for (std::size_t m = 0; m < count_; ++m) {
@@ -79,7 +86,6 @@ void NearFieldMeans::add_lattice(std::span<const IrradianceLattice::Cell* const>
     for (std::vector<Densities>& entered : close_entered_) entered.clear();
     for (const IrradianceLattice::Cell* cell : cells) take_close(*cell, boxes_[first / kGroup]);
     close_rings_.resize(close_areas_.size());
-    close_facing_.resize(close_areas_.size());
     for (std::size_t m = first; m < std::min(first + kGroup, count_); ++m) add_close(m);
   }
 }
@@ -125,14 +131,11 @@ void NearFieldMeans::add_close(std::size_t point) {
   const float *gx = close_coordinates_[3].data(), *gy = close_coordinates_[4].data(),
               *gz = close_coordinates_[5].data();
   int* const ring = close_rings_.data();
-  float* const facing = close_facing_.data();
   const std::size_t n = close_rings_.size();
   for (std::size_t i = 0; i < n; ++i) {
     const float dx = x - px[i], dy = y - py[i], dz = z - pz[i];
     const float r = std::sqrt(dx * dx + dy * dy + dz * dz) * rings, within = r < kOutside ? r : kOutside;
-    const float cosine = nx * gx[i] + ny * gy[i] + nz * gz[i], steep = kFacing * cosine;
-    facing[i] = steep < 1 ? steep : 1;
-    ring[i] = int(cosine > 0 ? within : kOutside);
+    ring[i] = int(nx * gx[i] + ny * gy[i] + nz * gz[i] > 0 ? within : kOutside);
   }
   const Densities* const table = kernel_.densities.data();
   Densities weights{};
@@ -140,7 +143,7 @@ void NearFieldMeans::add_close(std::size_t point) {
     weights = Densities{};
     Densities sum{};
     for (std::size_t i = 0; i < n; ++i) {
-      const Densities weight = table[ring[i]] * (close_areas_[i] * facing[i]);
+      const Densities weight = table[ring[i]] * close_areas_[i];
       weights += weight;
       sum += weight * close_entered_[l][i];
     }

@@ -50,7 +50,8 @@ class NearFieldMeans {
   std::size_t count_, end_;
   std::array<Box, kMostPoints / kGroup> boxes_;  // of every kGroup points
   Numbers x_{}, y_{}, z_{}, nx_{}, ny_{}, nz_{}, drawn_{};
-  std::array<int, kMostPoints> ring_{};
+  std::array<int, kMostPoints> ring_{}, drawn_ring_{};  // of the place last looked at
+  Numbers found_{};  // the places that each point drew, times its cosine with the place last looked at
   std::array<Densities, kMostPoints> here_{};  // of the place last looked at
   std::array<Densities, kMostPoints> weights_{};
   std::vector<std::array<Densities, kMostPoints>> sums_;
@@ -59,7 +60,6 @@ class NearFieldMeans {
   std::vector<Densities> close_areas_;
   std::vector<std::vector<Densities>> close_entered_;
   std::vector<int> close_rings_;
-  std::vector<float> close_facing_;
 };
 
 }  // namespace opaline

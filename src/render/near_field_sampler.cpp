@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "evaluate/refined_stake.h"
 #include "opaline/core/random.h"
 #include "opaline/lights/light.h"
 
@@ -15,7 +16,7 @@ namespace {
 
 // The share of the exitance that is usually at stake where shadow rays are worth their time; and the least
 // there: of points far apart, close together, and so close that they share their rays with many others.
-constexpr float kUsual = 0.06f, kWorthApart = 0.02f, kWorthClose = 0.015f, kWorthShared = 0.005f;
+constexpr float kUsual = 0.06f, kWorthApart = kRefinedStake, kWorthClose = 0.015f, kWorthShared = 0.005f;
 constexpr float kFinestAt = 0.1f;  // stake from which on the lattice is as fine as the points allow
 // Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
 // field of each less evenly; and how many each of many neighbours brings at least.
