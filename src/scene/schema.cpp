@@ -8,9 +8,9 @@
 #include <map>
 #include <utility>
 
+#include "opaline/scene/json_tree.h"
+#include "opaline/scene/light_reader.h"
 #include "opaline/scene/names.h"
-#include "scene/json_tree.h"
-#include "scene/light_reader.h"
 #include "scene/presets.h"
 #include "scene/settings_table.h"
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "opaline/cache/stage_cache.h"
-#include "opaline/cache/stage_keys.h"
 #include "opaline/render/first_light.h"
 #include "opaline/render/render.h"
+#include "opaline/session/stage_cache.h"
+#include "opaline/session/stage_keys.h"
 
 namespace opaline {
 
