@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "opaline/exitance/evaluate.h"
+#include "opaline/geometry/surface_point.h"
 #include "opaline/geometry/world.h"
 
 namespace opaline {

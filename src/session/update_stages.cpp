@@ -4,7 +4,7 @@
 
 #include "opaline/render/surface_caches.h"
 #include "opaline/sampling/carry_samples.h"
-#include "session/body_keys.h"
+#include "session/session_state.h"
 
 namespace opaline {
 namespace {
@@ -38,7 +38,8 @@ bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Setti
          (by_number && carried < kFewer * count);
 }
 
-void Session::bring_samples(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group) {
+void Session::State::update_samples(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                                    std::size_t group) {
   const StageKey anew = samples_key(input, mesh_keys_, group);
   if (anew == known.samples_key) return keep_samples(body, known);
   if (anew == known.origin.key) {  // back where they were placed
@@ -57,7 +58,7 @@ void Session::bring_samples(Body& body, BodyKeys& known, const PrecomputeInput& 
   carry_along(body, known, input, carried);
 }
 
-void Session::keep_samples(Body& body, BodyKeys& known) {
+void Session::State::keep_samples(Body& body, BodyKeys& known) {
   renumber(body.surface.samples, known.meshes, body.plan.meshes);
   known.meshes = body.plan.meshes;
   if (!known.is_carried()) {
@@ -67,8 +68,8 @@ void Session::keep_samples(Body& body, BodyKeys& known) {
   decide(body, fmt::format("{} samples kept", body.surface.samples.size()));
 }
 
-void Session::place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
-                         const StageKey& key) {
+void Session::State::place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
+                                const StageKey& key) {
   const Settings& settings = input.scene.settings;
   if (anchored_ && !known.is_carried()) known.origin.surface = std::move(body.surface);
   known.samples_key = {};
@@ -102,7 +103,8 @@ void Session::place_anew(Body& body, BodyKeys& known, const PrecomputeInput& inp
          fmt::format("{} samples {}", body.surface.samples.size(), found ? "from the cache" : "placed anew"));
 }
 
-void Session::carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input, const StageKey& key) {
+void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                                 const StageKey& key) {
   if (!known.is_carried()) known.origin.surface = std::move(body.surface);
   known.samples_key = {};
   std::optional<SurfaceSamples> found;
@@ -130,8 +132,8 @@ void Session::carry_along(Body& body, BodyKeys& known, const PrecomputeInput& in
   known.samples_key = key;
 }
 
-void Session::bring_lights(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
-                           const std::vector<Light>& lights) {
+void Session::State::update_lights(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                                   std::size_t group, const std::vector<Light>& lights) {
   std::vector<StageKey> keys;
   std::vector<LightTransfer> transfers(lights.size());
   std::vector<Light> missing;
@@ -167,7 +169,7 @@ void Session::bring_lights(Body& body, BodyKeys& known, const PrecomputeInput& i
   body.transfers = std::move(transfers);
 }
 
-void Session::bring_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights) {
+void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights) {
   const StageKey key = octree_key(known.samples_key, known.light_keys, lights);
   if (key == known.tree_key) return decide(body, "tree kept");
   known.tree_key = {};
@@ -186,7 +188,7 @@ void Session::bring_tree(Body& body, BodyKeys& known, const std::vector<Light>& 
   decide(body, found ? "tree from the cache" : "tree built");
 }
 
-void Session::bring_kernel(Body& body, BodyKeys& known) {
+void Session::State::update_kernel(Body& body, BodyKeys& known) {
   const Medium& medium = scene_.media[body.plan.medium];
   KeyBuilder key("kernel", 2);
   std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
@@ -200,8 +202,8 @@ void Session::bring_kernel(Body& body, BodyKeys& known) {
 }
 
 // Whether a cache is used depends on the scene alone, not on what is at hand.
-void Session::bring_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input,
-                             std::size_t most_places) {
+void Session::State::update_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                                     std::size_t most_places) {
   if (most_places == 0) return;
   const StageKey key = exitance_key(known.tree_key, known.kernel_key, mesh_keys_, body.plan, scene_.settings);
   if (key != known.exitance_key) known.spare_cache.reset();
