@@ -31,6 +31,8 @@ class BlobCache {
   /// Reports an entry that was found, but holds something that its key cannot stand for.
   void reject(const char* stage, const StageKey& key);
 
+  /// Writes an entry and makes room for it. Failures are kept for warning().
+  /// in    fill: puts the entry's arrays; called at most once
   void keep(const char* stage, const StageKey& key, const std::function<void(BlobWriter&)>& fill);
 
   /// One line that names every entry that could not be used and why something was not kept; empty: all well.

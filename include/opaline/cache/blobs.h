@@ -84,10 +84,12 @@ class BlobReader {
 /// Receives the arrays of an entry. After the first failure what follows does nothing.
 class BlobWriter {
  public:
+  /// Adds an array under a name of its own.
   template <class T>
   void put(const char* name, std::span<const T> values) {
     put_items(name, blob_type<T>(), values.data(), values.size());
   }
+  /// Adds a number, as an array of one.
   void put(const char* name, double value) { put(name, std::span<const double>(&value, 1)); }
 
  protected:

@@ -12,6 +12,7 @@ namespace opaline {
 /// once. One at a time: signals are the process's.
 class InterruptHandler {
  public:
+  /// Catches SIGINT and SIGTERM until it is destroyed. monitor: is told of the first one.
   explicit InterruptHandler(Monitor& monitor);
   ~InterruptHandler();
   InterruptHandler(const InterruptHandler&) = delete;

@@ -20,8 +20,11 @@ using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion,
 /// The profile of a kind; monostate where the medium does not scatter.
 ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& medium);
 
+/// R_d(r), 1/mm^2, per entered flux, r > 0 in mm.
 double diffuse_reflectance_profile(const ChannelProfile& profile, double r);
+/// The share of the entered flux that leaves within r, mm: the integral of 2 pi r' R_d(r').
 double diffuse_reflectance_within(const ChannelProfile& profile, double r);
+/// The share of the entered flux that leaves at all, [0, 1].
 double total_diffuse_reflectance(const ChannelProfile& profile);
 
 /// Distance beyond which a share `beyond` of the profile's total leaves: density 2 pi r R_d(r) / total when

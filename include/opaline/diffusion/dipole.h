@@ -31,10 +31,13 @@ double diffuse_reflectance_within(const Dipole& dipole, double r);
 /// The same to infinity: alpha'/2 (1 + exp(-4/3 A s)) exp(-s), s = sqrt(3 (1 - alpha')).
 double total_diffuse_reflectance(const Dipole& dipole);
 
-/// As those of ChannelProfile (diffuse_profile.h).
+/// For make_channel_profile (diffuse_profile.h).
 Dipole make_profile(const ReducedMedium& medium, std::type_identity<Dipole>);
+/// As that of ChannelProfile; each source by Lambert's W.
 double sample_diffusion_distance(const Dipole& profile, double beyond);
+/// As that of ChannelProfile; by bisection.
 double sample_chord_sphere_radius(const Dipole& profile, double u, double v);
+/// sigma_tr, 1/mm.
 double slowest_decay(const Dipole& profile);
 
 }  // namespace opaline

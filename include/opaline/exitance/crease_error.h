@@ -25,6 +25,7 @@ std::array<float, 3> crease_error(const CreaseErrorInput& input);
 /// field.
 class NearRings {
  public:
+  /// radius: of the near field, units of the world.
   NearRings(const DiffuseProfile& profile, double radius);
 
   /// The share of a plane's near field that lies beyond a straight border at this distance, per channel.

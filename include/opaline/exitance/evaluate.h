@@ -38,6 +38,7 @@ struct SplitKernel {
   /// vanishing mean free path, about .45 (dipole) or .65 (normalized diffusion) where it is the sample
   /// spacing; 0 where less than 2 % of the light depends on it.
   std::array<float, 3> own_irradiance{};
+  /// Whether the exitance at a point depends on the irradiance at the point itself.
   bool needs_irradiance() const { return own_irradiance[0] + own_irradiance[1] + own_irradiance[2] > 0; }
 };
 
@@ -122,6 +123,7 @@ std::vector<Exitance> evaluate(const EvaluateInput& input);
 struct TraversalCost {
   std::size_t nodes = 0, kernels = 0;
 };
+/// What the published traversal does for one query, counted.
 TraversalCost classic_cost(const EvaluateInput& input, std::size_t query);
 
 }  // namespace opaline

@@ -44,6 +44,7 @@ struct SurfaceCache {
   /// SplitKernel's if the nodes' exitance is without the light that depends on the irradiance at the place
   /// itself, which has the shadows' edges in it; 0 if they have it all.
   std::array<float, 3> own_irradiance{};
+  /// Whether the exitance at a point depends on the irradiance at the point itself.
   bool needs_irradiance() const { return own_irradiance[0] + own_irradiance[1] + own_irradiance[2] > 0; }
   std::vector<std::vector<Split>>
       splits;  ///< one a mesh of the world (empty if not of the group) and triangle

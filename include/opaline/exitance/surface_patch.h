@@ -11,6 +11,7 @@
 
 namespace opaline {
 
+/// Nodes of a triangular lattice with this many segments along each side.
 inline std::size_t lattice_size(std::uint32_t segments) {
   return (std::size_t(segments) + 1) * (std::size_t(segments) + 2) / 2;
 }
@@ -33,6 +34,7 @@ struct CellPlace {
   }
 };
 
+/// The cell of a triangle cut into cells x cells that holds barycentrics u, v, and the place within it.
 inline CellPlace cell_place(std::uint32_t cells, float u, float v) {
   const float x = std::max(0.0f, u * float(cells)), y = std::max(0.0f, v * float(cells));
   CellPlace place;
@@ -44,6 +46,7 @@ inline CellPlace cell_place(std::uint32_t cells, float u, float v) {
   return place;
 }
 
+/// sum += w e, quantity by quantity.
 inline void add_scaled(Exitance& sum, const Exitance& e, float w) {
   sum.exitance += e.exitance * w;
   sum.irradiance += e.irradiance * w;
@@ -85,6 +88,7 @@ struct SixNodes {
   static constexpr std::array<std::array<std::uint32_t, 2>, 6> offsets{
       {{0, 0}, {2, 0}, {0, 2}, {1, 0}, {1, 1}, {0, 1}}};
   std::array<float, 6> weights;
+  /// Weights of the quadratic interpolation at barycentrics u, v.
   SixNodes(float u, float v) {
     const float w = 1 - u - v;
     weights = {w * (2 * w - 1), u * (2 * u - 1), v * (2 * v - 1), 4 * w * u, 4 * u * v, 4 * v * w};

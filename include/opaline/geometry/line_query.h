@@ -14,6 +14,7 @@ namespace opaline {
 /// Crossings of lines with some meshes of a RayScene, which must outlive it.
 class LineQuery {
  public:
+  /// meshes: of the world of `rays`, which must outlive the query.
   LineQuery(const RayScene& rays, std::span<const std::uint32_t> meshes);
   ~LineQuery();
   LineQuery(LineQuery&&) noexcept;

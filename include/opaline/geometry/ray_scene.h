@@ -23,6 +23,7 @@ struct alignas(16) Ray {
   std::uint32_t mask = ~0u, id = 0, flags = 0;
 
   Ray() = default;
+  /// end: in units of the direction's length.
   Ray(const Vec3f& from, const Vec3f& towards, float end = std::numeric_limits<float>::infinity())
       : origin(from), direction(towards), far(end) {}
 };
@@ -48,6 +49,7 @@ enum class RayBuild { careful, quick };
 /// Ray queries against the meshes of a world. Batches of coherent rays are fastest (256 at once).
 class RayScene {
  public:
+  /// Builds the structure from copies; the world may go.
   explicit RayScene(const World& world, RayBuild build = RayBuild::careful);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
@@ -64,6 +66,7 @@ class RayScene {
   /// How far to move the origin of a ray off the surface of a mesh, along the geometric normal: 2^-18 of
   /// the mesh's diagonal, more where floats far from the middle of the world are coarser.
   float offset(const SurfacePoint& point) const { return point.offset > 0 ? point.offset : largest_offset_; }
+  /// Memory of Embree's structure.
   std::size_t bytes() const;
 
   /// Rays traced so far and the CPU time spent inside Embree for them, all threads: the floor of a render
@@ -72,6 +75,7 @@ class RayScene {
     std::uint64_t rays = 0;
     double seconds = 0;
   };
+  /// Since the scene was built, all threads.
   Statistics statistics() const;
 
  private:

@@ -24,6 +24,7 @@ struct PixelSample {
   Vec3f normal{}, position{};
   float depth = 0;
 
+  /// Whether no camera ray of the pixel met anything.
   bool empty() const { return coverage == 0 && emitted == RgbF{}; }
 };
 
@@ -78,6 +79,7 @@ inline std::size_t store_pixel(const PixelSample& sum, int count, Method method,
   return is_finite(radiance) ? 0 : 1;
 }
 
+/// Adds a camera ray's layers to its pixel's.
 inline void add_sample(PixelSample& sum, const PixelSample& s) {
   sum.diffuse += s.diffuse;
   sum.specular += s.specular;

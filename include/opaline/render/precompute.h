@@ -55,10 +55,12 @@ std::uint64_t point_irradiance_seed(const Settings& settings);
 std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
                                          std::span<const SurfaceSample> samples,
                                          std::span<const Light> lights);
+/// The scene's lights in the world's space and unit.
 std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 
 /// irradiance: one a sample.
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);
+/// The kernel of a body, split at a distance that its samples' spacing decides.
 SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,
                          const Settings& settings);
 

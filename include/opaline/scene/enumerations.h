@@ -19,6 +19,7 @@ inline constexpr std::array<std::string_view, 3> kProfileNames{"dipole", "normal
                                                                "better_dipole"};
 inline constexpr std::array<std::string_view, 3> kProfileSources{"Jensen et al. 2001",
                                                                  "Christensen & Burley 2015", "d'Eon 2012"};
+/// The words for its values, in their order.
 constexpr NameList names_of(ProfileKind) {
   return kProfileNames;
 }
@@ -28,12 +29,14 @@ enum class NormalMode {
   faceted,  ///< geometric normals
 };
 inline constexpr std::array<std::string_view, 2> kNormalNames{"smooth", "faceted"};
+/// The words for its values, in their order.
 constexpr NameList names_of(NormalMode) {
   return kNormalNames;
 }
 
 enum class PixelFilter { box, gaussian };
 inline constexpr std::array<std::string_view, 2> kFilterNames{"box", "gaussian"};
+/// The words for its values, in their order.
 constexpr NameList names_of(PixelFilter) {
   return kFilterNames;
 }
@@ -44,6 +47,7 @@ enum class Method {
   direct         ///< the BSSRDF sampled at random: the reference of `hierarchical`, noisy instead of biased
 };
 inline constexpr std::array<std::string_view, 3> kMethodNames{"hierarchical", "lambert", "direct"};
+/// The words for its values, in their order.
 constexpr NameList names_of(Method) {
   return kMethodNames;
 }
@@ -57,6 +61,7 @@ enum class EvaluatorKind {
 };
 inline constexpr std::array<std::string_view, 5> kEvaluatorNames{"automatic", "dual_tree", "surface_cache",
                                                                  "classic", "brute_force"};
+/// The words for its values, in their order.
 constexpr NameList names_of(EvaluatorKind) {
   return kEvaluatorNames;
 }
@@ -64,6 +69,7 @@ constexpr NameList names_of(EvaluatorKind) {
 /// Where the irradiance of the near field is taken from; mixed: as much of each as keeps the kernel's width.
 enum class NearIrradiance { mixed, samples, point };
 inline constexpr std::array<std::string_view, 3> kNearIrradianceNames{"mixed", "samples", "point"};
+/// The words for its values, in their order.
 constexpr NameList names_of(NearIrradiance) {
   return kNearIrradianceNames;
 }
@@ -72,12 +78,14 @@ constexpr NameList names_of(NearIrradiance) {
 enum class InstructionSet { automatic, baseline, avx2, avx512 };
 inline constexpr std::array<std::string_view, 4> kInstructionSetNames{"automatic", "baseline", "avx2",
                                                                       "avx512"};
+/// The words for its values, in their order.
 constexpr NameList names_of(InstructionSet) {
   return kInstructionSetNames;
 }
 
 enum class EntryStrategy { disc_axes, chords };
 inline constexpr std::array<std::string_view, 2> kEntryStrategyNames{"disc_axes", "chords"};
+/// The words for its values, in their order.
 constexpr NameList names_of(EntryStrategy) {
   return kEntryStrategyNames;
 }

@@ -17,6 +17,7 @@ std::string_view name_of(Enumeration value) {
   return names[std::size_t(value)];
 }
 
+/// The word for a kind of light.
 inline std::string_view name_of(const LightSource& source) {
   return std::visit([](const auto& light) { return light.kType; }, source);
 }

@@ -20,18 +20,26 @@ namespace opaline {
 /// may be.
 class Value {
  public:
+  /// info: the row of the schema for it; document and node outlive it.
   Value(const Document& document, const Node& node, std::string path, const KeyInfo& info)
       : document_(&document), node_(&node), info_(&info), path_(std::move(path)) {}
 
+  /// The value as parsed.
   const Node& node() const { return *node_; }
+  /// Its row of the schema.
   const KeyInfo& info() const { return *info_; }
+  /// What `--set` calls it.
   const std::string& path() const { return path_; }
+  /// Where it stands in the file.
   SourcePlace place() const { return place_at(*document_, node_->offset, node_->override_index); }
 
+  /// A number in the range of its row. Each getter below throws Error{bad_input} at the value.
   double number() const { return number(info_->range); }
+  /// A number in this range.
   double number(const Range& range) const;
   std::uint64_t whole_number() const;
   std::uint64_t whole_number(std::uint64_t low, std::uint64_t high) const;
+  /// true or false.
   bool flag() const;
   std::string string() const;  ///< not empty
   std::size_t choice() const;  ///< the index of one of the row's choices
@@ -43,7 +51,9 @@ class Value {
   double length(double mm_per_unit) const;  ///< > 0, from scene units to mm
   Vec3d point(double mm_per_unit) const;    ///< from scene units to mm
 
+  /// The entries of a list.
   std::vector<Value> list() const;
+  /// The entries of a list of this many; expected: said if it is not.
   std::vector<Value> list(std::size_t size, const std::string& expected) const;
 
   /// The members of an object whose keys are names that the user chose.
@@ -72,8 +82,10 @@ class Value {
 /// An object of one section of the schema; unknown keys are rejected when it is made.
 class ObjectReader : public Value {
  public:
+  /// section: of the schema, whose keys it may have. Throws at another key, with the nearest name.
   ObjectReader(const Value& value, std::string_view section);
 
+  /// The value of a key, or none.
   std::optional<Value> find(std::string_view key) const;
   /// error if the key is missing
   Value need(std::string_view key) const;

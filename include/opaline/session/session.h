@@ -108,8 +108,11 @@ class Session {
   /// The picture of the scene; prepares it first.
   RenderResult render(Monitor* monitor = nullptr, const AfterTile& after_tile = {});
 
+  /// The scene of the last edit.
   const Scene& scene() const;
+  /// Its meshes around one origin.
   const World& world() const;
+  /// What the scene requires.
   const Plan& plan() const;
   const RayScene& rays() const;          ///< after prepare
   std::span<const Body> bodies() const;  ///< after prepare

@@ -32,18 +32,24 @@ class StageCache {
   explicit StageCache(std::string folder, std::uint64_t most_bytes = BlobCache::kDefaultBytes)
       : blobs_(std::move(folder), most_bytes) {}
 
+  /// Samples of a surface; nothing where there is no entry that can be used. So are the others.
   std::optional<SurfaceSamples> find_samples(const StageKey& key, const SampledSurface& surface);
   /// samples: how many the light reaches
   std::optional<LightTransfer> find_light(const StageKey& key, std::size_t samples);
+  /// The tree over these samples.
   std::optional<Octree> find_octree(const StageKey& key, const SurfaceSamples& samples);
   /// meshes: the group's, in its order
   std::optional<SurfaceCache> find_exitance(const StageKey& key, const World& world,
                                             std::span<const std::uint32_t> meshes);
 
+  /// meshes: the body's, in its order.
   void keep_samples(const StageKey& key, const SurfaceSamples& samples,
                     std::span<const std::uint32_t> meshes);
+  /// The light that one light source sends to a body's samples.
   void keep_light(const StageKey& key, const LightTransfer& transfer);
+  /// The tree over a body's samples.
   void keep_octree(const StageKey& key, const Octree& octree);
+  /// meshes: the body's, in its order.
   void keep_exitance(const StageKey& key, const SurfaceCache& exitance,
                      std::span<const std::uint32_t> meshes);
 

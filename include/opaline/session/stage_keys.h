@@ -17,7 +17,9 @@ struct MeshKeys {
   Vec3d center{};
   double radius = 0;
 };
+/// Of one mesh.
 MeshKeys mesh_keys(const Mesh& mesh);
+/// One a mesh of the world.
 std::vector<MeshKeys> mesh_keys(const World& world);
 
 /// Of a group's samples placed anew: its meshes, their count and random numbers.
