@@ -23,8 +23,7 @@ bool is_far(const OctreeNode& node, const Vec3f& p, __m128 r2, float max_solid_a
   return gap2 > 0 && gap2 >= near2;
 }
 
-template <class Count>
-void walk(const EvaluateInput& input, const Query& query, Gather& gather, Count& count) {
+void walk(const EvaluateInput& input, const Query& query, Gather& gather) {
   const std::vector<OctreeNode>& nodes = input.octree.nodes;
   const float max_solid_angle = float(input.max_solid_angle);
   const float near2 = input.kernel.radius * input.kernel.radius;
@@ -32,18 +31,15 @@ void walk(const EvaluateInput& input, const Query& query, Gather& gather, Count&
                pz = _mm_set1_ps(query.position.z);
   for (std::uint32_t i = 0; i < nodes.size();) {
     const OctreeNode& node = nodes[i];
-    count.node();
     const __m128 dx = _mm_sub_ps(_mm_load_ps(node.x.data()), px),
                  dy = _mm_sub_ps(_mm_load_ps(node.y.data()), py),
                  dz = _mm_sub_ps(_mm_load_ps(node.z.data()), pz);
     const __m128 r2 = _mm_add_ps(_mm_mul_ps(dx, dx), _mm_add_ps(_mm_mul_ps(dy, dy), _mm_mul_ps(dz, dz)));
     if (is_far(node, query.position, r2, max_solid_angle, near2)) {
       gather.add_node(node, r2);
-      count.kernels(1);
       i = node.skip;
     } else if (node.leaf) {
       gather.add_samples(node.first, node.first + node.count);
-      count.kernels(node.count);
       i = node.skip;
     } else {
       ++i;
@@ -73,16 +69,10 @@ float own_irradiance(const ChannelProfile& profile, double h, double near, NearI
   return float(own * t * t * (3 - 2 * t));
 }
 
-struct NoCount {
-  void node() {}
-  void kernels(std::size_t) {}
-};
-
 Exitance evaluate_one(const EvaluateInput& input, std::size_t q) {
   Gather gather(input, input.queries[q]);
-  NoCount count;
   if (input.evaluator == EvaluatorKind::classic)
-    walk(input, input.queries[q], gather, count);
+    walk(input, input.queries[q], gather);
   else
     gather.add_samples(0, std::uint32_t(input.octree.samples.size()));
   return gather.result(input.irradiance.empty() ? nullptr : &input.irradiance[q]);
@@ -121,17 +111,6 @@ std::vector<Exitance> evaluate(const EvaluateInput& input) {
     advance(input.monitor, end - begin);
   });
   return result;
-}
-
-TraversalCost classic_cost(const EvaluateInput& input, std::size_t query) {
-  struct {
-    TraversalCost cost;
-    void node() { ++cost.nodes; }
-    void kernels(std::size_t n) { cost.kernels += n; }
-  } count;
-  Gather gather(input, input.queries[query]);
-  walk(input, input.queries[query], gather, count);
-  return count.cost;
 }
 
 }  // namespace opaline

@@ -33,7 +33,6 @@ struct RayCounter {
 struct RayScene::Handles {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  std::atomic<std::ptrdiff_t> bytes{0};
   RayCounter intersected, occluded;
 
   /// Throws as check_device.

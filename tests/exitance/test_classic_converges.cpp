@@ -63,28 +63,5 @@ TEST(ClassicConverges, NearFieldIsAlwaysSampleBySample) {
   }
 }
 
-// Claim: fewer steradians cost more kernels, and at 1e-6 sr each sample is one, as in brute force; nodes
-// visited are at least those of the tree's root. Source: the header of classic_cost. Tolerance: none. Fails
-// if: the count leaves out the leaves' samples.
-TEST(ClassicConverges, CostRises) {
-  const Cloud cloud(SphereShape{{}, 10}, 20000);
-  const std::vector<Query> queries = Cloud(SphereShape{{}, 10}, 20, 3).queries();
-  const DiffuseProfile profile = make_diffuse_profile(grey_medium(.5, .01, 1.3));
-  const Octree octree = cloud.tree(coloured_light);
-  const SplitKernel kernel = cloud.kernel(profile);
-  std::size_t before = 0;
-  for (const double max_solid_angle : {1., .3, .1, .03, .01, 1e-6}) {
-    EvaluateInput input{octree, kernel, queries};
-    input.max_solid_angle = max_solid_angle;
-    const TraversalCost cost = classic_cost(input, 5);
-    EXPECT_GT(cost.nodes, 0u);
-    EXPECT_GT(cost.kernels, before) << max_solid_angle;
-    before = cost.kernels;
-    if (max_solid_angle == 1e-6) {
-      EXPECT_EQ(cost.kernels, octree.samples.size());
-    }
-  }
-}
-
 }  // namespace
 }  // namespace opaline

@@ -103,7 +103,6 @@ TEST(OddQueries, NothingInNothingOut) {
     EXPECT_TRUE(evaluated_by(evaluator, empty, kernel, {}, .3).empty());
     EXPECT_TRUE(evaluated_by(evaluator, one, kernel, {}, .3).empty());
   }
-  EXPECT_EQ(classic_cost({empty, kernel, std::vector<Query>(1)}, 0).kernels, 0u);
 }
 
 // Claim: N samples at one place, 1, 8 and 9 samples sum right: brute force and the tree agree, and with the

@@ -119,11 +119,4 @@ struct EvaluateInput {
 /// from  Jensen & Buhler 2002 sec. 3; near field: see SplitKernel
 std::vector<Exitance> evaluate(const EvaluateInput& input);
 
-/// Kernel evaluations and nodes visited by one classic query: what its time is made of.
-struct TraversalCost {
-  std::size_t nodes = 0, kernels = 0;
-};
-/// What the published traversal does for one query, counted.
-TraversalCost classic_cost(const EvaluateInput& input, std::size_t query);
-
 }  // namespace opaline

@@ -47,8 +47,6 @@ struct Octree {
   float flux_unit = 1;
   /// By list_children: of node i, children[first_child[i]] to below first_child[i + 1].
   std::vector<std::uint32_t> first_child{}, children{};
-  /// Memory of nodes and samples.
-  std::size_t bytes() const;
 };
 
 /// Leaves hold at most this many samples, unless more coincide to 2^-21 of the box.
