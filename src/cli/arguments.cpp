@@ -17,9 +17,9 @@
 #include "cli/option_values.h"
 #include "cli/quality.h"
 #include "opaline/core/error.h"
+#include "opaline/scene/json_tree.h"
 #include "opaline/scene/nearest_name.h"
 #include "opaline/scene/schema.h"
-#include "scene/json_tree.h"
 
 namespace opaline {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "core/units.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
+#include "opaline/core/units.h"
 
 namespace opaline {
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "cli/display_server.h"
+#include "opaline/scene/json_tree.h"
 #include "opaline/scene/nearest_name.h"
 #include "opaline/scene/schema.h"
-#include "scene/json_tree.h"
 
 namespace opaline {
 namespace {

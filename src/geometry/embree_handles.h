@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 
 namespace opaline {
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/geometry/ray_scene.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -11,7 +13,6 @@
 #include "geometry/oriented_point.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
-#include "opaline/geometry/world.h"
 
 namespace opaline {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "evaluate/cloud_error.h"
 #include "opaline/core/random.h"
+#include "opaline/exitance/cloud_error.h"
 #include "opaline/lights/light.h"
 
 namespace opaline {

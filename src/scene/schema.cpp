@@ -8,9 +8,9 @@
 #include <map>
 #include <utility>
 
+#include "opaline/scene/json_tree.h"
+#include "opaline/scene/light_reader.h"
 #include "opaline/scene/names.h"
-#include "scene/json_tree.h"
-#include "scene/light_reader.h"
 #include "scene/presets.h"
 #include "scene/settings_table.h"
 
@@ -21,6 +21,17 @@ KeyInfo row(std::string_view section, std::string_view key, ValueType type, std:
             const Range& range, std::string default_value, std::string_view meaning,
             std::span<const std::string_view> choices = {}) {
   return {section, key, type, unit, range, std::move(default_value), meaning, choices};
+}
+
+std::string_view profile_meaning() {
+  static const std::string text = [] {
+    std::string list = "how light spreads under the surface:";
+    for (std::size_t i = 0; i < kProfileNames.size(); ++i)
+      list += (i > 0 ? ", `\"" : " `\"") + std::string(kProfileNames[i]) + "\"` (" +
+              std::string(kProfileSources[i]) + ')';
+    return list;
+  }();
+  return text;
 }
 
 template <class Kind>
@@ -87,10 +98,7 @@ std::vector<KeyInfo> all_rows() {
       row("medium", "specular_ior", number, "", {.1, 10},
           "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
       row("medium", "eta", number, "", {.1, 10}, "", "another word for `specular_ior`; use one of the two"),
-      row("medium", "profile", choice, "", kFiniteNumber, "`\"dipole\"`",
-          "how light spreads under the surface: `\"dipole\"` (Jensen et al. 2001) or "
-          "`\"normalized_diffusion\"` (Christensen & Burley 2015)",
-          kProfileNames),
+      row("medium", "profile", choice, "", kFiniteNumber, "`\"dipole\"`", profile_meaning(), kProfileNames),
       row("shape", "name", text, "", kFiniteNumber, "\"shape0\", \"shape1\", ...",
           "what messages and `--set` call it; no two alike"),
       row("shape", "file", text, "", kFiniteNumber, "",

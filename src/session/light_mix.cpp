@@ -8,7 +8,7 @@
 
 #include "opaline/core/parallel.h"
 #include "opaline/lights/light.h"
-#include "render/layers.h"
+#include "opaline/render/layers.h"
 
 namespace opaline {
 namespace {

@@ -2,6 +2,10 @@
 // The dipole diffuse reflectance profile of one channel.
 #pragma once
 
+#include <type_traits>
+
+#include "opaline/diffusion/reduced_medium.h"
+
 namespace opaline {
 
 /// Classical dipole (Jensen et al. 2001, sec. 2.2) in lengths of the real source: every member is finite for
@@ -27,11 +31,8 @@ double diffuse_reflectance_within(const Dipole& dipole, double r);
 /// The same to infinity: alpha'/2 (1 + exp(-4/3 A s)) exp(-s), s = sqrt(3 (1 - alpha')).
 double total_diffuse_reflectance(const Dipole& dipole);
 
-/// 1 - alpha' of the dipole with this total: the inverse of the closed form, by bisection (relative error in
-/// 1 - alpha' below 1e-12). total in [0, 1].
-double invert_dipole_albedo(double total, double boundary_mismatch);
-
 /// As those of ChannelProfile (diffuse_profile.h).
+Dipole make_profile(const ReducedMedium& medium, std::type_identity<Dipole>);
 double sample_diffusion_distance(const Dipole& profile, double beyond);
 double sample_chord_sphere_radius(const Dipole& profile, double u, double v);
 double slowest_decay(const Dipole& profile);

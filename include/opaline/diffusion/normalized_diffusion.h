@@ -2,6 +2,10 @@
 // The normalized diffusion profile of one channel (Christensen & Burley 2015).
 #pragma once
 
+#include <type_traits>
+
+#include "opaline/diffusion/reduced_medium.h"
+
 namespace opaline {
 
 /// R_d(r) = A (exp(-r/d) + exp(-r/3d)) / (8 pi d r); includes single scattering. A fit for index-matched
@@ -21,6 +25,7 @@ double diffuse_reflectance_within(const NormalizedDiffusion& profile, double r);
 double total_diffuse_reflectance(const NormalizedDiffusion& profile);
 
 /// As those of ChannelProfile (diffuse_profile.h).
+NormalizedDiffusion make_profile(const ReducedMedium& medium, std::type_identity<NormalizedDiffusion>);
 double sample_diffusion_distance(const NormalizedDiffusion& profile, double beyond);
 double sample_chord_sphere_radius(const NormalizedDiffusion& profile, double u, double v);
 double slowest_decay(const NormalizedDiffusion& profile);

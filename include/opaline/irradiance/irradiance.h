@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "opaline/core/monitor.h"
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 #include "opaline/sampling/sample_surface.h"
 #include "opaline/scene/scene.h"
 
