@@ -40,7 +40,7 @@ void print_group(const Scene& scene, const GroupPlan& group) {
   print_row("translucent",
             fmt::format("{} in {}: {:.4g} mm^2, mean free path {:.4g} mm (its smallest channel)", group.name,
                         scene.media[group.medium].name, group.area, group.smallest_mean_free_path));
-  if (scene.settings.method != Method::hierarchical) return;
+  if (!has_samples(scene.settings.method)) return;
   print_row("", fmt::format("{}, {:.4g} mm apart: {}", counted(group.samples, "sample"), group.spacing,
                             group.reason));
 }

@@ -141,6 +141,12 @@ void RayScene::intersect(std::span<TracedRay> rays) const {
   }
 }
 
+void RayScene::intersect_one(TracedRay& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(handles_->scene, &context, reinterpret_cast<RTCRayHit*>(&ray));
+}
+
 void RayScene::occluded(std::span<Ray> rays) const {
   const FlushDenormals mode;
   RTCIntersectContext context = coherent_context();

@@ -170,6 +170,12 @@ void Session::State::prepare(Monitor* monitor) {
   };
   each("sampling",
        [&](Body& body, BodyKeys& known, std::size_t g) { update_samples(body, known, input, g); });
+  if (scene_.settings.method == Method::volume) {
+    each("random walks",
+         [&](Body& body, BodyKeys& known, std::size_t g) { update_walks(body, known, input, g, lights); });
+    prepared_ = true;
+    return;
+  }
   each("irradiance",
        [&](Body& body, BodyKeys& known, std::size_t g) { update_lights(body, known, input, g, lights); });
   each("octree", [&](Body& body, BodyKeys& known, std::size_t) {
@@ -213,7 +219,7 @@ void Session::State::ready_light_mix(Monitor* monitor) {
 
 /// After prepare.
 bool Session::State::can_mix() const {
-  return mixes_lights_ &&
+  return mixes_lights_ && scene_.settings.method != Method::volume &&
          std::ranges::none_of(bodies_, [](const Body& g) { return g.surface_cache.has_value(); });
 }
 

@@ -27,7 +27,7 @@ struct Session::State {
   void prepare(Monitor* monitor);
   RenderResult render(Monitor* monitor, const AfterTile& after_tile);
 
-  bool is_needed() const { return scene_.settings.method == Method::hierarchical && !plan_.groups.empty(); }
+  bool is_needed() const { return has_samples(scene_.settings.method) && !plan_.groups.empty(); }
   void arrange_memories(const Scene& scene, const std::vector<StageKey>& sources);
   World loaded_world(const Scene& scene, const std::vector<StageKey>& sources,
                      const std::vector<StageKey>& shapes, SessionWork& work);
@@ -44,6 +44,8 @@ struct Session::State {
   void update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights);
   void update_kernel(Body& body, BodyKeys& known);
   void update_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t most_places);
+  void update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
+                    const std::vector<Light>& lights);
   HeldView* held_view();
   bool can_mix() const;
   Image recoloured(const Scene& scene, HeldView& view, Monitor* monitor);

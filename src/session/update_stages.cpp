@@ -169,6 +169,24 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
   body.transfers = std::move(transfers);
 }
 
+void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                                  std::size_t group, const std::vector<Light>& lights) {
+  std::vector<StageKey> light_keys;
+  for (const Light& light : lights)
+    light_keys.push_back(transfer_key(input, known.samples_key, mesh_keys_, group, light));
+  KeyBuilder builder("random walks", 1);
+  builder.add(octree_key(known.samples_key, light_keys, lights)).add(body.profile.eta);
+  builder.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
+  builder.add(scene_.settings.seed).add(scene_.settings.until_error.value_or(0));
+  for (const MeshKeys& mesh : mesh_keys_) builder.add(mesh.shape);
+  const StageKey key = builder.key();
+  if (key == known.walks_key && body.volume) return decide(body, "random walks kept");
+  known.walks_key = {};
+  body.volume = walk_body(input, body, lights);
+  known.walks_key = key;
+  decide(body, "walked at random");
+}
+
 void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights) {
   const StageKey key = octree_key(known.samples_key, known.light_keys, lights);
   if (key == known.tree_key) return decide(body, "tree kept");

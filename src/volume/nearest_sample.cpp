@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volume/nearest_sample.h"
+#include "opaline/volume/nearest_sample.h"
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>

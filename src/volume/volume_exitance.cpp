@@ -7,8 +7,8 @@
 #include "opaline/core/parallel.h"
 #include "opaline/core/random.h"
 #include "opaline/lights/light.h"
+#include "opaline/volume/nearest_sample.h"
 #include "opaline/volume/random_walk.h"
-#include "volume/nearest_sample.h"
 
 namespace opaline {
 namespace {
@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kBatches = 64;      // of a pass: what the standard error comes from
 constexpr std::size_t kWalksOfPass = 16;  // a sample and channel
 constexpr std::size_t kTogether = 8;      // batches whose counts are held at once
-constexpr double kReach = 40;             // mean free paths: e^-40 of the light gets farther
-constexpr std::uint64_t kMostCollisions = 1'000'000;
+constexpr double kReach = 2;  // mean free paths: a boundary beyond is met by chance, not by expectation
+constexpr std::uint64_t kMostFlights = 1'000'000;
 
 /// Points spread evenly over the area of the body.
 class SurfacePoints {
@@ -120,7 +120,7 @@ class Inside {
     double gone = 0;
     for (int faces = 0; faces < 64; ++faces) {
       TracedRay traced{Ray(Vec3f(from + direction * gone), Vec3f(direction), float(reach - gone)), {}};
-      input_.rays.intersect({&traced, 1});
+      input_.rays.intersect_one(traced);
       const Hit& hit = traced.hit;
       if (hit.mesh == Hit::kMiss) return wall;
       wall.point = input_.rays.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
@@ -153,30 +153,37 @@ double walk_inside(const HomogeneousMedium& medium, const Inside& inside, const 
     return Vec3d(point.position) - Vec3d(point.geometric) * double(rays.offset(point));
   };
   walk.position = inward(entry);
-  for (;;) {
+  for (std::uint64_t flights = 0; flights < kMostFlights; ++flights) {
     const Wall wall = inside.wall(walk.position, walk.direction, reach);
-    if (!std::isfinite(wall.distance) && !std::isfinite(reach)) return walk.weight;
-    if (walk.collisions >= kMostCollisions) return walk.weight;
-    const BoundaryAhead ahead{wall.distance, Vec3d(wall.point.geometric)};
-    Crossing crossing = std::isfinite(wall.distance) ? cross(medium, walk, ahead) : Crossing{1, 1};
-    if (std::isfinite(wall.distance) && !wall.is_body) crossing.reflectance = 0;
-    const Flight flight = fly(medium, walk.weight, ahead, crossing, numbers);
-    if (flight.leaving > 0 && wall.is_body) leave(wall.point, flight.leaving);
-    walk.weight = flight.remaining;
-    if (flight.collides) {
+    Flight flight;
+    if (std::isfinite(wall.distance)) {
+      Crossing crossing = cross(medium, walk, {wall.distance, Vec3d(wall.point.geometric)});
+      if (!wall.is_body) crossing.reflectance = 0;
+      flight = fly(medium, walk.weight, {wall.distance, {}}, crossing, numbers);
+      if (flight.leaving > 0 && wall.is_body) leave(wall.point, flight.leaving);
+      walk.weight = flight.remaining;
+    } else {
+      // Free paths have no memory: without a collision the flight goes on from there.
+      flight.distance = -std::log1p(-numbers.next()) / medium.sigma_t();
+      flight.collides = flight.distance < reach;
+      if (!flight.collides) flight.distance = reach;
+    }
+    const bool is_reflected = std::isfinite(wall.distance) && !flight.collides;
+    if (is_reflected) {
+      walk.position = inward(wall.point);
+      walk.direction = mirrored(walk.direction, Vec3d(wall.point.geometric));
+    } else {
       walk.position += walk.direction * flight.distance;
       if (!inside.contains(walk.position)) return walk.weight;
-      ++walk.collisions;
-      walk.weight *= albedo;
-      if (!survives_long(walk.weight, walk.collisions, numbers)) return 0;
-      if (!survives(walk.weight, least, numbers)) return 0;
-      walk.direction = scattered(walk.direction, medium.g, numbers);
-    } else {
-      if (!survives(walk.weight, least, numbers)) return 0;
-      walk.position = inward(wall.point);
-      walk.direction = mirrored(walk.direction, ahead.normal);
     }
+    if (flight.collides) {
+      walk.weight *= albedo;
+      if (!survives_long(walk.weight, ++walk.collisions, numbers)) return 0;
+      walk.direction = scattered(walk.direction, medium.g, numbers);
+    }
+    if (!survives(walk.weight, least, numbers)) return 0;
   }
+  return walk.weight;
 }
 
 struct Counts {

@@ -57,6 +57,8 @@ class RayScene {
 
   /// Finds the first hit of each ray between near and far; far becomes its distance.
   void intersect(std::span<TracedRay> rays) const;
+  /// The same for a ray on its own way, which the statistics do not count: the clock would cost as much.
+  void intersect_one(TracedRay& ray) const;
   /// Sets far < 0 for each ray that meets a triangle between near and far.
   void occluded(std::span<Ray> rays) const;
 

@@ -28,8 +28,9 @@ struct PixelSample {
   bool empty() const { return coverage == 0 && emitted == RgbF{}; }
 };
 
-/// In the order in which store_pixel writes them. `hierarchical` adds its estimated error, `direct` has the
-/// variance of its mean where others have the irradiance.
+/// In the order in which store_pixel writes them. `hierarchical` and `volume` add their estimated error, `direct`
+/// has the variance of its mean where others have the irradiance, of which `volume` has that of opaque surfaces
+/// alone.
 inline std::vector<std::string> layer_names(Method method) {
   std::vector<std::string> names{"R", "G", "B", "A", "Z"};
   const auto add = [&](const std::string& layer, const std::string& parts) {
@@ -39,7 +40,7 @@ inline std::vector<std::string> layer_names(Method method) {
   add("N", "XYZ");
   add("P", "XYZ");
   add(method == Method::direct ? "variance" : "irradiance", "RGB");
-  if (method == Method::hierarchical) add("error", "RGB");
+  if (has_samples(method)) add("error", "RGB");
   return names;
 }
 
@@ -75,7 +76,7 @@ inline std::size_t store_pixel(const PixelSample& sum, int count, Method method,
   put(normalized(sum.normal), 1);
   put(sum.position, seen);
   put(sum.irradiance, seen);
-  if (method == Method::hierarchical) put(pixel_error(sum, all), 1);
+  if (has_samples(method)) put(pixel_error(sum, all), 1);
   return is_finite(radiance) ? 0 : 1;
 }
 

@@ -44,12 +44,18 @@ constexpr NameList names_of(PixelFilter) {
 enum class Method {
   hierarchical,  ///< diffusion from the tree of samples
   lambert,       ///< translucent surfaces as plain paint: the floor of all costs
-  direct         ///< the BSSRDF sampled at random: the reference of `hierarchical`, noisy instead of biased
+  direct,        ///< the BSSRDF sampled at random: the reference of `hierarchical`, noisy instead of biased
+  volume         ///< random walks inside the bodies: no model, the truth, noisy
 };
-inline constexpr std::array<std::string_view, 3> kMethodNames{"hierarchical", "lambert", "direct"};
+inline constexpr std::array<std::string_view, 4> kMethodNames{"hierarchical", "lambert", "direct", "volume"};
 /// The words for its values, in their order.
 constexpr NameList names_of(Method) {
   return kMethodNames;
+}
+
+/// Whether translucent bodies get samples.
+constexpr bool has_samples(Method method) {
+  return method == Method::hierarchical || method == Method::volume;
 }
 
 enum class EvaluatorKind {
