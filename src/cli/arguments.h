@@ -65,6 +65,19 @@ struct CompareArguments {
   Log log;
 };
 
+/// A medium's radial profiles beside random walks.
+struct ProfileArguments {
+  std::string medium;               ///< a preset's name, or a JSON object as a scene's media have
+  std::optional<double> eta, g;     ///< in place of the medium's
+  std::optional<double> thickness;  ///< mm; none: a half space
+  std::optional<std::uint64_t> walks;
+  std::uint64_t seed = 1;
+  std::string report;  ///< folder; empty: none
+  int threads = 0;     ///< 0: one for each core
+  std::string command_line;
+  Log log;
+};
+
 enum class CacheAction { list, verify, prune };
 
 struct CacheArguments {
@@ -80,7 +93,7 @@ struct ShowText {
 };
 
 using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments,
-                             CacheArguments, PrecomputeArguments>;
+                             CacheArguments, PrecomputeArguments, ProfileArguments>;
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case

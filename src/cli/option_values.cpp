@@ -131,6 +131,11 @@ CLI::Validator seconds_of() {
   return CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE).description("");
 }
 
+CLI::Validator millimetres_of() {
+  const std::map<std::string, double> units{{"um", 1e-3}, {"mm", 1}, {"cm", 10}, {"m", 1000}};
+  return CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE).description("");
+}
+
 std::optional<LayerChoice> layers_of(const std::string& text) {
   LayerChoice layers{text == "all", {}};
   if (layers.all || text == "none") return layers;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/control_regression.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -37,11 +38,11 @@ ControlRegression::ControlRegression(const std::vector<std::vector<double>>& con
     for (std::size_t b = 0; b < controls.size(); ++b) column.values[b] = controls[b][c];
     column.mean = mean_of(column.values);
     for (double& value : column.values) value -= column.mean;
-    take_in(std::move(column));
+    take_in(std::move(column), c == 0);
   }
 }
 
-void ControlRegression::take_in(Column column) {
+void ControlRegression::take_in(Column column, bool is_balance) {
   constexpr double kDependent = 1e-6;  // of its own spread
   constexpr double kMostOff = 5;       // standard errors of its mean
   constexpr double kFewBatches = 40;
@@ -60,7 +61,9 @@ void ControlRegression::take_in(Column column) {
     fourth += value * value * value * value;
   }
   column.mean /= left;
-  if (fourth * kFewBatches > 1 || std::abs(column.mean) * double(shares_.size()) > kMostOff) return;
+  const bool is_sampled =
+      fourth * kFewBatches < 1 && std::abs(column.mean) * double(shares_.size()) < kMostOff;
+  if (!is_sampled && !is_balance) return;
   for (std::size_t b = 0; b < shares_.size(); ++b) {
     shares_[b] -= column.mean * column.values[b];
     leverage_[b] += column.values[b] * column.values[b];
@@ -75,7 +78,7 @@ WalkedValue ControlRegression::mean(std::span<const double> values) const {
   for (const Column& column : columns_) subtract(rest, product(rest, column.values), column.values);
   double variance = 0;
   for (std::size_t b = 0; b < rest.size(); ++b) {
-    const double without_itself = rest[b] / (1 - leverage_[b]);  // as predicted from the other batches
+    const double without_itself = rest[b] / std::max(1e-3, 1 - leverage_[b]);  // as the others foretell it
     variance += shares_[b] * shares_[b] * without_itself * without_itself;
   }
   return {product(shares_, values), std::sqrt(variance)};

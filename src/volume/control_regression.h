@@ -21,7 +21,8 @@ class ControlRegression {
  public:
   /// in    controls[batch]: each of mean 0, at least 50 batches. Left out are controls that others explain, and
   ///       those that this many walks sample badly: they live on fewer than 40 batches, or their mean over the
-  ///       batches is five standard errors off.
+  ///       batches is five standard errors off. The first control is always taken in: it is the balance of energy,
+  ///       and where nothing absorbs it explains all there is.
   explicit ControlRegression(const std::vector<std::vector<double>>& controls);
 
   /// As batch_mean, with less error.
@@ -34,7 +35,7 @@ class ControlRegression {
     std::vector<double> values;  ///< of each batch, centred; orthonormal to the other columns
     double mean = 0;             ///< of the same sum of controls, before it was centred
   };
-  void take_in(Column column);
+  void take_in(Column column, bool is_balance);
 
   std::vector<Column> columns_;
   std::vector<double> shares_;    ///< of each batch in the mean

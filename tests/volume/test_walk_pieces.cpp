@@ -87,9 +87,9 @@ TEST(WalkPieces, Roulette) {
     double weight = .03;
     light.add(survives(weight, .1, numbers) ? weight : 0);
     weight = .7;
-    long_walks.add(survives_long(weight, 1024, numbers) ? weight : 0);
-    ASSERT_TRUE(survives_long(weight, 512, numbers));
-    ASSERT_TRUE(survives_long(weight, 64, numbers));
+    long_walks.add(survives_long(weight, 4096, numbers) ? weight : 0);
+    ASSERT_TRUE(survives_long(weight, 2048, numbers));
+    ASSERT_TRUE(survives_long(weight, 256, numbers));
   }
   EXPECT_LT(std::abs(light.errors_from(.03)), 4.5);
   EXPECT_LT(std::abs(long_walks.errors_from(.7)), 4.5);

@@ -70,9 +70,9 @@ inline bool survives(double& weight, double least, WalkNumbers& numbers) {
   return true;
 }
 
-/// Half of all walks that reach 256, 1024, 4096, ... collisions end, the others stand for both.
+/// Half of all walks that reach 1024, 4096, 16384, ... collisions end, the others stand for both.
 inline bool survives_long(double& weight, std::uint64_t collisions, WalkNumbers& numbers) {
-  constexpr std::uint64_t kFirst = 256, kEvenBits = 0x5555555555555555u;
+  constexpr std::uint64_t kFirst = 1024, kEvenBits = 0x5555555555555555u;
   const bool is_power_of_two = (collisions & (collisions - 1)) == 0;
   if (collisions < kFirst || !is_power_of_two || (collisions & kEvenBits) == 0) return true;
   weight *= 2;
