@@ -76,7 +76,9 @@ double slowest_decay(const ChannelProfile& profile) {
 }
 
 ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& medium) {
-  static_assert(kProfileNames.size() + 1 == std::variant_size_v<ChannelProfile>, "every kind has a name");
+  static_assert(kProfileNames.size() + 1 == std::variant_size_v<ChannelProfile> &&
+                    kProfileSources.size() == kProfileNames.size(),
+                "every kind has a name and a source");
   if (medium.absorbed >= 1) return std::monostate{};
   return make_kind(std::size_t(kind), medium, std::make_index_sequence<kProfileNames.size()>());
 }

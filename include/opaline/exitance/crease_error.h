@@ -18,7 +18,7 @@ struct CreaseErrorInput {
 
 /// Mean relative error of the exitance over what of the surface faces the eye, per channel, because the near
 /// field is taken for flat: beside a crease part of it lies on another face, at other distances and in other
-/// light. Derived in README.md, "Creases"; 0 on a surface without creases.
+/// light. Derived in src/exitance/README.md, "Creases"; 0 on a surface without creases.
 std::array<float, 3> crease_error(const CreaseErrorInput& input);
 
 /// The near kernel R_d (1 - w) as rings around a point; masses sum to 1 in each channel that has a near

@@ -33,10 +33,11 @@ struct SplitKernel {
   static constexpr std::size_t kBorderRows = 65;
   std::array<std::array<float, 3>, kBorderRows> border{};
   std::shared_ptr<const LaneTable> lanes;  ///< the far kernel for dual_tree
-  /// How much of the irradiance of the near field is the one at the point itself; the samples' mean around it
-  /// alone would blur shadows. So much that both together have the near kernel's mean square radius: 1 for a
-  /// vanishing mean free path, about .45 (dipole) or .65 (normalized diffusion) where it is the sample
-  /// spacing; 0 where less than 2 % of the light depends on it.
+  /// The near field multiplies a blend of two irradiances: the one at the point itself, with this share, and
+  /// the samples' mean around it, with the rest. The mean alone would blur shadows. The share is chosen so
+  /// that the blend has the near kernel's mean square radius. It is 1 for a vanishing mean free path, and
+  /// about .45 (dipole) or .65 (normalized diffusion) where the mean free path equals the sample spacing. It
+  /// is 0 where less than 2 % of the light depends on it.
   std::array<float, 3> own_irradiance{};
   /// Whether the exitance at a point depends on the irradiance at the point itself.
   bool needs_irradiance() const { return own_irradiance[0] + own_irradiance[1] + own_irradiance[2] > 0; }
@@ -78,14 +79,15 @@ struct QueryPackets {
 /// How far off sums over a cloud of samples are: what one query cannot see, per channel. tell_cloud_error
 /// finds it by trial sums at a few samples.
 struct CloudError {
-  /// Of the irradiance: what a sample's is off the mean of its neighbours', rms, over its own; noise of its
-  /// shadow rays included.
+  /// Rms difference between a sample's irradiance and the mean of its neighbours', over the rms irradiance.
+  /// The noise of its shadow rays is part of it.
   std::array<float, 3> roughness{};
   std::array<float, 3> far_squares{};  ///< sum of squares of the samples' flux over the square of their sum
-  /// Error over what the contributions and the irradiance of neighbours differ by, in units of what is usual.
+  /// Factor on the error that is usually expected from how much neighbours differ in contribution and in
+  /// irradiance: the error that the trial sums show, over that expectation.
   std::array<float, 3> scale{1, 1, 1};
   std::array<float, 3> hierarchy{.1f, .1f, .1f};  ///< mean error of the tree's nodes over the tolerance
-  /// `classic`: what nodes taken as points leave out over what their solid angles suggest.
+  /// `classic` only: the measured error of nodes taken as points, over what their solid angles suggest.
   std::array<float, 3> flattened{1, 1, 1};
   std::array<float, 3> light_shift{};  ///< systematic relative error of the irradiance
   float other_sheets = 1;              ///< 0: without the samples of other sheets within h
@@ -107,12 +109,14 @@ struct EvaluateInput {
 };
 
 /// Radiant exitance at each query point, in their order; finite and >= 0.
-/// `dual_tree`: clusters of queries walk the tree together; a node goes into a series around the cluster's
-/// centre, or stands as its centroid and second moment, when a bound on what that leaves out is below a share
-/// of the cluster's exitance, in each channel. p99 of |result - brute force| / max(|brute force|, 1e-3 of the
-/// p99 of all) <= tolerance, per channel (test_dual_tree), as long as that p99 is over 1e-3 of the brightest
-/// possible exitance and the tolerance over what the far kernel's table leaves: 1e-3, where the mean free
-/// path is under the sample spacing 2.5e-3. Queries that are not finite get 0. `classic`: each query walks
+/// `dual_tree`: clusters of queries walk the tree together. A node is either added to a series around the
+/// cluster's centre or replaced by its centroid and second moment. Either is allowed if, in each channel, a
+/// bound on the error that it makes is below a share of the cluster's exitance.
+/// Accuracy, per channel (test_dual_tree): p99 of |result - brute force| / max(|brute force|, 1e-3 P) <=
+/// tolerance, with P the p99 of brute force over all queries. This holds if P is over 1e-3 of the brightest
+/// possible exitance and the tolerance is over the error of the far kernel's table, which is 1e-3, or 2.5e-3
+/// where the mean free path is below the sample spacing. Queries that are not finite get 0.
+/// `classic`: each query walks
 /// the tree from its root and takes a node as one flux at its centroid when the node's area over its squared
 /// distance is at most max_solid_angle and it lies wholly beyond h; leaves are summed sample by sample.
 /// `brute_force`: every sample, the limit of max_solid_angle -> 0 but for the order of sums.

@@ -20,8 +20,9 @@ struct World {
   std::vector<Mesh> meshes;
   std::vector<MeshReport> reports;
   std::vector<Bounds> boxes;  ///< one a mesh, in the scene, mm
-  /// The middle of everything, rounded to a power of two of 1/8 to 1/4 of the diagonal: where one object
-  /// moves a little, the others keep their bits.
+  /// The middle of everything, rounded to a multiple of a step. The step is a power of two between 1/8 and
+  /// 1/4 of the diagonal. So when one object moves a little, the origin usually stays, and the others keep
+  /// their bits.
   Vec3d origin{};   ///< mm
   double unit = 1;  ///< mm; a power of 1024: translucent bodies, or else the scene, are 1 to 1024 units large
   double diagonal = 0;  ///< of the bounding box of everything, units; 0 for an empty scene

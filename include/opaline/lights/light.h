@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// One sample of a light seen from a point: the contribution to irradiance is radiance_weight x cos x Ft x (1
+/// One sample of a light seen from a point: the contribution to irradiance is weight x cos x Ft x (1
 /// if not occluded) x emission, emission being the light's colour (intensity, irradiance or radiance).
 struct LightSample {
   Vec3f direction;  ///< unit, from the point towards the light

@@ -12,8 +12,8 @@ namespace opaline {
 
 /// One point of the cloud: what evaluation needs of a surface sample.
 struct FluxSample {
-  Vec3f position;   ///< mm, recentred
-  float area = 0;   ///< mm^2
+  Vec3f position;  ///< in the world's space and unit, as are all lengths here
+  float area = 0;
   RgbF irradiance;  ///< entered, W/mm^2
   Vec3f normal;
 };

@@ -38,25 +38,28 @@ struct SessionWork {
 ///   edit                                what is computed
 ///   camera, film                        camera rays and what they see; a surface cache is looked up again.
 ///                                       Other edits trace these rays again, too, unless the view is held
-///   a light's colour or power           sums over lights, trees; no ray from a sample
-///                                       Where lights may be mixed, from the second such edit in a row on, a
-///                                       picture by each that changes and one by the others; then their sum;
-///                                       at once where ready_light_mix was called before
+///   a light's colour or power           sums over lights, trees; no ray from a sample.
+///                                       Where lights may be mixed (hold_view): the second such edit in a row
+///                                       renders one picture for each light that changes and one for all the
+///                                       others together; that edit and each later one is their weighted sum.
+///                                       After ready_light_mix the first such edit is a sum already
 ///   a medium                            evaluation; its samples stay while they are dense enough and at most
 ///                                       twice as dense (in spacing) as it asks for
 ///   eta                                 the light that enters, trees, evaluation
 ///   a light moved, added or removed     that light's share, trees, evaluation
 ///   an object moved as a whole          no file is read; its samples go along; light that enters it, and
 ///                                       others where the shadow of a ball around it fell or falls
-///   a mesh bent, the same triangles     it is read, not checked; samples and their cells go along with their
-///                                       triangles (carry_samples); all else of it. Samples are placed anew
-///                                       where they would be more than settings.max_samples, or less than a
-///                                       sixteenth of settings.samples
+///   a mesh bent, the same triangles     the mesh is read, not checked; samples and their cells move with their
+///                                       triangles (carry_samples); everything else of it is computed again.
+///                                       Samples are placed anew if carrying would make them more than both
+///                                       settings.max_samples and twice their first number, or, where that
+///                                       number was set or limited by max_samples, less than a sixteenth of it
 ///   anything else                       what depends on it
 ///
-/// Pictures are those of a new session, bit for bit, but for such sums (within the tolerance) and for samples
-/// that went along or stayed denser. Those are the samples of the last surface that was sampled anew,
-/// wherever it has been since: a picture depends on that surface and the scene, not on the edits in between.
+/// A picture has the same bits as that of a new session, with two exceptions: mixed pictures (equal within the
+/// tolerance), and scenes whose samples were carried along or stayed denser than needed. Such samples were
+/// placed on the last surface that was sampled anew. The picture depends on that surface and on the scene as
+/// it is now, not on the edits in between.
 class Session {
  public:
   /// cache: where to look for what is not at hand, and to keep it; null: nowhere. Outlives the session.
@@ -79,11 +82,11 @@ class Session {
   /// `automatic` a surface cache is made if it pays for all of them.
   void expect_pictures(std::size_t pictures);
 
-  /// Whether what the camera sees, and how the lights reach it, is kept for the pictures to come: those of
-  /// other colours and media then trace neither again. Costs memory (HeldView); not at first.
-  /// mix_lights: pictures that differ by their lights' colours alone may then be sums of others (LightMix),
-  /// and trace no ray beside shadow edges where earlier ones did: their last bits and their noise there
-  /// depend on the pictures before.
+  /// Whether to keep what the camera sees, and how the lights reach it, for later pictures. After an edit of
+  /// colours or media neither is then traced again. Costs memory (HeldView). Off by default.
+  /// mix_lights: a picture that differs from earlier ones only by its lights' colours may then be a sum of
+  /// pictures (LightMix). Beside shadow edges it traces no rays where an earlier picture did. So its last
+  /// bits, and its noise at those edges, depend on the pictures before it.
   void hold_view(bool hold, bool mix_lights = false);
 
   /// A picture by each light, so that the next edit of colours is a sum already: for while nobody waits. Does
