@@ -12,7 +12,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kWidth = 560, kHeight = 380, kLeft = 70, kRight = 12, kTop = 12, kBottom = 52,
+constexpr double kWidth = 560, kHeight = 380, kLeft = 82, kRight = 12, kTop = 12, kBottom = 52,
                  kLegendRow = 22;
 
 Axis axis_of(const PlotAxis& axis, double from, double to) {

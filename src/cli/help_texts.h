@@ -122,7 +122,7 @@ collisions is told as unfinished.
 Examples:
   opaline profile skin1 -o skin
   opaline profile marble --thickness 2mm --g .8 -o plate
-  opaline profile '{"sigma_a": [.002, .004, .007], "sigma_s": 22, "g": .9, "eta": 1.33}' --walks 1000000
+  opaline profile '{"sigma_a": [0.002, 0.004, 0.007], "sigma_s": 22, "g": 0.9, "eta": 1.33}' --walks 1000000
 
 Exit codes: 0 done, 2 bad input, 3 the folder cannot be written, 130 interrupted (the old report stays).)";
 

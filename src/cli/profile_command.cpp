@@ -25,30 +25,22 @@
 namespace opaline {
 namespace {
 
-constexpr const char* kGiven = "the medium";  // that was given as an object, in messages and headings
+constexpr const char* kGiven = "MEDIUM";  // what messages call the argument, as --help does
 
 bool is_object(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   return first != std::string::npos && text[first] == '{';
 }
 
-/// Read as a scene would read it.
-Medium read_medium_text(const std::string& text, const std::optional<double>& eta) {
+Medium preset_medium(const std::string& name) {
   const std::span<const std::string_view> names = key_info("medium", "preset").choices;
-  std::string scene = text;
-  if (!is_object(text)) {
-    if (std::ranges::find(names, text) == names.end()) {
-      const std::string near = did_you_mean(text, names);
-      throw Error(ErrorKind::bad_input, {}, 0, 0, "there is no medium '" + printable(text) + "'" + near,
-                  near.empty()
-                      ? "one of " + join(names) + R"(, or an object such as {"sigma_a": .01, "sigma_s": 2})"
-                      : "");
-    }
-    scene = "{\"preset\": \"" + text + "\"}";
-  }
-  std::vector<std::string> overrides;
-  if (eta) overrides.push_back(fmt::format("media.medium.eta={}", *eta));
-  return parse_scene("{\"media\": {\"medium\": " + scene + "}}", kGiven, overrides).media.front();
+  if (std::ranges::find(names, name) != names.end())
+    return parse_medium("{\"preset\": \"" + name + "\"}", kGiven);
+  const std::string near = did_you_mean(name, names);
+  throw Error(ErrorKind::bad_input, {}, 0, 0, "there is no medium '" + printable(name) + "'" + near,
+              near.empty()
+                  ? "one of " + join(names) + R"(, or an object such as {"sigma_a": 0.01, "sigma_s": 2})"
+                  : "");
 }
 
 /// The mean cosine of a medium's own text; a scene's medium has it worked into its coefficients.
@@ -57,20 +49,24 @@ double anisotropy_of(const std::string& text) {
   const Document document{kGiven, text, {}, {}, 1, line_starts_of(text)};
   const Node root = parse_tree(document, text);
   const Node* g = find_member(root, "g");
-  return g != nullptr ? g->number : 0;
+  return g == nullptr ? 0 : g->number;
 }
 
 ProfileRequest request_of(const ProfileArguments& arguments) {
-  const Medium medium = read_medium_text(arguments.medium, arguments.eta);
+  const Medium medium =
+      is_object(arguments.medium) ? parse_medium(arguments.medium, kGiven) : preset_medium(arguments.medium);
   const auto* coefficients = std::get_if<PhysicalMedium>(&medium.coefficients);
   if (coefficients == nullptr)
     throw Error(ErrorKind::bad_input, {}, 0, 0,
                 "each model makes another medium of subsurface_color, so that there is none to walk through",
                 "sigma_a and sigma_s_prime, or sigma_a and sigma_s");
   ProfileRequest request;
-  request.name = is_object(arguments.medium) ? kGiven : arguments.medium;
+  request.name = is_object(arguments.medium) ? "the medium" : arguments.medium;
   request.coefficients = *coefficients;
-  request.eta = medium.eta;
+  request.eta = arguments.eta.value_or(medium.eta);
+  const Range& range = key_info("medium", "eta").range;
+  check_value(request.eta >= range.low && request.eta <= range.high, "--eta", "a number from .1 to 10",
+              request.eta);
   request.g = arguments.g.value_or(anisotropy_of(arguments.medium));
   check_value(std::abs(request.g) < 1, "--g", "a number between -1 and 1", request.g);
   if (arguments.thickness) request.thickness = *arguments.thickness;
@@ -101,7 +97,7 @@ void write_report(const std::string& folder, const ProfileReport& report) {
 
 void print_row(const std::string& label, const std::vector<std::string>& cells) {
   std::string line = fmt::format("{:<22}", label);
-  for (const std::string& cell : cells) line += fmt::format("{:<28}", cell);
+  for (const std::string& cell : cells) line += fmt::format("{:<30}", cell);
   write_line(stdout, line.substr(0, line.find_last_not_of(' ') + 1));
 }
 
@@ -187,7 +183,9 @@ void profile_command(const ProfileArguments& arguments) {
   const InterruptHandler interrupt(monitor);
   const Stopwatch watch;
   ProfileReport report = [&] {
-    const Progress progress(arguments.log, monitor, "walks");
+    Log log = arguments.log;
+    log.quiet = log.format == LogFormat::json;  // one object and nothing else
+    const Progress progress(log, monitor, "walks");
     return measure_profiles(request, monitor);
   }();
   advance(&monitor, 0);
@@ -197,6 +195,10 @@ void profile_command(const ProfileArguments& arguments) {
     report.notes.emplace_back(
         "threads",
         std::to_string(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+    for (const ProfiledChannel& channel : report.channels)
+      report.notes.emplace_back(
+          "walks " + channel.name,
+          fmt::format("{} in diffuse light and as many along the normal", channel.diffuse.walks));
     report.notes.emplace_back("seed", std::to_string(request.seed));
     report.notes.emplace_back("cost", fmt::format("{:.1f} s of CPU", watch.cost("walks").cpu_seconds));
     for (auto& [key, value] : report.notes) std::ranges::replace(value, '\n', ' ');

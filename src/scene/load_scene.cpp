@@ -142,4 +142,11 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
   return scene;
 }
 
+Medium parse_medium(std::string_view text, const std::string& file) {
+  Document document{file, text, {}, {}, 1, line_starts_of(text)};
+  document.root = parse_tree(document, text);
+  document.root.key = "medium";
+  return read_medium(Value(document, document.root, document.root.key, key_info("scene", "media")));
+}
+
 }  // namespace opaline
