@@ -11,7 +11,7 @@
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/diffusion/fresnel.h"
 #include "opaline/diffusion/kernel_table.h"
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 
 namespace {
 

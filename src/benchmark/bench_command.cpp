@@ -22,9 +22,9 @@
 #include "benchmark/page.h"
 #include "benchmark/regression.h"
 #include "benchmark/results_json.h"
-#include "core/interrupt.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/core/interrupt.h"
 
 namespace opaline {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "benchmark/figures.h"
 #include "core/log.h"
-#include "core/units.h"
+#include "opaline/core/units.h"
 
 namespace opaline {
 namespace {

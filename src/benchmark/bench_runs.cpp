@@ -6,7 +6,7 @@
 #include <chrono>
 #include <map>
 
-#include "core/units.h"
+#include "opaline/core/units.h"
 
 namespace opaline {
 namespace {

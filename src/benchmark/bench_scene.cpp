@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "benchmark/child_process.h"
-#include "core/units.h"
 #include "opaline/core/error.h"
+#include "opaline/core/units.h"
 #include "opaline/image/image.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/scene_hash.h"

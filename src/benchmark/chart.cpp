@@ -8,42 +8,13 @@
 
 #include "benchmark/figures.h"
 #include "benchmark/html.h"
+#include "benchmark/svg.h"
 
 namespace opaline {
 namespace {
 
 constexpr double kWidth = 880, kHeight = 460, kLeft = 64, kRight = 20, kTop = 18, kBottom = 52,
                  kLegendRow = 22;
-
-/// A logarithmic scale on the page.
-struct Axis {
-  double low, high;  ///< values
-  double from, to;   ///< places of them
-  double place(double value) const {
-    return from + (to - from) * std::log(value / low) / std::log(high / low);
-  }
-  /// 1, 2, 5 where that is a handful, else whole decades or all digits.
-  std::vector<double> ticks() const {
-    std::vector<double> all = round_values(low, high);
-    const auto digit = [](double value) {
-      return value / std::pow(10, std::floor(std::log10(value) + 1e-9));
-    };
-    if (all.size() > 9) std::erase_if(all, [&](double value) { return digit(value) > 1.5; });
-    if (all.size() > 2) return all;
-    all.clear();
-    const double decade = std::pow(10, std::floor(std::log10(low)));
-    for (const double scale : {decade, 10 * decade})
-      for (int i = 1; i < 10; ++i)
-        if (i * scale >= low && i * scale <= high) all.push_back(i * scale);
-    return all;
-  }
-};
-
-/// With a margin, so that no mark touches the frame.
-Axis axis_over(std::vector<double> values, double from, double to) {
-  const auto [low, high] = std::ranges::minmax(values);
-  return {low / 1.35, high * 1.35, from, to};
-}
 
 struct Chart {
   const PageScene& scene;
@@ -72,60 +43,38 @@ Chart layout(const PageScene& scene) {
   return chart;
 }
 
-std::string line(const char* name, double x0, double y0, double x1, double y1) {
-  return fmt::format("<line class=\"{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\"/>\n", name,
-                     x0, y0, x1, y1);
-}
-
-std::string text(const char* name, double x, double y, const std::string& words) {
-  return fmt::format("<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", name, x, y, escaped(words));
-}
-
 std::string grid(const Chart& chart) {
   std::string svg;
   for (const double value : chart.x.ticks()) {
     const double x = chart.x.place(value);
-    svg += line("grid", x, kTop, x, kHeight - kBottom);
-    svg += text("tick-x", x, kHeight - kBottom + 18, fmt::format("{:.4g}", value));
+    svg += svg_line("grid", x, kTop, x, kHeight - kBottom);
+    svg += svg_text("tick-x", x, kHeight - kBottom + 18, fmt::format("{:.4g}", value));
   }
   for (const double value : chart.y.ticks()) {
     const double y = chart.y.place(value);
-    svg += line("grid", kLeft, y, kWidth - kRight, y);
-    svg += text("tick-y", kLeft - 8, y + 4, fmt::format("{:.4g} %", 100 * value));
+    svg += svg_line("grid", kLeft, y, kWidth - kRight, y);
+    svg += svg_text("tick-y", kLeft - 8, y + 4, fmt::format("{:.4g} %", 100 * value));
   }
-  svg += text("label-x", (kLeft + kWidth - kRight) / 2, kHeight - 12, "CPU time of the whole job, s");
+  svg += svg_text("label-x", (kLeft + kWidth - kRight) / 2, kHeight - 12, "CPU time of the whole job, s");
   svg += fmt::format(
       "<text class=\"label-y\" transform=\"translate(14 {:.1f}) rotate(-90)\">"
       "error of the worst channel, rms</text>\n",
       (kTop + kHeight - kBottom) / 2);
   const double one = chart.y.place(.01);
-  svg += line("target", kLeft, one, kWidth - kRight, one);
+  svg += svg_line("target", kLeft, one, kWidth - kRight, one);
   if (chart.lambert_cpu > 0) {
     const double x = chart.x.place(chart.lambert_cpu);
-    svg += line("target", x, kTop, x, kHeight - kBottom);
-    svg += text("note", x + 6, kTop + 12, "lambert");
+    svg += svg_line("target", x, kTop, x, kHeight - kBottom);
+    svg += svg_text("note", x + 6, kTop + 12, "lambert");
   }
   return svg;
 }
 
-template <class Points>
-std::string polyline(const std::string& name, const Chart& chart, const Points& points) {
-  std::string places;
+std::string polyline(const std::string& name, const Chart& chart, const std::vector<TradePoint>& points) {
+  std::vector<std::array<double, 2>> places;
   for (const TradePoint& point : points)
-    places += fmt::format("{:.1f},{:.1f} ", chart.x.place(point.cpu), chart.y.place(point.error));
-  return fmt::format("<polyline class=\"{}\" points=\"{}\"/>\n", name, places);
-}
-
-/// A shape a series, so that colour is not needed to tell them apart.
-std::string mark(std::size_t series, double x, double y) {
-  constexpr std::array<const char*, 6> shapes{"M-5.5,0a5.5,5.5 0 1,0 11,0a5.5,5.5 0 1,0 -11,0z",
-                                              "M-5,-5h10v10h-10z",
-                                              "M0,-7l7,7l-7,7l-7,-7z",
-                                              "M0,-6.5l6.5,11.5h-13z",
-                                              "M0,6.5l6.5,-11.5h-13z",
-                                              "M-2,-6h4v4h4v4h-4v4h-4v-4h-4v-4h4z"};
-  return fmt::format("<path class=\"mark\" transform=\"translate({:.1f} {:.1f})\" d=\"{}\"/>", x, y,
-                     shapes[series % shapes.size()]);
+    places.push_back({chart.x.place(point.cpu), chart.y.place(point.error)});
+  return svg_polyline(name, places);
 }
 
 /// What is said of a point when it is pointed at, and to a reader of the screen.
@@ -148,7 +97,7 @@ std::string marks(const Chart& chart) {
           "<g class=\"point series-{}{}{}\" role=\"button\" tabindex=\"0\" data-select=\"{}\" "
           "aria-label=\"{}\"><title>{}</title>{}</g>\n",
           s, on_front ? " front" : "", point.below_noise ? " below" : "", point.row, words, words,
-          mark(s, chart.x.place(point.cpu), chart.y.place(point.error)));
+          svg_mark(s, chart.x.place(point.cpu), chart.y.place(point.error)));
     }
   return svg;
 }
@@ -158,7 +107,7 @@ std::string legend(const Chart& chart) {
   for (std::size_t s = 0; s < chart.scene.series.size(); ++s)
     html += fmt::format(
         "<li class=\"series-{}\"><svg viewBox=\"-8 -8 16 16\" aria-hidden=\"true\">{}</svg>{}</li>\n", s,
-        mark(s, 0, 0), escaped(chart.scene.series[s].name));
+        svg_mark(s, 0, 0), escaped(chart.scene.series[s].name));
   return html + "<li class=\"front-key\"><span></span>Pareto front</li>\n</ul>\n";
 }
 
@@ -177,8 +126,8 @@ std::string drawn_legend(const Chart& chart) {
   for (std::size_t s = 0; s < chart.scene.series.size(); ++s) {
     const double x = kLeft + double(s % 2) * (kWidth - kLeft) / 2,
                  y = kHeight + kLegendRow * (double(s / 2) + .5);
-    svg += fmt::format("<g class=\"series-{}\">{}</g>\n", s, mark(s, x, y - 5)) +
-           text("key", x + 14, y, chart.scene.series[s].name);
+    svg += fmt::format("<g class=\"series-{}\">{}</g>\n", s, svg_mark(s, x, y - 5)) +
+           svg_text("key", x + 14, y, chart.scene.series[s].name);
   }
   return svg;
 }

@@ -40,6 +40,40 @@ std::string url_of(const std::string& path) {
   return url;
 }
 
+std::string note_of(const std::vector<std::pair<std::string, std::string>>& notes, const std::string& key) {
+  const auto at = std::ranges::find(notes, key, [](const auto& note) { return note.first; });
+  return at == notes.end() ? std::string() : at->second;
+}
+
+std::string lead_of(const std::vector<std::pair<std::string, std::string>>& notes) {
+  const std::string threads = note_of(notes, "threads");
+  return fmt::format("{}, {}, {} thread{}, {}", note_of(notes, "version"), note_of(notes, "cpu"), threads,
+                     threads == "1" ? "" : "s", note_of(notes, "date"));
+}
+
+std::string notes_list(const std::vector<std::pair<std::string, std::string>>& notes) {
+  std::string html = "<dl>\n";
+  for (const auto& [key, value] : notes)
+    html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(key), escaped(value));
+  return html + "</dl>\n";
+}
+
+std::string framed(const PageFrame& frame) {
+  std::string page = kPageFrame;
+  const auto replace = [&](const std::string& mark, const std::string& with) {
+    if (const std::size_t at = page.find(mark); at != std::string::npos) page.replace(at, mark.size(), with);
+  };
+  replace("{{title}}", escaped(frame.title));
+  replace("{{command}}", escaped(frame.command));
+  replace("{{style}}", kPageStyle);
+  replace("{{heading}}", escaped(frame.heading));
+  replace("{{lead}}", escaped(frame.lead));
+  replace("{{intro}}", frame.intro);
+  replace("{{body}}", frame.body);
+  replace("{{script}}", kPageScript);
+  return page;
+}
+
 std::vector<std::size_t> rows_of(const PageScene& scene) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < scene.report->rows.size(); ++i)

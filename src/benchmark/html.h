@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "benchmark/csv.h"
@@ -21,6 +22,24 @@ std::string url_of(const std::string& path);
 extern const char* const kPageStyle;
 extern const char* const kPageScript;
 extern const char* const kPageFrame;
+
+/// What stands around a page's body; all but `intro` and `body` is text, not HTML.
+struct PageFrame {
+  std::string command;  ///< of opaline, that made it
+  std::string title, heading, lead, intro, body;
+};
+
+/// A whole page, which needs no network.
+std::string framed(const PageFrame& frame);
+
+/// Notes as a list of terms.
+std::string notes_list(const std::vector<std::pair<std::string, std::string>>& notes);
+
+/// The text of the note with this key; empty without one.
+std::string note_of(const std::vector<std::pair<std::string, std::string>>& notes, const std::string& key);
+
+/// "version, cpu, N threads, date" from the notes.
+std::string lead_of(const std::vector<std::pair<std::string, std::string>>& notes);
 
 /// A scene of the report, with what is drawn and tabled of it.
 struct PageScene {

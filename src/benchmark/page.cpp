@@ -16,15 +16,6 @@ std::string without_extension(const std::string& exr) {
   return exr.substr(0, exr.rfind('.'));
 }
 
-void replace(std::string& text, const std::string& mark, const std::string& with) {
-  if (const std::size_t at = text.find(mark); at != std::string::npos) text.replace(at, mark.size(), with);
-}
-
-std::string note_of(const BenchReport& report, const std::string& key) {
-  const auto at = std::ranges::find(report.notes, key, [](const auto& note) { return note.first; });
-  return at == report.notes.end() ? std::string() : at->second;
-}
-
 /// The colours of the error pictures, dark to bright, for CSS.
 std::string error_gradient() {
   constexpr int steps = 12;
@@ -84,11 +75,8 @@ std::string scene_html(const PageScene& scene) {
 }
 
 std::string notes_html(const BenchReport& report) {
-  std::string html = "<section class=\"notes\"><h2>How it was measured</h2>\n<dl>\n";
-  for (const auto& [key, value] : report.notes)
-    html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(key), escaped(value));
-  return html +
-         "</dl>\n<p>All figures: <a href=\"results.csv\">results.csv</a>, <a "
+  return "<section class=\"notes\"><h2>How it was measured</h2>\n" + notes_list(report.notes) +
+         "<p>All figures: <a href=\"results.csv\">results.csv</a>, <a "
          "href=\"budget.csv\">budget.csv</a>, <a href=\"results.json\">results.json</a>. An error is "
          "reproduced by "
          "<code>opaline compare PICTURE --halves HALF1 HALF2</code> with a picture of this folder and the "
@@ -156,16 +144,10 @@ std::string to_page(const BenchReport& report) {
     body += scene_html({&report, &table, &subject, n, trade_series(report.rows, subject.scene)});
     titles += (n > 0 ? ", " : "") + subject.title;
   }
-  std::string page = kPageFrame;
-  replace(page, "{{title}}", escaped(titles));
-  replace(page, "{{style}}", kPageStyle);
-  const std::string threads = note_of(report, "threads");
-  replace(page, "{{lead}}",
-          escaped(fmt::format("{}, {}, {} thread{}, {}", note_of(report, "version"), note_of(report, "cpu"),
-                              threads, threads == "1" ? "" : "s", note_of(report, "date"))));
-  replace(page, "{{body}}", body + notes_html(report));
-  replace(page, "{{script}}", kPageScript);
-  return page;
+  return framed({"bench", titles, "Speed and error", lead_of(report.notes),
+                 "What each setting costs, and how far its picture is from a converged one of the same "
+                 "diffusion model. The error of the model itself is not in any figure here.",
+                 body + notes_html(report)});
 }
 
 }  // namespace opaline

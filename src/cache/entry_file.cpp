@@ -12,6 +12,7 @@
 
 #include "cache/content_hash.h"
 #include "cache/entry_header.h"
+#include "cache/hdf5_file.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
@@ -81,28 +82,14 @@ std::string file_name(const EntryName& name) {
 }
 
 std::optional<EntryName> parse_file_name(const std::string& name) {
-  static const std::regex form("(samples|light|octree|exitance)-([0-9a-f]{16})([0-9a-f]{16})\\.h5");
+  static const std::regex form("([a-z]+)-([0-9a-f]{16})([0-9a-f]{16})\\.h5");
   std::smatch parts;
   if (!std::regex_match(name, parts, form)) return {};
   return EntryName{parts[1], {std::stoull(parts[2], nullptr, 16), std::stoull(parts[3], nullptr, 16)}};
 }
 
-std::optional<std::span<const char>> CheckedEntry::bytes_of(std::string_view name,
-                                                            std::size_t item_bytes) const {
-  const auto set = std::ranges::find(sets_, name, &StoredSet::name);
-  if (set == sets_.end() || set->item_bytes != item_bytes) return {};
-  if (set->count == 0) return std::span<const char>{};
-  return std::span(bytes_).subspan(set->offset, set->count * item_bytes);
-}
-
-std::optional<double> CheckedEntry::number(std::string_view name) const {
-  const auto values = get<double>(name);
-  if (!values || values->size() != 1) return {};
-  return values->front();
-}
-
-std::variant<CheckedEntry, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name,
-                                                         std::uint64_t most_bytes) {
+std::variant<BlobReader, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name,
+                                                       std::uint64_t most_bytes) {
   auto opened = open_file(folder, name);
   if (const auto* bad = std::get_if<BadEntry>(&opened)) return *bad;
   if (std::holds_alternative<NoEntry>(opened)) return NoEntry{};
@@ -119,7 +106,7 @@ std::variant<CheckedEntry, NoEntry, BadEntry> open_entry(const std::string& fold
   auto sets = read_listing(listing, open.size);
   if (!sets) return BadEntry{"is damaged"};
   ::futimens(open.file.number, nullptr);
-  return CheckedEntry(std::move(bytes), std::move(*sets));
+  return BlobReader(std::move(bytes), std::move(*sets));
 }
 
 std::string check_entry(const std::string& folder, const EntryName& name) {
@@ -145,7 +132,7 @@ std::string check_entry(const std::string& folder, const EntryName& name) {
 }
 
 bool write_entry(const std::string& folder, const EntryName& name, std::uint64_t most_bytes,
-                 const std::function<void(Hdf5Writer&)>& fill) {
+                 const std::function<void(BlobWriter&)>& fill) {
   const std::string path = folder + '/' + file_name(name);
   std::error_code ignored;
   if (std::filesystem::is_symlink(path, ignored))
@@ -158,7 +145,7 @@ bool write_entry(const std::string& folder, const EntryName& name, std::uint64_t
   if (bytes.size() < kUserBlock) throw run_failed(path, "HDF5 cannot make it");
   if (bytes.size() > most_bytes) return false;
   const std::string_view payload = bytes.substr(kUserBlock);
-  const std::string listing = listing_of(writer.sets());
+  const std::string listing = listing_of(writer.arrays());
   std::string header = header_text(name, listing, payload.size(), hash_of(listing, payload));
   require(header.size() <= kUserBlock, "the data sets of an entry are listed in its header");
   header.resize(kUserBlock);

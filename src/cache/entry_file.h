@@ -6,20 +6,15 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "cache/hdf5_file.h"
+#include "opaline/cache/blobs.h"
 #include "opaline/cache/stage_key.h"
-#include "opaline/core/zeroed_array.h"
 
 namespace opaline {
 
@@ -34,33 +29,6 @@ std::string file_name(const EntryName& name);
 /// Nothing for names that no entry has.
 std::optional<EntryName> parse_file_name(const std::string& name);
 
-/// An entry that was found whole, in memory: what is used are the bytes that were checked.
-class CheckedEntry {
- public:
-  CheckedEntry() = default;
-  /// bytes: the whole file; sets: within it
-  CheckedEntry(ZeroedArray<char> bytes, std::vector<StoredSet> sets)
-      : bytes_(std::move(bytes)), sets_(std::move(sets)) {}
-
-  /// The bytes of a data set of such items; nothing where there is none.
-  std::optional<std::span<const char>> bytes_of(std::string_view name, std::size_t item_bytes) const;
-
-  template <class T>
-  std::optional<std::vector<T>> get(std::string_view name) const {
-    static_assert(std::is_trivially_copyable_v<T>);
-    const std::optional<std::span<const char>> bytes = bytes_of(name, sizeof(T));
-    if (!bytes) return {};
-    std::vector<T> values(bytes->size() / sizeof(T));
-    if (!bytes->empty()) std::memcpy(static_cast<void*>(values.data()), bytes->data(), bytes->size());
-    return values;
-  }
-  std::optional<double> number(std::string_view name) const;
-
- private:
-  ZeroedArray<char> bytes_;
-  std::vector<StoredSet> sets_;
-};
-
 struct NoEntry {};
 /// Why an entry must not be used, to follow its name: "is truncated".
 struct BadEntry {
@@ -72,8 +40,8 @@ struct BadEntry {
 /// most recently used, where the folder may be written.
 /// in    most_bytes: a larger file is bad and not read;
 /// what the key stands for cannot have more
-std::variant<CheckedEntry, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name,
-                                                         std::uint64_t most_bytes);
+std::variant<BlobReader, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name,
+                                                       std::uint64_t most_bytes);
 
 /// Why open_entry would not take the entry, by its own; empty if it would. Takes no memory of the file's
 /// size.
@@ -83,6 +51,6 @@ std::string check_entry(const std::string& folder, const EntryName& name);
 /// most_bytes.
 /// error Error{run_failed} naming the file: disk full, folder not writable
 bool write_entry(const std::string& folder, const EntryName& name, std::uint64_t most_bytes,
-                 const std::function<void(Hdf5Writer&)>& fill);
+                 const std::function<void(BlobWriter&)>& fill);
 
 }  // namespace opaline

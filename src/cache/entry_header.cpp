@@ -33,7 +33,7 @@ bool take_number(std::string_view& text, std::string_view behind, std::uint64_t&
   return true;
 }
 
-bool is_within(const StoredSet& set, std::uint64_t file_bytes) {
+bool is_within(const BlobPlace& set, std::uint64_t file_bytes) {
   if (set.count == 0) return set.item_bytes > 0;
   return set.item_bytes > 0 && set.offset >= kUserBlock && set.offset <= file_bytes &&
          set.count <= (file_bytes - set.offset) / set.item_bytes;
@@ -41,9 +41,9 @@ bool is_within(const StoredSet& set, std::uint64_t file_bytes) {
 
 }  // namespace
 
-std::string listing_of(const std::vector<StoredSet>& sets) {
+std::string listing_of(const std::vector<BlobPlace>& sets) {
   std::string listing;
-  for (const StoredSet& set : sets)
+  for (const BlobPlace& set : sets)
     listing += fmt::format("{} {} x {} at {}\n", set.name, set.count, set.item_bytes, set.offset);
   return listing;
 }
@@ -70,8 +70,8 @@ std::optional<StatedEntry> read_header(const EntryHeader& header, const EntryNam
   return stated;
 }
 
-std::optional<std::vector<StoredSet>> read_listing(const std::string& listing, std::uint64_t file_bytes) {
-  std::vector<StoredSet> sets;
+std::optional<std::vector<BlobPlace>> read_listing(const std::string& listing, std::uint64_t file_bytes) {
+  std::vector<BlobPlace> sets;
   for (std::string_view text = listing; !text.empty();) {
     const std::size_t space = text.find(' ');
     if (space == text.npos) return {};

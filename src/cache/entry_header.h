@@ -10,13 +10,14 @@
 
 #include "cache/content_hash.h"
 #include "cache/entry_file.h"
+#include "cache/hdf5_file.h"
 
 namespace opaline {
 
 using EntryHeader = std::array<char, kUserBlock>;
 
 /// One line a data set.
-std::string listing_of(const std::vector<StoredSet>& sets);
+std::string listing_of(const std::vector<BlobPlace>& sets);
 
 /// hash: of the listing and, behind it, the payload, which is all after the header
 std::string header_text(const EntryName& name, const std::string& listing, std::uint64_t payload,
@@ -34,7 +35,7 @@ std::optional<StatedEntry> read_header(const EntryHeader& header, const EntryNam
 
 /// The data sets of a listing; nothing if a line is no such line, or a set does not lie behind the header
 /// within file_bytes.
-std::optional<std::vector<StoredSet>> read_listing(const std::string& listing, std::uint64_t file_bytes);
+std::optional<std::vector<BlobPlace>> read_listing(const std::string& listing, std::uint64_t file_bytes);
 
 /// What the header of an entry that is not to be used suggests, to follow its name: "is truncated".
 std::string reason_of(const EntryHeader& header, std::uint64_t payload);

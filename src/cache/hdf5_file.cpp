@@ -23,6 +23,37 @@ Hdf5Handle set_properties() {
   return properties;
 }
 
+hid_t number_type(BlobNumber number) {
+  switch (number) {
+    case BlobNumber::uint8:
+      return H5T_NATIVE_UINT8;
+    case BlobNumber::uint32:
+      return H5T_NATIVE_UINT32;
+    case BlobNumber::float32:
+      return H5T_NATIVE_FLOAT;
+    case BlobNumber::float64:
+      return H5T_NATIVE_DOUBLE;
+  }
+  return -1;
+}
+
+/// Of a number that stands alone, or of an array of them.
+Hdf5Handle member_type(const BlobMember& member) {
+  const hsize_t count = member.count;
+  if (count == 1) return {H5Tcopy(number_type(member.number)), H5Tclose};
+  return {H5Tarray_create2(number_type(member.number), 1, &count), H5Tclose};
+}
+
+Hdf5Handle item_type(const BlobType& type) {
+  if (*type.members.front().name == 0) return member_type(type.members.front());
+  Hdf5Handle compound(H5Tcreate(H5T_COMPOUND, type.bytes), H5Tclose);
+  for (const BlobMember& member : type.members) {
+    const Hdf5Handle of_member = member_type(member);
+    H5Tinsert(compound.id(), member.name, member.offset, of_member.id());
+  }
+  return compound;
+}
+
 }  // namespace
 
 Hdf5Turn::Hdf5Turn() : lock_(hdf5_mutex) {
@@ -36,8 +67,9 @@ Hdf5Turn::~Hdf5Turn() {
 
 Hdf5Writer::Hdf5Writer() : file_(create_in_memory()), good_(file_.id() >= 0) {}
 
-void Hdf5Writer::put(const char* name, const Hdf5Handle& type, const void* values, std::size_t count) {
+void Hdf5Writer::put_items(const char* name, const BlobType& item, const void* values, std::size_t count) {
   if (!good_) return;
+  const Hdf5Handle type = item_type(item);
   const hsize_t size = count;
   const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose), properties = set_properties();
   Hdf5Handle set(
@@ -46,12 +78,8 @@ void Hdf5Writer::put(const char* name, const Hdf5Handle& type, const void* value
   good_ = set.id() >= 0 &&
           (count == 0 || H5Dwrite(set.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
   const haddr_t offset = good_ && count > 0 ? H5Dget_offset(set.id()) : 0;
-  sets_.push_back({name, count, H5Tget_size(type.id()), std::size_t(offset)});
+  arrays_.push_back({name, count, item.bytes, std::size_t(offset)});
   good_ = set.close() && good_ && offset != HADDR_UNDEF;
-}
-
-void Hdf5Writer::put(const char* name, double value) {
-  put(name, std::span<const double>(&value, 1));
 }
 
 std::string_view Hdf5Writer::bytes() {

@@ -7,11 +7,11 @@
 
 #include <cstddef>
 #include <mutex>
-#include <span>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "opaline/cache/blobs.h"
 
 namespace opaline {
 
@@ -49,38 +49,22 @@ class Hdf5Turn {
 /// Bytes in front of the file that HDF5 leaves alone.
 inline constexpr std::size_t kUserBlock = 1024;
 
-/// Each struct in a cache entry says what its members are.
-template <class T>
-Hdf5Handle hdf5_type();
-
-/// Where the values of a data set lie in the file, one after the other as in memory.
-struct StoredSet {
-  std::string name;
-  std::size_t count = 0, item_bytes = 0;
-  std::size_t offset = 0;  ///< from the start of the file, user block included; of no meaning without values
-};
-
 /// A file that is made in memory: HDF5 (1.10) cannot let go of one whose disk is full. After the first
 /// failure what follows does nothing.
-class Hdf5Writer {
+class Hdf5Writer final : public BlobWriter {
  public:
   Hdf5Writer();
 
-  template <class T>
-  void put(const char* name, std::span<const T> values) {
-    put(name, hdf5_type<T>(), values.data(), values.size());
-  }
-  void put(const char* name, double value);
   /// The whole file, kUserBlock bytes of nothing in front; empty after a failure. Valid until the next put.
   std::string_view bytes();
   /// What was put, in that order.
-  const std::vector<StoredSet>& sets() const { return sets_; }
+  const std::vector<BlobPlace>& arrays() const { return arrays_; }
 
  private:
-  void put(const char* name, const Hdf5Handle& type, const void* values, std::size_t count);
+  void put_items(const char* name, const BlobType& type, const void* values, std::size_t count) override;
   Hdf5Handle file_;
   bool good_;
-  std::vector<StoredSet> sets_;
+  std::vector<BlobPlace> arrays_;
 };
 
 }  // namespace opaline

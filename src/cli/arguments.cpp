@@ -17,9 +17,9 @@
 #include "cli/option_values.h"
 #include "cli/quality.h"
 #include "opaline/core/error.h"
+#include "opaline/scene/json_tree.h"
 #include "opaline/scene/nearest_name.h"
 #include "opaline/scene/schema.h"
-#include "scene/json_tree.h"
 
 namespace opaline {
 namespace {
@@ -194,6 +194,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   PrecomputeArguments precompute;
   BenchArguments bench;
   CacheArguments cache;
+  ProfileArguments profile;
   Options options;
   CLI::App app("opaline renders translucent things fast, and says how accurate the picture is.", "opaline");
   app.get_formatter()->column_width(34);
@@ -209,6 +210,8 @@ Command parse_arguments(int argc, const char* const* argv) {
   CLI::App& compare_command = *app.add_subcommand("compare", "print how far a picture is from a reference");
   CLI::App& bench_command =
       *app.add_subcommand("bench", "measure what scenes cost and how far off they are, at many settings");
+  CLI::App& profile_command = *app.add_subcommand(
+      "profile", "measure how far diffusion models are from random walks, for one medium");
   CLI::App& cache_command = *app.add_subcommand("cache", "look after a folder of stage results (--cache)");
   add_render_options(render_command, render, options);
   add_precompute_options(precompute_command, precompute, options);
@@ -216,6 +219,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   add_picture_options(info_command, options);
   add_compare_options(compare_command, compare, options);
   add_bench_options(bench_command, bench, options);
+  add_profile_options(profile_command, profile, options);
   add_cache_commands(cache_command, cache, options);
   try {
     std::vector<std::string> words = words_of(app, argc, argv);
@@ -226,11 +230,17 @@ Command parse_arguments(int argc, const char* const* argv) {
     throw parse_error(app, failure);
   }
   if (app.get_subcommands().empty())
-    throw usage_error("no command given: render, info, compare, bench, cache or precompute" + hint(app));
+    throw usage_error("no command given: render, info, compare, bench, profile, cache or precompute" +
+                      hint(app));
   if (compare_command.parsed()) return checked(std::move(compare), options);
   if (cache_command.parsed()) {
     cache.log.format = options.json ? LogFormat::json : LogFormat::text;
     return cache;
+  }
+  if (profile_command.parsed()) {
+    for (int i = 1; i < argc; ++i) profile.command_line += ' ' + shell_quoted(argv[i]);
+    profile.log.format = options.json ? LogFormat::json : LogFormat::text;
+    return profile;
   }
   if (bench_command.parsed()) {
     for (int i = 1; i < argc; ++i) bench.command_line += ' ' + shell_quoted(argv[i]);

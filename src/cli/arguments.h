@@ -10,7 +10,7 @@
 #include "benchmark/bench_command.h"
 #include "cli/display_server.h"
 #include "core/log.h"
-#include "opaline/cache/stage_cache.h"
+#include "opaline/cache/blob_cache.h"
 #include "opaline/image/picture_layers.h"
 
 namespace opaline {
@@ -26,7 +26,7 @@ struct RenderArguments {
   std::string samples_ply;                 ///< empty: none
   std::string resume;                      ///< file of a direct rendering's sums to go on from; empty: none
   std::string cache;                       ///< folder of stage results; empty: none
-  std::uint64_t cache_bytes = StageCache::kDefaultBytes;
+  std::uint64_t cache_bytes = BlobCache::kDefaultBytes;
   std::vector<int> frames;  ///< empty: one picture; else outputs have a place for the frame's number
   int threads = 0;          ///< 0: one for each core
   bool timings_in_metadata = false;
@@ -43,7 +43,7 @@ struct PrecomputeArguments {
   std::string scene;
   std::vector<std::string> overrides;
   std::string cache;
-  std::uint64_t cache_bytes = StageCache::kDefaultBytes;
+  std::uint64_t cache_bytes = BlobCache::kDefaultBytes;
   std::vector<int> frames;  ///< empty: no range, the scene as it is
   int threads = 0;
   Log log;
@@ -65,12 +65,25 @@ struct CompareArguments {
   Log log;
 };
 
+/// A medium's radial profiles beside random walks.
+struct ProfileArguments {
+  std::string medium;               ///< a preset's name, or a JSON object as a scene's media have
+  std::optional<double> eta, g;     ///< in place of the medium's
+  std::optional<double> thickness;  ///< mm; none: a half space
+  std::optional<std::uint64_t> walks;
+  std::uint64_t seed = 1;
+  std::string report;  ///< folder; empty: none
+  int threads = 0;     ///< 0: one for each core
+  std::string command_line;
+  Log log;
+};
+
 enum class CacheAction { list, verify, prune };
 
 struct CacheArguments {
   CacheAction action = CacheAction::list;
   std::string folder;
-  std::uint64_t most_bytes = StageCache::kDefaultBytes;  ///< prune
+  std::uint64_t most_bytes = BlobCache::kDefaultBytes;  ///< prune
   Log log;
 };
 
@@ -80,7 +93,7 @@ struct ShowText {
 };
 
 using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments,
-                             CacheArguments, PrecomputeArguments>;
+                             CacheArguments, PrecomputeArguments, ProfileArguments>;
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case

@@ -5,9 +5,9 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
-#include "core/units.h"
 #include "opaline/cache/cache_folder.h"
 #include "opaline/core/error.h"
+#include "opaline/core/units.h"
 
 namespace opaline {
 namespace {

@@ -37,6 +37,7 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
 void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options);
 void add_compare_options(CLI::App& app, CompareArguments& compare, Options& options);
 void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options);
+void add_profile_options(CLI::App& app, ProfileArguments& profile, Options& options);
 void add_cache_commands(CLI::App& app, CacheArguments& cache, Options& options);
 
 }  // namespace opaline

@@ -20,6 +20,11 @@ void info_command(const InfoArguments& arguments);
 ///       Error{run_failed}: stdout or the error picture cannot be written
 int compare_command(const CompareArguments& arguments);
 
+/// Walks through a medium, prints each model's totals beside the walks', and writes the report.
+/// error Error{bad_input}: no such medium, or a value out of its range; Error{run_failed}: the folder or stdout cannot
+///       be written; Error{interrupted}: the old report stays
+void profile_command(const ProfileArguments& arguments);
+
 /// Fills a cache with what rendering the scene, or frames of it, will ask for.
 /// error as render_command
 void precompute_command(const PrecomputeArguments& arguments);

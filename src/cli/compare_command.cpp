@@ -8,8 +8,8 @@
 
 #include "cli/commands.h"
 #include "cli/compare_report.h"
-#include "core/units.h"
 #include "opaline/core/error.h"
+#include "opaline/core/units.h"
 #include "opaline/image/error_picture.h"
 #include "opaline/image/flip.h"
 

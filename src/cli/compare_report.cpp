@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/units.h"
+#include "opaline/core/units.h"
 
 namespace opaline {
 namespace {

@@ -16,6 +16,7 @@ inline constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o bunny.exr --log json --threads 4
   opaline compare bunny.exr reference.exr --fail-above 1%
   opaline bench bunny.json -o report --resolution 256x256
+  opaline profile marble -o marble
   opaline render bunny.json -o turned.exr --cache stages --set camera.position=[0,50,200]
   opaline render bunny.json -o out.####.exr --frames 1-24 --cache stages
   opaline cache ls stages
@@ -102,6 +103,28 @@ Examples:
 
 Exit codes: 0 done, 1 worse than before (--against), 2 bad input, 3 a rung failed (its row says why) or the run
 did, 130 interrupted.)";
+
+inline constexpr const char* kProfileNotes =
+    R"(Random walks follow light through a flat half space or slab, with refraction and reflection at a smooth
+boundary: they know no diffusion model, and are the truth of the medium but for their error bars. Beside them
+stand all radial profiles that scenes can use.
+
+Shares are of the light that entered; what the face reflects before is in none. "shape" is the largest difference,
+over all distances, of the shares (each of its own total) that leave within that distance, against diffuse light.
+
+-o writes index.html (open it in a browser; no network is needed), profile-R.svg and so on, and every figure as
+totals.csv, profile.csv (by distance) and angles.csv (albedo by angle of entry, radiance by angle of exit).
+
+A medium is given by a preset, by sigma_a and sigma_s_prime, or by sigma_a, sigma_s and g, in 1/mm; one number or
+[r, g, b]. Where nothing absorbs in a half space some walks would take forever: what is still inside after 16 million
+collisions is told as unfinished.
+
+Examples:
+  opaline profile skin1 -o skin
+  opaline profile marble --thickness 2mm --g .8 -o plate
+  opaline profile '{"sigma_a": [0.002, 0.004, 0.007], "sigma_s": 22, "g": 0.9, "eta": 1.33}' --walks 1000000
+
+Exit codes: 0 done, 2 bad input, 3 the folder cannot be written, 130 interrupted (the old report stays).)";
 
 inline constexpr const char* kCacheNotes =
     R"(An entry holds the result of one stage for one input: the samples of a group, the light that enters

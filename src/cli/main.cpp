@@ -17,6 +17,8 @@ int run(const opaline::Command& command) {
     return opaline::compare_command(*compare);
   if (const auto* bench = std::get_if<opaline::BenchArguments>(&command))
     return opaline::bench_command(*bench);
+  if (const auto* profile = std::get_if<opaline::ProfileArguments>(&command))
+    opaline::profile_command(*profile);
   if (const auto* cache = std::get_if<opaline::CacheArguments>(&command))
     return opaline::cache_command(*cache);
   return 0;
@@ -27,6 +29,7 @@ opaline::Log log_of(const opaline::Command& command) {
   if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) return info->log;
   if (const auto* compare = std::get_if<opaline::CompareArguments>(&command)) return compare->log;
   if (const auto* bench = std::get_if<opaline::BenchArguments>(&command)) return bench->log;
+  if (const auto* profile = std::get_if<opaline::ProfileArguments>(&command)) return profile->log;
   if (const auto* cache = std::get_if<opaline::CacheArguments>(&command)) return cache->log;
   if (const auto* precompute = std::get_if<opaline::PrecomputeArguments>(&command)) return precompute->log;
   return {};

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "core/units.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
+#include "opaline/core/units.h"
 
 namespace opaline {
 
@@ -13,7 +13,7 @@ void check_memory(const Scene& scene, const Plan& plan) {
   const std::size_t taken = resident_memory(), left = available_memory();
   if (plan.bytes <= taken || plan.bytes - taken <= left) return;
   std::string advice = "a lower film.resolution, or --crop for one part after the other,";
-  if (scene.settings.method == Method::hierarchical && !plan.groups.empty())
+  if (has_samples(scene.settings.method) && !plan.groups.empty())
     advice += " or a lower settings.max_samples";
   throw run_failed({},
                    fmt::format("out of memory: the picture needs about {}, and there are {}; {} takes less",

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "cli/display_server.h"
+#include "opaline/scene/json_tree.h"
 #include "opaline/scene/nearest_name.h"
 #include "opaline/scene/schema.h"
-#include "scene/json_tree.h"
 
 namespace opaline {
 namespace {
@@ -128,6 +128,11 @@ CLI::Validator positive_share_check() {
 
 CLI::Validator seconds_of() {
   const std::map<std::string, double> units{{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
+  return CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE).description("");
+}
+
+CLI::Validator millimetres_of() {
+  const std::map<std::string, double> units{{"um", 1e-3}, {"mm", 1}, {"cm", 10}, {"m", 1000}};
   return CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE).description("");
 }
 

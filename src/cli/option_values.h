@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-inline constexpr Range kThreads{1, 4096}, kRepeats{3, 1000};
+inline constexpr Range kThreads{1, 4096}, kRepeats{3, 1000}, kWalks{1, 1e9};
 
 /// "640x480" -> "[640,480]", "0,0,16,16" -> "[0,0,16,16]"; empty if it is neither.
 std::string resolution_json(std::string_view text);
@@ -31,6 +31,8 @@ CLI::Validator share_check();
 CLI::Validator positive_share_check();
 /// "2s", "500ms", "1.5min", "1h" or seconds alone, to seconds.
 CLI::Validator seconds_of();
+/// "2mm", "500um", ".5cm", "1m" or millimetres alone, to millimetres.
+CLI::Validator millimetres_of();
 /// What parse_server_address takes.
 CLI::Validator server_address_check();
 /// "diffuse,N", "all" or "none"; nothing if a name is no layer's.

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/report.h"
-#include "core/units.h"
+#include "opaline/core/units.h"
 #include "opaline/scene/names.h"
 
 namespace opaline {
@@ -40,7 +40,7 @@ void print_group(const Scene& scene, const GroupPlan& group) {
   print_row("translucent",
             fmt::format("{} in {}: {:.4g} mm^2, mean free path {:.4g} mm (its smallest channel)", group.name,
                         scene.media[group.medium].name, group.area, group.smallest_mean_free_path));
-  if (scene.settings.method != Method::hierarchical) return;
+  if (!has_samples(scene.settings.method)) return;
   print_row("", fmt::format("{}, {:.4g} mm apart: {}", counted(group.samples, "sample"), group.spacing,
                             group.reason));
 }
@@ -117,8 +117,8 @@ void print_plate(const PlateModel& plate) {
   print_row("model error",
             fmt::format("{} is as thick as a plate of {:.3g} mm: {} mean free paths (R G B)", plate.body,
                         plate.thickness, three(plate, [](const Channel& c) { return c.optical_thickness; })));
-  print_row("", fmt::format("of diffuse light that enters, {} sends back {} % and lets through {} %;",
-                            plate.kind == ProfileKind::dipole ? "the dipole" : "normalized diffusion",
+  print_row("", fmt::format("of diffuse light that enters, `{}` sends back {} % and lets through {} %;",
+                            name_of(plate.kind),
                             three(plate, [](const Channel& c) { return 100 * c.profile.back; }),
                             three(plate, [](const Channel& c) { return 100 * c.profile.through; })));
   print_row("", fmt::format("random walks, the truth: {} % and {} %",

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/units.h"
+#include "opaline/core/units.h"
 
 namespace opaline {
 namespace {

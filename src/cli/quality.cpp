@@ -151,7 +151,7 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
   if (!hierarchical && (arguments.target_error || arguments.verify))
     throw bad_usage(arguments.target_error ? "--target-error chooses how light under the surface is summed"
                                            : "--verify measures how light under the surface is summed",
-                    "--method hierarchical; the noise of direct ends at --until-error",
+                    "--method hierarchical; the noise of direct and volume ends at --until-error",
                     std::string(name_of(settings.method)));
   if ((!arguments.target_error && !arguments.time_budget) || !hierarchical) return {};
   if (settings.evaluator == EvaluatorKind::classic)

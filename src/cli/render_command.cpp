@@ -15,8 +15,8 @@
 #include "cli/report.h"
 #include "cli/resumable_state.h"
 #include "cli/stages.h"
-#include "core/units.h"
 #include "opaline/core/error.h"
+#include "opaline/core/units.h"
 #include "opaline/render/direct.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/scene/load_scene.h"
@@ -28,7 +28,7 @@ namespace {
 
 void check_precompute(const RenderArguments& arguments, const Scene& scene, const Plan& plan) {
   if (arguments.samples_ply.empty()) return;
-  if (scene.settings.method != Method::hierarchical || plan.groups.empty())
+  if (!has_samples(scene.settings.method) || plan.groups.empty())
     throw bad_file(arguments.samples_ply, "there are no samples to write",
                    "settings.method \"hierarchical\" and a translucent shape");
 }

@@ -5,8 +5,8 @@
 
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/render/layers.h"
 #include "opaline/scene/names.h"
-#include "render/layers.h"
 
 namespace opaline {
 

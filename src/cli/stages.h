@@ -8,7 +8,7 @@
 
 #include "cli/progress.h"
 #include "cli/report.h"
-#include "core/interrupt.h"
+#include "opaline/core/interrupt.h"
 #include "opaline/core/monitor.h"
 #include "opaline/core/stopwatch.h"
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/report.h"
-#include "core/units.h"
+#include "opaline/core/units.h"
 
 namespace opaline {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the commands that render nothing of their own: compare, bench and cache.
+// Options of the commands that render nothing of their own: compare, bench, profile and cache.
 #include "cli/command_options.h"
 #include "cli/help_texts.h"
 #include "cli/option_helpers.h"
@@ -63,6 +63,36 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
                "reference of its own");
   app.add_flag("--quick", bench.quick, "to try it: few rungs, 128 pixels wide");
   app.footer(kBenchNotes);
+}
+
+void add_profile_options(CLI::App& app, ProfileArguments& profile, Options& options) {
+  app.add_option("MEDIUM", profile.medium,
+                 "a preset such as marble, or coefficients as a scene gives them: '{\"sigma_a\": 0.01, "
+                 "\"sigma_s\": 20, \"g\": 0.9, \"eta\": 1.33}'")
+      ->required();
+  app.add_option("--thickness", profile.thickness, "a slab, e.g. 2mm, 500um or .5cm; default: a half space")
+      ->transform(millimetres_of())
+      ->type_name("LENGTH");
+  app.add_option("--eta", profile.eta, "index of refraction, inside over outside, in place of the medium's")
+      ->type_name("X");
+  app.add_option(
+         "--g", profile.g,
+         "mean cosine that walks scatter with, at the same reduced scattering (default: the medium's, or 0)")
+      ->type_name("X");
+  app.add_option(
+         "--walks", profile.walks,
+         "of each channel, for diffuse light and again for a beam along the normal; default: as many as "
+         "ten seconds of CPU allow for all, up to 1000000")
+      ->transform(whole_number(kWalks))
+      ->type_name("N");
+  app.add_option("--seed", profile.seed, "of the walks (default 1)")
+      ->transform(whole_number(kMostWholeNumber))
+      ->type_name("N");
+  app.add_option("-o,--output", profile.report, "write a page with charts, and tables, into this folder")
+      ->type_name("FOLDER");
+  add_threads(app, profile.threads, "at most this many; default: one for each core");
+  app.add_flag("--json", options.json, "the totals as one JSON object on stdout");
+  app.footer(kProfileNotes);
 }
 
 void add_cache_commands(CLI::App& app, CacheArguments& cache, Options& options) {

@@ -4,45 +4,37 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
-#include "opaline/core/error.h"
 #include "opaline/diffusion/fresnel.h"
 
 namespace opaline {
 namespace {
 
-// The reduced medium of one channel: 1 - alpha' is carried by itself, against cancellation.
-struct ReducedMedium {
-  double mean_free_path = 0, absorbed = 1;
-};
-
-ReducedMedium reduce(const PhysicalMedium& medium, std::size_t channel, double) {
+ReducedMedium reduce(const PhysicalMedium& medium, std::size_t channel, ProfileKind, double eta) {
   const double sigma_a = medium.sigma_a[channel], sigma_t_prime = sigma_a + medium.sigma_s_prime[channel];
   if (sigma_t_prime < 1e-30) return {};  // a mean free path no scene is as large as
-  return {1 / sigma_t_prime, sigma_a / sigma_t_prime};
+  return {1 / sigma_t_prime, sigma_a / sigma_t_prime, eta};
 }
 
-// Albedo inversion on the dipole's closed form; 1/sigma_t is unreduced, so g takes part.
-ReducedMedium reduce(const ArtistMedium& medium, std::size_t channel, double mismatch) {
-  const double absorbed = invert_dipole_albedo(medium.subsurface_color[channel], mismatch);
+// By the inverse of the profile's own total; 1/sigma_t is unreduced, so g takes part.
+ReducedMedium reduce(const ArtistMedium& medium, std::size_t channel, ProfileKind kind, double eta) {
+  const double absorbed = invert_albedo(kind, medium.subsurface_color[channel], eta);
   const double g = medium.anisotropy;
   // alpha'/(1-alpha') = (1-g) alpha/(1-alpha); sigma_t' / sigma_t = 1 - g alpha.
   const double unreduced_absorbed = absorbed * (1 - g) / (1 - absorbed * g);
-  return {medium.subsurface_radius[channel] / (1 - g * (1 - unreduced_absorbed)), absorbed};
+  return {medium.subsurface_radius[channel] / (1 - g * (1 - unreduced_absorbed)), absorbed, eta};
 }
 
-ChannelProfile make_channel(const ReducedMedium& medium, ProfileKind kind, double mismatch) {
-  if (medium.absorbed >= 1) return std::monostate{};
-  const Dipole dipole = make_dipole(medium.mean_free_path, medium.absorbed, mismatch);
-  switch (kind) {
-    case ProfileKind::dipole:
-      return dipole;
-    case ProfileKind::normalized_diffusion:
-      // Until a fit of its own exists, A(alpha', eta) is the dipole's total.
-      return make_normalized_diffusion(medium.mean_free_path, total_diffuse_reflectance(dipole));
-  }
-  require(false, "a kind of profile that can be made");
-  return {};
+template <std::size_t... kKinds>
+ChannelProfile make_kind(std::size_t kind, const ReducedMedium& medium, std::index_sequence<kKinds...>) {
+  ChannelProfile profile;
+  ((kind == kKinds
+        ? void(profile = make_profile(
+                   medium, std::type_identity<std::variant_alternative_t<kKinds + 1, ChannelProfile>>()))
+        : void()),
+   ...);
+  return profile;
 }
 
 template <class Function>
@@ -83,16 +75,40 @@ double slowest_decay(const ChannelProfile& profile) {
   return apply_to(profile, [](const auto& p) { return slowest_decay(p); });
 }
 
+ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& medium) {
+  static_assert(kProfileNames.size() + 1 == std::variant_size_v<ChannelProfile> &&
+                    kProfileSources.size() == kProfileNames.size(),
+                "every kind has a name and a source");
+  if (medium.absorbed >= 1) return std::monostate{};
+  return make_kind(std::size_t(kind), medium, std::make_index_sequence<kProfileNames.size()>());
+}
+
+double invert_albedo(ProfileKind kind, double total, double eta) {
+  if (total >= 1) return 0;
+  if (total <= 0) return 1;
+  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1; bisect its logarithm, so that the relative
+  // error of 1 - alpha' is small where the medium hardly absorbs.
+  double low = -80, high = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    if (total_diffuse_reflectance(make_channel_profile(kind, {1, std::exp2(middle), eta})) > total)
+      low = middle;
+    else
+      high = middle;
+  }
+  return std::exp2(0.5 * (low + high));
+}
+
 DiffuseProfile make_diffuse_profile(const Medium& medium, double unit) {
   DiffuseProfile profile;
   profile.eta = medium.eta;
   profile.average_reflectance = average_reflectance_outside(medium.eta);
-  const double mismatch = boundary_mismatch(medium.eta);
   for (std::size_t c = 0; c < 3; ++c) {
     ReducedMedium reduced = std::visit(
-        [&](const auto& coefficients) { return reduce(coefficients, c, mismatch); }, medium.coefficients);
+        [&](const auto& coefficients) { return reduce(coefficients, c, medium.profile, medium.eta); },
+        medium.coefficients);
     reduced.mean_free_path /= unit;
-    profile.channels[c] = make_channel(reduced, medium.profile, mismatch);
+    profile.channels[c] = make_channel_profile(medium.profile, reduced);
     profile.mean_free_path[c] = reduced.mean_free_path;
     profile.diffuse_mean_free_path[c] = reduced.mean_free_path / std::sqrt(3 * reduced.absorbed);
     profile.total[c] = total_diffuse_reflectance(profile.channels[c]);

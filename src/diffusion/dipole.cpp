@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "opaline/diffusion/fresnel.h"
+
 namespace opaline {
 namespace {
 
@@ -48,22 +50,6 @@ double diffuse_reflectance_within(const Dipole& dipole, double r) {
 
 double total_diffuse_reflectance(const Dipole& dipole) {
   return dipole.reduced_albedo / 2 * (std::exp(-dipole.s_real) + std::exp(-dipole.s_virtual));
-}
-
-double invert_dipole_albedo(double total, double boundary_mismatch) {
-  if (total >= 1) return 0;
-  if (total <= 0) return 1;
-  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1; bisect its logarithm, so that the relative
-  // error of 1 - alpha' is small where the medium hardly absorbs.
-  double low = -80, high = 0;
-  for (int i = 0; i < 200; ++i) {
-    const double middle = 0.5 * (low + high);
-    if (total_diffuse_reflectance(make_dipole(1, std::exp2(middle), boundary_mismatch)) > total)
-      low = middle;
-    else
-      high = middle;
-  }
-  return std::exp2(0.5 * (low + high));
 }
 
 namespace {
@@ -122,6 +108,10 @@ double sample_chord_sphere_radius(const Dipole& dipole, double u, double) {
 
 double slowest_decay(const Dipole& dipole) {
   return dipole.sigma_tr;
+}
+
+Dipole make_profile(const ReducedMedium& medium, std::type_identity<Dipole>) {
+  return make_dipole(medium.mean_free_path, medium.absorbed, boundary_mismatch(medium.eta));
 }
 
 }  // namespace opaline

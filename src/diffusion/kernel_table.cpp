@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "diffusion/interpolating_cubic.h"
+#include "opaline/diffusion/interpolating_cubic.h"
 
 namespace opaline {
 KernelTable::KernelTable(const DiffuseProfile& profile, double r_min, double r_max) {

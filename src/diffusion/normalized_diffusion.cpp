@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "opaline/diffusion/dipole.h"
+
 namespace opaline {
 
 NormalizedDiffusion make_normalized_diffusion(double mean_free_path, double total) {
@@ -45,6 +47,12 @@ double sample_chord_sphere_radius(const NormalizedDiffusion& profile, double u, 
 
 double slowest_decay(const NormalizedDiffusion& profile) {
   return profile.d > 0 ? 1 / (3 * profile.d) : 0;
+}
+
+NormalizedDiffusion make_profile(const ReducedMedium& medium, std::type_identity<NormalizedDiffusion>) {
+  // Until a fit of its own exists, A(alpha', eta) is the dipole's total.
+  return make_normalized_diffusion(
+      medium.mean_free_path, total_diffuse_reflectance(make_profile(medium, std::type_identity<Dipole>())));
 }
 
 }  // namespace opaline

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 
 namespace opaline {
 
@@ -35,7 +35,6 @@ struct RayCounter {
 struct RayScene::Handles {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  std::atomic<std::ptrdiff_t> bytes{0};
   RayCounter intersected, occluded;
 
   /// Throws as check_device.

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/surface_point.h"
 
 namespace opaline {
 

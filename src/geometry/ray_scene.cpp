@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/geometry/ray_scene.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -11,7 +13,6 @@
 #include "geometry/oriented_point.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
-#include "opaline/geometry/world.h"
 
 namespace opaline {
 
@@ -40,11 +41,6 @@ namespace {
 
 constexpr std::size_t kBatch = 256;
 
-bool count_memory(void* counter, ssize_t bytes, bool) {
-  *static_cast<std::atomic<std::ptrdiff_t>*>(counter) += bytes;
-  return true;
-}
-
 RTCBuildQuality quality_of(RayBuild build) {
   return build == RayBuild::quick ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
 }
@@ -72,7 +68,6 @@ RayScene::RayScene(const World& world, RayBuild build) : handles_(std::make_uniq
   handles_->device = rtcNewDevice(nullptr);
   if (handles_->device == nullptr) check_device(nullptr);
   require(handles_->device != nullptr, "Embree has no device");
-  rtcSetDeviceMemoryMonitorFunction(handles_->device, count_memory, &handles_->bytes);
   handles_->scene = rtcNewScene(handles_->device);
   rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(handles_->scene, quality_of(build));
@@ -110,17 +105,12 @@ void RayScene::attach(const Mesh& mesh, RayBuild build) {
   rtcReleaseGeometry(geometry);
   const Bounds box = bounds(mesh);
   const float offset = float(length(box.high - box.low) * 0x1p-18);
-  handles_->bytes += std::ptrdiff_t(vertices.size() * sizeof(Vertex));
   meshes_.push_back({std::move(vertices), indices, mesh.normals.empty(), offset});
   largest_offset_ = std::max(largest_offset_, offset);
 }
 
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
-
-std::size_t RayScene::bytes() const {
-  return std::size_t(handles_->bytes.load());
-}
 
 RayScene::Statistics RayScene::statistics() const {
   return {handles_->intersected.rays + handles_->occluded.rays,
@@ -137,6 +127,12 @@ void RayScene::intersect(std::span<TracedRay> rays) const {
                      unsigned(batch.size()), sizeof(RTCRayHit));
     });
   }
+}
+
+void RayScene::intersect_one(TracedRay& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(handles_->scene, &context, reinterpret_cast<RTCRayHit*>(&ray));
 }
 
 void RayScene::occluded(std::span<Ray> rays) const {

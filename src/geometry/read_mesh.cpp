@@ -9,6 +9,7 @@
 #include "formats/mesh_format.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
+#include "opaline/geometry/mesh_file.h"
 #include "opaline/scene/nearest_name.h"
 
 namespace opaline {
@@ -80,6 +81,10 @@ std::string read_mesh_bytes(const std::string& path) {
   file.read(bytes.data(), std::streamsize(size));
   if (std::uintmax_t(file.gcount()) != size) throw run_failed(path, "reading the mesh file failed");
   return bytes;
+}
+
+bool is_mesh_file_name(const std::string& path) {
+  return find_mesh_format(path) != nullptr;
 }
 
 SourceMesh read_mesh(const std::string& path) {

@@ -17,8 +17,4 @@ namespace opaline {
 ///       small multiple of the file's length
 SourceMesh read_mesh(const std::string& path);
 
-/// The bytes of a mesh file as they are.
-/// error Error naming the file: missing, with the nearest name in its folder; not a file, empty, not readable
-std::string read_mesh_bytes(const std::string& path);
-
 }  // namespace opaline

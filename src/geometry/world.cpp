@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "geometry/check_world.h"
-#include "geometry/oriented_point.h"
 #include "geometry/shape_label.h"
 
 namespace opaline {
@@ -104,18 +103,6 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
     }
   }
   return world;
-}
-
-SurfacePoint surface_point(const Mesh& mesh, std::uint32_t triangle, float u, float v) {
-  const auto& corner = mesh.triangles[triangle];
-  const Vec3d& a = mesh.positions[corner[0]];
-  const Vec3d ab = mesh.positions[corner[1]] - a, ac = mesh.positions[corner[2]] - a;
-  Vec3f normal;
-  if (!mesh.normals.empty())
-    normal =
-        mesh.normals[corner[0]] * (1 - u - v) + mesh.normals[corner[1]] * u + mesh.normals[corner[2]] * v;
-  return oriented_point(a + ab * double(u) + ac * double(v), ab, ac,
-                        mesh.normals.empty() ? nullptr : &normal);
 }
 
 }  // namespace opaline

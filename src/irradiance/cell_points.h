@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 #include "opaline/sampling/sample_surface.h"
 
 namespace opaline {

@@ -10,7 +10,7 @@
 #include "opaline/core/morton.h"
 #include "opaline/core/random.h"
 #include "opaline/diffusion/fresnel.h"
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 #include "opaline/lights/light.h"
 
 namespace opaline {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "lights/light_of.h"
-#include "scene/light_reader.h"
+#include "opaline/scene/light_reader.h"
 
 namespace opaline {
 

@@ -24,7 +24,8 @@ struct LightOf {
   /// What a ray that meets nothing sees of it; 0 unless it is all around.
   static RgbF background(const Kind& light, const Vec3f& direction);
   static LightExtent extent(const Kind& light);
-  /// All numbers that say where it is and how large, none of its colour.
+  /// All numbers but the colour's that change what a point receives: place, size, direction, cone. Keys of
+  /// kept results are made of them, so one that is missing keeps a result that is no longer right.
   static std::vector<double> geometry(const Kind& light);
 };
 

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "lights/light_of.h"
-#include "scene/light_reader.h"
-#include "scene/readers.h"
+#include "opaline/scene/light_reader.h"
 
 namespace opaline {
 

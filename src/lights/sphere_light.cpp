@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "lights/light_of.h"
-#include "scene/light_reader.h"
+#include "opaline/scene/light_reader.h"
 
 namespace opaline {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "lights/light_of.h"
-#include "scene/light_reader.h"
+#include "opaline/scene/light_reader.h"
 
 namespace opaline {
 

@@ -254,11 +254,6 @@ float unit_of_flux(std::span<const FluxSample> samples) {
 
 }  // namespace
 
-std::size_t Octree::bytes() const {
-  return nodes.size() * sizeof(OctreeNode) + (first_child.size() + children.size()) * sizeof(std::uint32_t) +
-         samples.size() * (sizeof(TreeSample) + sizeof(Vec3f));
-}
-
 void list_children(Octree& tree) {
   tree.first_child.reserve(tree.nodes.size() + 1);
   tree.children.reserve(tree.nodes.size());

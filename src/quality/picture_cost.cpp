@@ -8,9 +8,8 @@
 
 #include "opaline/core/stopwatch.h"
 #include "opaline/image/metrics.h"
+#include "opaline/render/shade_parts.h"
 #include "quality/probe.h"
-#include "render/shade_parts.h"
-#include "render/tile_renderer.h"
 
 namespace opaline {
 namespace {

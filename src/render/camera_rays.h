@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {

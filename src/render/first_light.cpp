@@ -132,7 +132,7 @@ Image coarse_picture(const RenderInput& input, int stride) {
 
 Image first_light(const PrecomputeInput& input) {
   Scene scene = input.scene;
-  if (scene.settings.method == Method::direct) scene.settings.method = Method::hierarchical;
+  if (scene.settings.method != Method::lambert) scene.settings.method = Method::hierarchical;
   scene.settings.evaluator = EvaluatorKind::dual_tree;
   std::vector<Body> groups;
   if (scene.settings.method == Method::hierarchical)

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "evaluate/refined_stake.h"
 #include "opaline/core/random.h"
+#include "opaline/exitance/refined_stake.h"
 #include "opaline/lights/light.h"
 
 namespace opaline {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "evaluate/surface_patch.h"
 #include "opaline/core/parallel.h"
 #include "opaline/core/random.h"
+#include "opaline/exitance/surface_patch.h"
 
 namespace opaline {
 namespace {

@@ -13,6 +13,7 @@
 #include "opaline/render/render.h"
 #include "opaline/render/surface_caches.h"
 #include "opaline/sampling/sample_surface.h"
+#include "opaline/volume/volume_exitance.h"
 #include "render/check_reach.h"
 #include "render/light_distance.h"
 #include "render/seen_pixels.h"
@@ -174,9 +175,13 @@ double needle_share(const World& world, const GroupPlan& group) {
   return group.area > 0 ? slender / group.area : 0;
 }
 
+// Counts of a batch, sums, squares, and the tree that finds cells.
+constexpr std::size_t kBytesOfWalkedCell = 8 * 24 + 2 * 24 + 40;
+
 std::string shading_stage(const Settings& settings) {
   if (settings.method == Method::lambert) return "shading: lambert";
   if (settings.method == Method::hierarchical) return "shading: hierarchical";
+  if (settings.method == Method::volume) return "shading: cells, interpolated";
   if (settings.until_error)
     return fmt::format("shading: direct, until the noise is {:.3g} %", 100 * *settings.until_error);
   return fmt::format("shading: direct, {} entry samples a pixel",
@@ -202,7 +207,17 @@ std::string evaluation_stage(const Settings& settings) {
   return "";
 }
 
+std::string walks_stage(const Settings& settings) {
+  if (settings.until_error)
+    return fmt::format("random walks, until the noise of the cells is {:.3g} %", 100 * *settings.until_error);
+  return fmt::format("random walks, {} a sample and channel", kDefaultWalks);
+}
+
 void list_stages(const Scene& scene, Plan& plan) {
+  if (scene.settings.method == Method::volume && !plan.groups.empty()) {
+    plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
+    plan.stages.push_back(walks_stage(scene.settings));
+  }
   if (scene.settings.method == Method::hierarchical && !plan.groups.empty()) {
     plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
     std::size_t rays = 0;
@@ -258,6 +273,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   std::size_t samples = 0;
   for (GroupPlan& group : plan.groups) {
     choose_samples(scene, group, plan.warnings);
+    if (scene.settings.method == Method::volume) plan.bytes += group.samples * (191 + kBytesOfWalkedCell);
     if (scene.settings.method != Method::hierarchical) continue;
     warn_of_near_lights(scene, world, group, plan.warnings);
     warn_of_thin_body(group, plan.warnings);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "evaluate/cloud_error.h"
 #include "opaline/core/random.h"
+#include "opaline/exitance/cloud_error.h"
 #include "opaline/lights/light.h"
 
 namespace opaline {
@@ -46,6 +46,22 @@ std::vector<Light> recentred_lights(const Scene& scene, const World& world) {
   std::vector<Light> lights;
   for (const Light& light : scene.lights) lights.push_back(recentred(light, world.origin, world.unit));
   return lights;
+}
+
+VolumeExitance walk_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights) {
+  VolumeInput walks{input.rays, input.world, body.plan.meshes, body.surface.samples, {}, lights};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double length = body.profile.mean_free_path[c];
+    if (!(length > 0)) continue;
+    const double decay = length / body.profile.diffuse_mean_free_path[c];  // its square is 3 (1 - alpha')
+    const double absorbed = decay * decay / 3;
+    walks.media[c] = {absorbed / length, (1 - absorbed) / length, 0, body.profile.eta};
+  }
+  for (HomogeneousMedium& medium : walks.media) medium.eta = body.profile.eta;
+  walks.until_error = input.scene.settings.until_error;
+  walks.seed = hash_bits(input.scene.settings.seed, 3000);
+  walks.monitor = input.monitor;
+  return volume_exitance(walks);
 }
 
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance) {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/evaluate/evaluate.h"
+#include "opaline/exitance/evaluate.h"
 
 namespace opaline {
 

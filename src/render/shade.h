@@ -7,9 +7,9 @@
 
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/lights/light.h"
+#include "opaline/render/layers.h"
 #include "opaline/render/render.h"
 #include "render/fields/make_fields.h"
-#include "render/layers.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/shade_parts.h"
+#include "opaline/render/shade_parts.h"
 
 #include "opaline/core/parallel.h"
 #include "render/tile_renderer.h"

@@ -5,19 +5,13 @@
 #include <algorithm>
 #include <vector>
 
+#include "opaline/render/layers.h"
 #include "opaline/render/render.h"
+#include "opaline/render/shade_parts.h"
 #include "render/camera_rays.h"
-#include "render/layers.h"
 #include "render/shade.h"
 
 namespace opaline {
-
-/// Tiles lie on a fixed grid of the whole picture and are whole even where a crop shows part of them: points
-/// that are evaluated together are the same, and so are a crop's pixels.
-std::vector<Rectangle> tiles_of(const Film& film);
-
-/// The pixels of both; they must meet.
-Rectangle common_part(const Rectangle& a, const Rectangle& b);
 
 /// Calls use(x, y, i) for the pixels of a tile that the part has; i: row by row in the tile.
 template <class Use>

@@ -8,6 +8,7 @@
 
 #include "opaline/core/morton.h"
 #include "opaline/core/random.h"
+#include "opaline/geometry/surface_point.h"
 
 namespace opaline {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
+#include "opaline/geometry/surface_point.h"
 #include "sampling/cell_parts.h"
 #include "sampling/poisson_disk.h"
 

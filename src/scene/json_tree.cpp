@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "json_tree.h"
+#include "opaline/scene/json_tree.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -2,7 +2,7 @@
 // Values that change from frame to frame, as they are at one.
 #pragma once
 
-#include "json_tree.h"
+#include "opaline/scene/json_tree.h"
 
 namespace opaline {
 

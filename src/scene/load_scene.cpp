@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "geometry/formats/mesh_format.h"
+#include "opaline/geometry/mesh_file.h"
 #include "scene/keyed_values.h"
 #include "scene/overrides.h"
 #include "scene/readers.h"
@@ -36,7 +36,7 @@ std::string read_text(const std::string& path) {
 
 /// A mesh needs a light and a camera to be seen.
 void check_is_no_mesh(const std::string& path) {
-  if (find_mesh_format(path) == nullptr) return;
+  if (!is_mesh_file_name(path)) return;
   throw bad_file(path, "is a mesh, not a scene",
                  "a scene file (JSON) with \"shapes\": [{\"file\": \"" +
                      printable(std::filesystem::path(path).filename().string()) +
@@ -140,6 +140,13 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
   Scene scene = read_scene(document);
   scene.camera_frames = camera_frames;
   return scene;
+}
+
+Medium parse_medium(std::string_view text, const std::string& file) {
+  Document document{file, text, {}, {}, 1, line_starts_of(text)};
+  document.root = parse_tree(document, text);
+  document.root.key = "medium";
+  return read_medium(Value(document, document.root, document.root.key, key_info("scene", "media")));
 }
 
 }  // namespace opaline

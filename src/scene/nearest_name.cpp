@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "opaline/scene/json_tree.h"
 #include "opaline/scene/schema.h"
-#include "scene/json_tree.h"
 
 namespace opaline {
 namespace {

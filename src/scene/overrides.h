@@ -2,7 +2,7 @@
 // Values given on the command line, put into the tree before it is checked.
 #pragma once
 
-#include "json_tree.h"
+#include "opaline/scene/json_tree.h"
 
 namespace opaline {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/scene/light_reader.h"
 #include "opaline/scene/names.h"
-#include "scene/light_reader.h"
 #include "scene/readers.h"
 
 namespace opaline {

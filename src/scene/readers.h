@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "opaline/scene/scene.h"
-#include "scene/value.h"
+#include "opaline/scene/value.h"
 
 namespace opaline {
 
@@ -32,8 +32,5 @@ Settings read_settings(const Value& value, double mm_per_unit);
 
 /// A list of steps, applied in order.
 Transform read_transform(const Value& value, double mm_per_unit);
-
-/// Throws at v if u and v span no area.
-void check_parallelogram(const Vec3d& u, const Vec3d& v, const Value& v_value);
 
 }  // namespace opaline

@@ -8,9 +8,9 @@
 #include <map>
 #include <utility>
 
+#include "opaline/scene/json_tree.h"
+#include "opaline/scene/light_reader.h"
 #include "opaline/scene/names.h"
-#include "scene/json_tree.h"
-#include "scene/light_reader.h"
 #include "scene/presets.h"
 #include "scene/settings_table.h"
 
@@ -21,6 +21,17 @@ KeyInfo row(std::string_view section, std::string_view key, ValueType type, std:
             const Range& range, std::string default_value, std::string_view meaning,
             std::span<const std::string_view> choices = {}) {
   return {section, key, type, unit, range, std::move(default_value), meaning, choices};
+}
+
+std::string_view profile_meaning() {
+  static const std::string text = [] {
+    std::string list = "how light spreads under the surface:";
+    for (std::size_t i = 0; i < kProfileNames.size(); ++i)
+      list += (i > 0 ? ", `\"" : " `\"") + std::string(kProfileNames[i]) + "\"` (" +
+              std::string(kProfileSources[i]) + ')';
+    return list;
+  }();
+  return text;
 }
 
 template <class Kind>
@@ -51,9 +62,9 @@ std::vector<KeyInfo> light_rows(const std::variant<Kinds...>*) {
   return rows;
 }
 
-std::vector<KeyInfo> all_rows() {
+std::vector<KeyInfo> scene_rows() {
   using enum ValueType;
-  std::vector<KeyInfo> rows{
+  return {
       row("scene", "mm_per_unit", number, "mm", {1e-12, 1e12}, "1", "length of one scene unit"),
       row("scene", "media", object, "", kFiniteNumber, "none",
           "translucent materials: `{\"name\": {...}, ...}`, see medium"),
@@ -64,6 +75,12 @@ std::vector<KeyInfo> all_rows() {
       row("scene", "camera", object, "", kFiniteNumber, "see camera", "where the picture is taken from"),
       row("scene", "film", object, "", kFiniteNumber, "see film", "the picture itself"),
       row("scene", "settings", object, "", kFiniteNumber, "see settings", "how it is computed"),
+  };
+}
+
+std::vector<KeyInfo> medium_rows() {
+  using enum ValueType;
+  return {
       row("medium", "preset", choice, "", kFiniteNumber, "",
           "a measured material: apple, chicken1, chicken2, cream, ketchup, marble, potato, skimmilk, skin1, "
           "skin2, spectralon, wholemilk (Jensen et al. 2001)",
@@ -87,10 +104,13 @@ std::vector<KeyInfo> all_rows() {
       row("medium", "specular_ior", number, "", {.1, 10},
           "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
       row("medium", "eta", number, "", {.1, 10}, "", "another word for `specular_ior`; use one of the two"),
-      row("medium", "profile", choice, "", kFiniteNumber, "`\"dipole\"`",
-          "how light spreads under the surface: `\"dipole\"` (Jensen et al. 2001) or "
-          "`\"normalized_diffusion\"` (Christensen & Burley 2015)",
-          kProfileNames),
+      row("medium", "profile", choice, "", kFiniteNumber, "`\"dipole\"`", profile_meaning(), kProfileNames),
+  };
+}
+
+std::vector<KeyInfo> shape_rows() {
+  using enum ValueType;
+  return {
       row("shape", "name", text, "", kFiniteNumber, "\"shape0\", \"shape1\", ...",
           "what messages and `--set` call it; no two alike"),
       row("shape", "file", text, "", kFiniteNumber, "",
@@ -117,6 +137,12 @@ std::vector<KeyInfo> all_rows() {
       row("shape", "group", text, "", kFiniteNumber, "alone",
           "translucent shapes with the same group blend as one object, others never bleed into each other; a "
           "group has one medium"),
+  };
+}
+
+std::vector<KeyInfo> built_in_shape_rows() {
+  using enum ValueType;
+  return {
       row("shape.sphere", "center", point, "", kFiniteNumber, "[0, 0, 0]", "its centre"),
       row("shape.sphere", "radius", length, "", kFiniteNumber, "", "its radius"),
       row("shape.box", "low", point, "", kFiniteNumber, "", "the corner with the smallest x, y and z"),
@@ -145,6 +171,12 @@ std::vector<KeyInfo> all_rows() {
       row("shape.transform.rotate", "axis", triple, "", kFiniteNumber, "", "[x, y, z], of any length but 0"),
       row("shape.transform.rotate", "degrees", number, "degrees", kFiniteNumber, "",
           "counter-clockwise when the axis points at you"),
+  };
+}
+
+std::vector<KeyInfo> camera_rows() {
+  using enum ValueType;
+  return {
       row("camera", "position", point, "", kFiniteNumber, "[0, 0, 5]", "of the eye"),
       row("camera", "look_at", point, "", kFiniteNumber, "[0, 0, 0]",
           "the point in the middle of the picture"),
@@ -152,9 +184,13 @@ std::vector<KeyInfo> all_rows() {
           "what is up in the picture; not along the view"),
       row("camera", "field_of_view", number, "degrees", {0, 180, true, true}, "40", "full vertical angle"),
   };
-  const auto camera = std::ranges::find(rows, "camera", &KeyInfo::section);
-  const std::vector<KeyInfo> lights = light_rows(static_cast<const LightSource*>(nullptr));
-  rows.insert(camera, lights.begin(), lights.end());
+}
+
+std::vector<KeyInfo> all_rows() {
+  std::vector<KeyInfo> rows;
+  for (const auto& part : {scene_rows(), medium_rows(), shape_rows(), built_in_shape_rows(),
+                           light_rows(static_cast<const LightSource*>(nullptr)), camera_rows()})
+    rows.insert(rows.end(), part.begin(), part.end());
   for (const Member<Film>& member : film_members()) rows.push_back(member.info);
   for (const Member<Settings>& member : settings_members()) rows.push_back(member.info);
   return rows;

@@ -171,7 +171,7 @@ std::span<const Member<Settings>> settings_members() {
           "method", choice, "", kFiniteNumber, "",
           "`\"hierarchical\"`: light under the surface; `\"lambert\"`: the same scene as plain paint, fast; "
           "`\"direct\"`: the same light under the surface at random, slow, noisy and without bias: the "
-          "reference"),
+          "reference; `\"volume\"`: random walks inside the bodies, slow and noisy: the truth"),
       member<&Settings::evaluator>("evaluator", choice, "", kFiniteNumber, "",
                                    "`\"dual_tree\"`: clusters of points against the octree's nodes, to a "
                                    "tolerance; `\"surface_cache\"`: "
@@ -220,9 +220,10 @@ std::span<const Member<Settings>> settings_members() {
           "entry_samples", whole_number, "", {1, kMostSamples},
           fmt::format("{}, or as many as `until_error` takes", kDefaultEntrySamples),
           "direct: such places for each pixel, in whole passes of 16"),
-      member<&Settings::until_error>("until_error", number, "", {0, 1, true}, "none",
-                                     "direct: stop when the estimated noise of the pixels (rms of the "
-                                     "standard error, relative) is this small"),
+      member<&Settings::until_error>(
+          "until_error", number, "", {0, 1, true}, "none",
+          "direct, volume: stop when the estimated noise of the pixels or cells (rms "
+          "of the standard error, relative) is this small"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
                               "of all random numbers; the same seed gives the same picture"),
       member<&Settings::reference_frame>("reference_frame", whole_number, "", {0, 1e9}, "",

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "opaline/scene/schema.h"
-#include "scene/value.h"
+#include "opaline/scene/value.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/value.h"
+#include "opaline/scene/value.h"
 
 #include <algorithm>
 #include <cmath>

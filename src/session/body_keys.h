@@ -2,7 +2,9 @@
 // The keys of one body's results; a key of zeros stands for a result that is not there.
 #pragma once
 
-#include "opaline/session/session.h"
+#include "opaline/render/precompute.h"
+#include "opaline/sampling/carry_samples.h"
+#include "opaline/session/stage_keys.h"
 
 namespace opaline {
 
@@ -25,9 +27,9 @@ struct SampleOrigin {
 bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings);
 
 /// What a body's results were computed from.
-struct Session::BodyKeys {
+struct BodyKeys {
   SampleOrigin origin;
-  StageKey samples_key, tree_key, kernel_key, exitance_key;
+  StageKey samples_key, tree_key, kernel_key, exitance_key, walks_key;
   std::vector<std::uint32_t> meshes;        // that the samples name
   std::vector<StageKey> light_keys;         // of the transfers
   std::optional<SurfaceCache> spare_cache;  // of no use for the picture at hand

@@ -8,7 +8,7 @@
 
 #include "opaline/core/parallel.h"
 #include "opaline/lights/light.h"
-#include "render/layers.h"
+#include "opaline/render/layers.h"
 
 namespace opaline {
 namespace {
@@ -16,9 +16,12 @@ namespace {
 void set_emission(Light& light, const Rgb& emission) {
   std::visit(
       [&](auto& source) {
-        if constexpr (requires { source.intensity; }) source.intensity = emission;
-        if constexpr (requires { source.radiance; }) source.radiance = emission;
-        if constexpr (requires { source.irradiance; }) source.irradiance = emission;
+        if constexpr (requires { source.intensity; })
+          source.intensity = emission;
+        else if constexpr (requires { source.radiance; })
+          source.radiance = emission;
+        else
+          source.irradiance = emission;  // a kind with another name for its colour does not compile
       },
       light.source);
 }

@@ -8,8 +8,8 @@
 #include <set>
 #include <string_view>
 
-#include "geometry/read_mesh.h"
 #include "opaline/core/error.h"
+#include "opaline/geometry/mesh_file.h"
 
 namespace opaline {
 namespace {

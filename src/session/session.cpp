@@ -1,314 +1,70 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/session/session.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "opaline/render/surface_caches.h"
-#include "session/body_keys.h"
-#include "session/light_mix.h"
-#include "session/shape_key.h"
+#include "session/session_state.h"
 
 namespace opaline {
-namespace {
 
-/// For each new shape the index of an old one with its key, each old one once.
-std::vector<std::optional<std::size_t>> kept_shapes(const std::vector<StageKey>& before,
-                                                    const std::vector<StageKey>& now) {
-  std::vector<std::optional<std::size_t>> kept(now.size());
-  std::vector<bool> taken(before.size());
-  for (std::size_t i = 0; i < now.size(); ++i)
-    for (std::size_t j = 0; j < before.size() && !kept[i]; ++j)
-      if (!taken[j] && before[j] == now[i]) {
-        kept[i] = j;
-        taken[j] = true;
-      }
-  return kept;
-}
-
-}  // namespace
-
-Session::Session(StageCache* cache) : cache_(cache), mix_(std::make_unique<LightMix>()) {}
+Session::Session(StageCache* cache) : state_(std::make_unique<State>(cache)) {}
 Session::~Session() = default;
 
-void Session::edit(Scene scene) {
-  std::vector<StageKey> sources, keys;
-  for (const Shape& shape : scene.shapes) {
-    sources.push_back(source_key(shape));
-    keys.push_back(shape_key(shape, sources.back()));
-  }
-  SessionWork work;
-  std::shared_ptr<const World> world = world_;
-  std::vector<MeshKeys> meshes = mesh_keys_;
-  if (world == nullptr || keys != shape_keys_) {
-    world = std::make_shared<const World>(loaded_world(scene, sources, keys, work));
-    meshes = mesh_keys(*world);
-  }
-  Plan plan = make_plan(scene, *world);
-  scene_ = std::move(scene);
-  world_ = std::move(world);
-  shape_keys_ = std::move(keys);
-  mesh_keys_ = std::move(meshes);
-  plan_ = std::move(plan);
-  work_ = work;
-  decisions_.clear();
-  costs_.clear();
-  prepared_ = false;
-  keep_spacing();
-}
-
-/// One memory a shape: of the same source, or else of a shape of the same name.
-void Session::arrange_memories(const Scene& scene, const std::vector<StageKey>& sources) {
-  std::vector<ShapeMemory> before = std::exchange(shape_memories_, {});
-  shape_memories_.resize(scene.shapes.size());
-  std::vector<bool> found(scene.shapes.size());
-  const auto take = [&](const auto& is_wanted) {
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-      const auto it = found[i] ? before.end() : std::ranges::find_if(before, [&](const ShapeMemory& memory) {
-        return is_wanted(memory, i);
-      });
-      if (it == before.end()) continue;
-      shape_memories_[i] = std::move(*it);
-      before.erase(it);
-      found[i] = true;
-    }
-  };
-  take([&](const ShapeMemory& memory, std::size_t i) { return memory.source == sources[i]; });
-  take([&](const ShapeMemory& memory, std::size_t i) { return memory.name == scene.shapes[i].name; });
-}
-
-World Session::loaded_world(const Scene& scene, const std::vector<StageKey>& sources,
-                            const std::vector<StageKey>& shapes, SessionWork& work) {
-  const auto kept = kept_shapes(shape_keys_, shapes);
-  const World none;
-  const World& before = world_ != nullptr ? *world_ : none;
-  shape_memories_.resize(edits_ ? shape_memories_.size() : 0);
-  if (!edits_) {
-    World world = update_world(scene, before, kept, work.meshes_loaded);
-    work.meshes_read = work.meshes_checked = work.meshes_loaded;
-    return world;
-  }
-  arrange_memories(scene, sources);
-  std::vector<MeshMemory*> memories;
-  for (std::size_t i = 0; i < shape_memories_.size(); ++i) {
-    ShapeMemory& memory = shape_memories_[i];
-    if (memory.source != sources[i]) memory.mesh.source_changed();
-    memory.source = {};  // until it is loaded
-    memories.push_back(&memory.mesh);
-  }
-  const auto done = [&] {
-    MeshMemory::Work sum;
-    for (const MeshMemory* memory : memories) {
-      sum.read += memory->work().read;
-      sum.checked += memory->work().checked;
-    }
-    return sum;
-  };
-  const MeshMemory::Work first = done();
-  World world = update_world(scene, before, kept, work.meshes_loaded, memories);
-  work.meshes_read = done().read - first.read;
-  work.meshes_checked = done().checked - first.checked;
-  for (std::size_t i = 0; i < shape_memories_.size(); ++i) {
-    shape_memories_[i].source = sources[i];
-    shape_memories_[i].name = scene.shapes[i].name;
-  }
-  return world;
-}
-
 void Session::anchor(Scene scene, Monitor* monitor) {
-  scene.settings.method = Method::hierarchical;
-  edit(std::move(scene));
-  arrange_bodies();
-  bring_rays();
-  for (std::size_t g = 0; g < bodies_.size(); ++g)
-    bring_samples(bodies_[g], keys_[g], {scene_, *world_, *rays_, plan_, monitor}, g);
-  anchored_ = true;
+  state_->anchor(std::move(scene), monitor);
 }
-
-// Samples that the settings do not ask for by number stay while their spacing does.
-void Session::keep_spacing() {
-  constexpr double kDensest = 2, kSparsest = 1.1;  // spacing asked for over the one at hand, and the inverse
-  const Settings& settings = scene_.settings;
-  if (settings.samples) return;
-  for (GroupPlan& group : plan_.groups) {
-    const auto body = std::ranges::find_if(bodies_, [&](const Body& b) { return b.plan.name == group.name; });
-    if (body == bodies_.end()) continue;
-    const SampleOrigin& origin = keys_[std::size_t(body - bodies_.begin())].origin;
-    if (origin.count == 0 || origin.count == group.samples || origin.count_was_set ||
-        origin.spacing_setting != settings.sample_spacing || has_outgrown(origin, group, settings))
-      continue;
-    const double asked = group.area / double(group.samples), there = origin.area / double(origin.count);
-    if (asked > kDensest * kDensest * there || there > kSparsest * kSparsest * asked) continue;
-    group.samples = origin.count;
-    group.spacing = std::sqrt(group.area / double(group.samples));
-    group.reason = "as many as there are: near enough to " + group.reason;
-  }
+void Session::edit(Scene scene) {
+  state_->edit(std::move(scene));
 }
-
-void Session::prepare_rays() {
-  if (!costs_.empty()) return;
-  const Stopwatch watch;
-  bring_rays();
-  costs_.push_back(watch.cost("rays"));
+void Session::expect_pictures(std::size_t pictures) {
+  state_->pictures_ = pictures;
 }
-
-Image Session::first_light(Monitor* monitor) {
-  prepare_rays();
-  return opaline::first_light({scene_, *world_, *rays_, plan_, monitor});
+void Session::hold_view(bool hold, bool mix_lights) {
+  state_->holds_view_ = hold;
+  state_->mixes_lights_ = hold && mix_lights;
 }
-
-void Session::prepare(Monitor* monitor) {
-  if (prepared_) return;
-  prepare_rays();
-  prepared_ = !is_needed();
-  if (prepared_) return;
-  arrange_bodies();
-  const PrecomputeInput input{scene_, *world_, *rays_, plan_, monitor};
-  const std::vector<Light> lights = recentred_lights(scene_, *world_);
-  const auto each = [&](const char* stage, const auto& work) {
-    const Stopwatch watch;
-    for (std::size_t g = 0; g < bodies_.size(); ++g) work(bodies_[g], keys_[g], g);
-    costs_.push_back(watch.cost(stage));
-  };
-  each("sampling", [&](Body& body, BodyKeys& known, std::size_t g) { bring_samples(body, known, input, g); });
-  each("irradiance",
-       [&](Body& body, BodyKeys& known, std::size_t g) { bring_lights(body, known, input, g, lights); });
-  each("octree", [&](Body& body, BodyKeys& known, std::size_t) {
-    bring_tree(body, known, lights);
-    bring_kernel(body, known);
-    body.cloud = cloud_error(body, *world_, scene_);
-  });
-  const std::vector<std::size_t> most = most_cache_places(input, bodies_, pictures_);
-  each("exitance",
-       [&](Body& body, BodyKeys& known, std::size_t g) { bring_exitance(body, known, input, most[g]); });
-  if (std::ranges::none_of(bodies_, [](const Body& body) { return body.surface_cache.has_value(); }))
-    costs_.pop_back();
-  prepared_ = true;
-}
-
-RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
-  prepare(monitor);
-  HeldView* const view = held_view();
-  if (!can_mix()) {
-    mix_->clear();
-  } else {
-    const auto render_part = [&](const Scene& scene) { return recoloured(scene, *view, monitor); };
-    if (std::optional<Image> mixed = mix_->mixed(scene_, render_part)) {
-      if (after_tile) after_tile(*mixed, rendered_part(scene_.film));
-      RenderResult result;
-      result.image = std::move(*mixed);
-      return result;
-    }
-  }
-  RenderResult result = opaline::render({scene_, *world_, *rays_, bodies_, monitor, after_tile, view});
-  work_.queries += result.queries;
-  return result;
-}
-
 void Session::ready_light_mix(Monitor* monitor) {
-  prepare(monitor);
-  HeldView* const view = held_view();
-  if (can_mix())
-    mix_->get_ready(scene_, [&](const Scene& scene) { return recoloured(scene, *view, monitor); });
+  state_->ready_light_mix(monitor);
+}
+void Session::expect_edits(bool edits) {
+  state_->edits_ = edits;
+}
+void Session::prepare_rays() {
+  state_->prepare_rays();
+}
+Image Session::first_light(Monitor* monitor) {
+  return state_->first_light(monitor);
+}
+void Session::prepare(Monitor* monitor) {
+  state_->prepare(monitor);
+}
+RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
+  return state_->render(monitor, after_tile);
 }
 
-/// After prepare.
-bool Session::can_mix() const {
-  return mixes_lights_ &&
-         std::ranges::none_of(bodies_, [](const Body& g) { return g.surface_cache.has_value(); });
+const Scene& Session::scene() const {
+  return state_->scene_;
 }
-
-/// The picture of a scene that differs by its lights' colours.
-Image Session::recoloured(const Scene& scene, HeldView& view, Monitor* monitor) {
-  const std::vector<Light> lights = recentred_lights(scene, *world_);
-  std::vector<Body> groups;
-  for (const Body& group : bodies_) {
-    const std::vector<RgbF> irradiance = combine_lights(group.transfers, lights);
-    groups.push_back({group.plan,
-                      group.profile,
-                      {},
-                      {},
-                      {},
-                      gather_flux(group.surface.samples, irradiance),
-                      group.kernel});
-    groups.back().cloud = group.cloud;
-    work_.nodes_built += groups.back().octree.nodes.size();
-  }
-  RenderResult part = opaline::render({scene, *world_, *rays_, groups, monitor, {}, &view});
-  work_.queries += part.queries;
-  return std::move(part.image);
+const World& Session::world() const {
+  return *state_->world_;
 }
-
-/// What is held of earlier pictures and still holds; null: nothing is to be held.
-HeldView* Session::held_view() {
-  if (!holds_view_) {
-    view_ = {};
-    mix_->clear();
-    return nullptr;
-  }
-  const PrecomputeInput input{scene_, *world_, *rays_, plan_};
-  const std::vector<Light> lights = recentred_lights(scene_, *world_);
-  const StageKey key = view_key(input, mesh_keys_), surfaces_key = view_surfaces_key(input, lights);
-  std::vector<StageKey> light_keys;
-  for (const Light& light : lights) light_keys.push_back(view_light_key(light));
-  const bool sees_the_same = key == view_key_ && surfaces_key == view_surfaces_key_;
-  if (key != view_key_) view_ = {};
-  if (!sees_the_same) view_.forget_surfaces();
-  if (!sees_the_same || light_keys != view_light_keys_) mix_->clear();
-  if (light_keys != view_light_keys_) {
-    std::vector<std::optional<std::size_t>> before;
-    for (const StageKey& light : light_keys) {
-      const auto old = std::ranges::find(view_light_keys_, light);
-      before.emplace_back();
-      if (old != view_light_keys_.end()) before.back() = std::size_t(old - view_light_keys_.begin());
-    }
-    view_.set_lights(before);
-  }
-  view_.keeps_near_field = mixes_lights_;
-  view_key_ = key;
-  view_surfaces_key_ = surfaces_key;
-  view_light_keys_ = std::move(light_keys);
-  return &view_;
+const Plan& Session::plan() const {
+  return state_->plan_;
 }
-
-void Session::bring_rays() {
-  const auto same = [](const MeshKeys& a, const MeshKeys& b) { return a.all == b.all; };
-  if (rays_ != nullptr && rays_build_ == plan_.rays && std::ranges::equal(rays_keys_, mesh_keys_, same))
-    return;
-  rays_ = nullptr;  // not both at once
-  rays_build_ = plan_.rays;
-  rays_ = std::make_unique<RayScene>(*world_, rays_build_);
-  ++work_.ray_builds;
-  rays_keys_ = mesh_keys_;
+const RayScene& Session::rays() const {
+  return *state_->rays_;
 }
-
-/// A body for each group of the plan, with what is known of the one of the same name.
-void Session::arrange_bodies() {
-  std::vector<Body> bodies(plan_.groups.size());
-  std::vector<BodyKeys> keys(plan_.groups.size());
-  for (std::size_t g = 0; g < bodies.size(); ++g) {
-    const GroupPlan& plan = plan_.groups[g];
-    const auto old = std::ranges::find_if(
-        bodies_, [&](const Body& b) { return b.plan.name == plan.name && b.plan.shared == plan.shared; });
-    if (old != bodies_.end()) {
-      keys[g] = std::move(keys_[std::size_t(old - bodies_.begin())]);
-      bodies[g] = std::move(*old);
-      old->plan.name.clear();
-      if (bodies[g].surface_cache) keys[g].spare_cache = std::move(bodies[g].surface_cache);
-      bodies[g].surface_cache.reset();
-    }
-    bodies[g].plan = plan;
-    bodies[g].profile = make_diffuse_profile(scene_.media[plan.medium], world_->unit);
-  }
-  bodies_ = std::move(bodies);
-  keys_ = std::move(keys);
+std::span<const Body> Session::bodies() const {
+  return state_->bodies_;
 }
-
-void Session::decide(const Body& body, const std::string& text) {
-  decisions_.push_back(body.plan.name + ": " + text);
+const SessionWork& Session::work() const {
+  return state_->work_;
+}
+const std::vector<std::string>& Session::decisions() const {
+  return state_->decisions_;
+}
+const std::vector<StageCost>& Session::costs() const {
+  return state_->costs_;
 }
 
 }  // namespace opaline

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/shape_key.h"
 
-#include "geometry/read_mesh.h"
+#include "opaline/geometry/mesh_file.h"
 
 namespace opaline {
 namespace {

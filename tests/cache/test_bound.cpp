@@ -7,7 +7,7 @@
 
 #include <numeric>
 
-#include "cache_test.h"
+#include "support/cache_test.h"
 
 namespace opaline {
 namespace {

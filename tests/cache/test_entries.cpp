@@ -2,7 +2,7 @@
 // What comes back from the disk is what went there, or nothing.
 #include <hdf5.h>
 
-#include "cache_test.h"
+#include "support/cache_test.h"
 
 namespace opaline {
 namespace {

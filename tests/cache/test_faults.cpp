@@ -9,7 +9,7 @@
 #include <csignal>
 #include <thread>
 
-#include "cache_test.h"
+#include "support/cache_test.h"
 
 namespace opaline {
 namespace {
@@ -78,7 +78,7 @@ KilledWriters kill_writers(int times) {
       std::filesystem::last_write_time(file.path(), old);
       ++killed.leftovers;
     }
-  prune_cache(path, StageCache::kDefaultBytes);
+  prune_cache(path, BlobCache::kDefaultBytes);
   killed.after_pruning = folder.entries();
   return killed;
 }

@@ -6,7 +6,7 @@
 
 #include "cache/content_hash.h"
 #include "cache/entry_header.h"
-#include "cache_test.h"
+#include "support/cache_test.h"
 
 namespace opaline {
 namespace {

@@ -48,7 +48,7 @@ TEST(CliInfo, ModelErrorOfPlates) {
                                        "media.jade.profile=\"normalized_diffusion\""});
   EXPECT_TRUE(contains(grouped.out, "leaf is as thick as a plate of 1.85 mm: 3.08 - 2.64 mean free paths"))
       << grouped.out;
-  EXPECT_TRUE(contains(grouped.out, "normalized diffusion sends back")) << grouped.out;
+  EXPECT_TRUE(contains(grouped.out, "`normalized_diffusion` sends back")) << grouped.out;
   const Outcome thick = run_program({"info", plate, "--set", "media.jade.subsurface_radius=0.1"});
   EXPECT_FALSE(contains(thick.out, "model error")) << thick.out;
   EXPECT_FALSE(contains(run_program({"info", SceneFolder().scene}).out, "model error"));

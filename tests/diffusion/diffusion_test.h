@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <variant>
@@ -16,6 +17,12 @@ namespace opaline::test {
 
 using std::numbers::pi;
 inline constexpr long double kPiLong = std::numbers::pi_v<long double>;
+
+inline constexpr std::array kAllProfiles = [] {
+  std::array<ProfileKind, kProfileNames.size()> all{};
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = ProfileKind(i);
+  return all;
+}();
 
 /// alpha'/2 (1 + exp(-4/3 A s)) exp(-s), s = sqrt(3 (1 - alpha')).
 inline long double reference_dipole_total(long double absorbed, long double A) {

@@ -22,6 +22,8 @@ const std::vector<Named>& profiles() {
       {"strongly absorbing dipole", make_dipole(.38, .95, 2.6)},
       {"dipole, eta 1", make_dipole(3, 1e-4, 1)},
       {"normalized diffusion", make_normalized_diffusion(.38, .8)},
+      {"better dipole", make_channel_profile(ProfileKind::better_dipole, {.38, .05, 1.3})},
+      {"better dipole without absorption", make_channel_profile(ProfileKind::better_dipole, {.38, 0, 1.5})},
   };
   return table;
 }
@@ -71,6 +73,16 @@ long double share_beyond(const ChannelProfile& profile, double beyond, double r)
   if (const auto* burley = std::get_if<NormalizedDiffusion>(&profile)) {
     const Real x = Real(r) / Real(burley->d);
     return (std::exp(-x) + 3 * std::exp(-x / 3)) / 4;
+  }
+  if (const auto* better = std::get_if<BetterDipole>(&profile)) {
+    const Real s = better->decay, h = better->height;
+    const auto beyond_radius = [&](Real x) {
+      const Real real = std::sqrt(x * x + 1), high = std::sqrt(x * x + h * h),
+                 apart = (h * h - 1) / (real + high);
+      return std::exp(-s * real) * (better->from_flux * (1 / real + h / high * std::exp(-s * apart)) +
+                                    better->from_fluence * (s > 0 ? -std::expm1(-s * apart) / s : apart));
+    };
+    return beyond_radius(Real(r) / Real(better->mean_free_path)) / beyond_radius(0);
   }
   const Dipole& dipole = std::get<Dipole>(profile);
   const Real ratio = std::exp(Real(dipole.s_real) - Real(dipole.s_virtual));

@@ -21,8 +21,8 @@ struct Named {
 std::vector<Named> table_of_media() {
   const Rgb a{.0021, .0041, .0071}, s{2.19, 2.62, 3.00};
   std::vector<Named> all;
-  for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
-    const std::string name = kind == ProfileKind::dipole ? "dipole" : "normalized diffusion";
+  for (const ProfileKind kind : kAllProfiles) {
+    const std::string name(kProfileNames[std::size_t(kind)]);
     all.push_back({"marble, " + name, make_diffuse_profile(medium_of(a, s, 1.5, kind))});
     all.push_back(
         {"unabsorbing, " + name, make_diffuse_profile(medium_of(Rgb(0), Rgb{.5, 2, 40}, 1.3, kind))});
@@ -116,7 +116,7 @@ TEST(KernelTable, BeyondItsRange) {
 // float's smallest number lose bits (1e-38), that. Fails if: the table's knots are at powers of two of mm, or
 // r_min has a floor in mm.
 TEST(KernelTable, PowersOfTwoScale) {
-  for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion})
+  for (const ProfileKind kind : kAllProfiles)
     for (const double k : {8., 1 / 1024.}) {
       const Rgb a{.0021, .0041, .0071}, s{2.19, 2.62, 3.00};
       const KernelTable small(make_diffuse_profile(medium_of(a, s, 1.5, kind)), 1e-3, 100);

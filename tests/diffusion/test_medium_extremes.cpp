@@ -23,7 +23,7 @@ bool all_finite(const DiffuseProfile& profile) {
 // integral. Source: the contract. Tolerance: none. Fails if: alpha' = 0 makes a dipole of strength 0 times
 // infinity.
 TEST(MediumExtremes, NothingScatters) {
-  for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
+  for (const ProfileKind kind : kAllProfiles) {
     const DiffuseProfile profile = make_diffuse_profile(medium_of(Rgb(.5), Rgb(0), 1.3, kind));
     EXPECT_FALSE(profile.translucent);
     EXPECT_EQ(profile.total, Rgb(0));
@@ -53,7 +53,7 @@ TEST(MediumExtremes, Nothing) {
 // mean free path say.
 TEST(MediumExtremes, OneEmptyChannel) {
   const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v); };
-  for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
+  for (const ProfileKind kind : kAllProfiles) {
     const Rgb a{.0021, .0041, .0071}, s{2.19, 2.62, 3.00};
     const DiffuseProfile whole = make_diffuse_profile(medium_of(a, s, 1.5, kind));
     for (std::size_t empty = 0; empty < 3; ++empty) {
@@ -84,7 +84,7 @@ TEST(MediumExtremes, OneEmptyChannel) {
 // Claim: a mean free path of 0 is finite and Lambertian: all leaves within any radius, R_d is 0 beyond it,
 // and the near field is the whole. Source: the limit. Tolerance: 1e-12. Fails if: 1/radius is taken.
 TEST(MediumExtremes, ZeroMeanFreePath) {
-  for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
+  for (const ProfileKind kind : kAllProfiles) {
     const DiffuseProfile profile = make_diffuse_profile(medium_of(Rgb{.2, .8, 1}, Rgb(0), 0, 1.5, kind));
     EXPECT_TRUE(profile.translucent);
     EXPECT_TRUE(all_finite(profile));
@@ -103,7 +103,7 @@ TEST(MediumExtremes, ZeroMeanFreePath) {
 // Source: the contract. Tolerance: none. Fails if: a square of a coefficient leaves double's range or A turns
 // negative.
 TEST(MediumExtremes, WideRanges) {
-  for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion})
+  for (const ProfileKind kind : kAllProfiles)
     for (const double eta : {.3, .75, 1., 3.9, 8.}) {
       for (const double a : {0., 1e-12, 1., 1e12})
         for (const double s : {1e-12, 1., 1e12}) {

@@ -2,6 +2,7 @@
 // Both ways to build the structure that rays walk.
 #include "mesh_test.h"
 #include "opaline/core/random.h"
+#include "opaline/geometry/ray_scene.h"
 #include "support/surfaces.h"
 
 namespace opaline {

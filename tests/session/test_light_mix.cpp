@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "opaline/lights/light.h"
-#include "render/layers.h"
+#include "opaline/render/layers.h"
 #include "session/light_mix.h"
 #include "support/scenes.h"
 

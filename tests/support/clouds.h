@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "opaline/core/random.h"
-#include "opaline/evaluate/evaluate.h"
+#include "opaline/exitance/evaluate.h"
 #include "opaline/octree/octree.h"
 #include "support/scenes.h"
 #include "support/surfaces.h"

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "opaline/geometry/make_mesh.h"
+#include "opaline/geometry/surface_point.h"
 #include "opaline/geometry/world.h"
 #include "opaline/sampling/sample_surface.h"
 #include "opaline/scene/scene.h"

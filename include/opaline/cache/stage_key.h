@@ -38,13 +38,16 @@ class KeyBuilder {
     static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
     return add_bytes(&value, sizeof value);
   }
+  /// A text, byte by byte.
   KeyBuilder& add(const std::string& text) { return add_bytes(text.data(), text.size()); }
+  /// An array of what add() takes one of.
   template <class T>
   KeyBuilder& add_array(std::span<const T> values) {
     static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
     return add_bytes(values.data(), values.size_bytes());
   }
 
+  /// The key of all that was added so far.
   StageKey key() const;
 
  private:

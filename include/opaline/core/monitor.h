@@ -16,6 +16,7 @@ struct Monitor {
   std::atomic<unsigned> rounds{0};  ///< of counting: `done` starts at 0 in each
   std::atomic<bool> cancelled{false};
 
+  /// Starts a stage. work: in units of the stage's choice; progress counts up to it.
   void begin(const char* name, std::size_t work) {
     stage = name;
     done = 0;

@@ -19,7 +19,9 @@ struct StageCost {
 /// Starts at construction.
 class Stopwatch {
  public:
+  /// Starts now.
   Stopwatch();
+  /// What the process has used since the start, for a stage of this name.
   StageCost cost(std::string stage) const;
 
  private:

@@ -40,6 +40,7 @@ using Vec3d = Vec3<double>;
 using RgbF = Vec3<float>;
 using Rgb = Vec3<double>;
 
+/// a . b.
 template <class T>
 constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -50,6 +51,7 @@ constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// |a|.
 template <class T>
 T length(const Vec3<T>& a) {
   return std::sqrt(dot(a, a));
@@ -62,11 +64,13 @@ Vec3<T> normalized(const Vec3<T>& a) {
   return l > T(0) ? a / l : Vec3<T>{};
 }
 
+/// The largest of the three.
 template <class T>
 constexpr T max_component(const Vec3<T>& a) {
   return std::max(a.x, std::max(a.y, a.z));
 }
 
+/// The smallest of the three.
 template <class T>
 constexpr T min_component(const Vec3<T>& a) {
   return std::min(a.x, std::min(a.y, a.z));
@@ -82,6 +86,7 @@ constexpr Vec3<T> component_max(const Vec3<T>& a, const Vec3<T>& b) {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
+/// Whether none of the three is infinite or not a number.
 template <class T>
 bool is_finite(const Vec3<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);

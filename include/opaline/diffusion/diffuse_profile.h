@@ -5,6 +5,7 @@
 #include <array>
 #include <variant>
 
+#include "opaline/diffusion/better_dipole.h"
 #include "opaline/diffusion/dipole.h"
 #include "opaline/diffusion/normalized_diffusion.h"
 #include "opaline/scene/scene.h"
@@ -12,11 +13,18 @@
 namespace opaline {
 
 /// One channel; monostate: nothing scatters there (sigma_s' = 0) and the diffuse part is exactly 0.
-/// A kind of profile is a file that defines all of the functions below; without one it does not compile.
-using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion>;
+/// A kind of profile is a file that defines all of the functions below, and `Kind make_profile(const
+/// ReducedMedium&, std::type_identity<Kind>)`; without one it does not compile. In the order of ProfileKind.
+using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion, BetterDipole>;
 
+/// The profile of a kind; monostate where the medium does not scatter.
+ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& medium);
+
+/// R_d(r), 1/mm^2, per entered flux, r > 0 in mm.
 double diffuse_reflectance_profile(const ChannelProfile& profile, double r);
+/// The share of the entered flux that leaves within r, mm: the integral of 2 pi r' R_d(r').
 double diffuse_reflectance_within(const ChannelProfile& profile, double r);
+/// The share of the entered flux that leaves at all, [0, 1].
 double total_diffuse_reflectance(const ChannelProfile& profile);
 
 /// Distance beyond which a share `beyond` of the profile's total leaves: density 2 pi r R_d(r) / total when
@@ -37,6 +45,10 @@ double sample_chord_sphere_radius(const ChannelProfile& profile, double u, doubl
 
 /// The rate, 1/mm, at which the profile decays at its far end.
 double slowest_decay(const ChannelProfile& profile);
+
+/// 1 - alpha' of the medium whose profile has this total: by bisection (relative error in 1 - alpha' below
+/// 1e-12). total in [0, 1].
+double invert_albedo(ProfileKind kind, double total, double eta);
 
 /// Everything about a medium that rendering needs, computed once.
 struct DiffuseProfile {

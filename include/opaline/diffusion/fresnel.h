@@ -31,6 +31,10 @@ double average_reflectance_outside(double eta);
 /// F_dr: the same average for light that arrives from inside; 1 - F_dr = (1 - F_bar) / eta^2.
 double average_reflectance_inside(double eta);
 
+/// C2: the integral of F mu^2 over the cosine mu in [0, 1] at which light arrives from inside; numerical, error
+/// below 1e-9. That of F mu is F_dr / 2.
+double reflectance_moment_inside(double eta);
+
 /// A = (1 + F_dr) / (1 - F_dr) of the dipole's boundary condition; exactly 1 at eta = 1.
 double boundary_mismatch(double eta);
 

@@ -39,6 +39,7 @@ class KernelTable {
                  _mm_setr_ps(offset(r2_r), offset(r2_g), offset(r2_b), 0.0f));
   }
 
+  /// Memory of the table.
   std::size_t bytes() const { return segments_.size() * sizeof(Segment); }
 
  private:

@@ -2,6 +2,10 @@
 // The normalized diffusion profile of one channel (Christensen & Burley 2015).
 #pragma once
 
+#include <type_traits>
+
+#include "opaline/diffusion/reduced_medium.h"
+
 namespace opaline {
 
 /// R_d(r) = A (exp(-r/d) + exp(-r/3d)) / (8 pi d r); includes single scattering. A fit for index-matched
@@ -18,11 +22,16 @@ NormalizedDiffusion make_normalized_diffusion(double mean_free_path, double tota
 double diffuse_reflectance_profile(const NormalizedDiffusion& profile, double r);
 /// A (1 - exp(-r/d)/4 - 3 exp(-r/3d)/4).
 double diffuse_reflectance_within(const NormalizedDiffusion& profile, double r);
+/// A.
 double total_diffuse_reflectance(const NormalizedDiffusion& profile);
 
-/// As those of ChannelProfile (diffuse_profile.h).
+/// For make_channel_profile (diffuse_profile.h).
+NormalizedDiffusion make_profile(const ReducedMedium& medium, std::type_identity<NormalizedDiffusion>);
+/// As that of ChannelProfile; Golubev's closed form.
 double sample_diffusion_distance(const NormalizedDiffusion& profile, double beyond);
+/// As that of ChannelProfile; a sum of two gamma distributions.
 double sample_chord_sphere_radius(const NormalizedDiffusion& profile, double u, double v);
+/// 1/(3d), 1/mm.
 double slowest_decay(const NormalizedDiffusion& profile);
 
 }  // namespace opaline

@@ -8,13 +8,14 @@
 #include <span>
 #include <vector>
 
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 
 namespace opaline {
 
 /// Crossings of lines with some meshes of a RayScene, which must outlive it.
 class LineQuery {
  public:
+  /// meshes: of the world of `rays`, which must outlive the query.
   LineQuery(const RayScene& rays, std::span<const std::uint32_t> meshes);
   ~LineQuery();
   LineQuery(LineQuery&&) noexcept;

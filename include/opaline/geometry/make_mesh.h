@@ -37,6 +37,7 @@ class MeshMemory {
   struct Work {
     std::size_t read = 0, checked = 0;  ///< meshes
   };
+  /// How often it was read and checked so far.
   const Work& work() const;
 
  private:

@@ -33,6 +33,7 @@ std::vector<std::uint8_t> object_pixels(const Image& image);
 struct NonFinite {
   std::size_t nan = 0, infinite = 0;  ///< values, over all channels and the whole picture
 };
+/// How many values of a layer are infinite or not a number, and the first of them.
 NonFinite count_non_finite(const Layer& layer);
 
 /// (a - b) / max(|b|, floor), a plane a channel. NaN where nothing is compared: no object there, or a or b is
@@ -58,6 +59,7 @@ struct ErrorStatistics {
   double largest = 0;      ///< of |e|
   double signed_mean = 0;  ///< of e
 };
+/// Mean, root mean square and percentiles of one error a pixel, in any order.
 ErrorStatistics error_statistics(std::span<const double> errors);
 
 /// The same over all channels as one set of values.

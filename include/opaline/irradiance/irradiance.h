@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "opaline/core/monitor.h"
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 #include "opaline/sampling/sample_surface.h"
 #include "opaline/scene/scene.h"
 
@@ -32,9 +32,9 @@ struct LightTransfer {
   /// RMS over the samples of the estimated standard error, over the mean; 0 for point and
   /// directional lights, and for a single light sample, which cannot tell.
   double relative_error = 0;
-  /// What the means over the cells beside shadow edges changed of the light in all: area times weight, summed
-  /// over the samples, relative. Neighbours that each have few rays differ by chance, too, and then the means
-  /// are a biased choice.
+  /// Relative change of this light's total (area x weight, summed over the samples) that came from replacing
+  /// weights beside shadow edges by means over cells. With few rays a sample, neighbours also differ by
+  /// chance; samples are then chosen for replacement because of their noise, and the total becomes biased.
   double edge_shift = 0;
 };
 

@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// One sample of a light seen from a point: the contribution to irradiance is radiance_weight x cos x Ft x (1
+/// One sample of a light seen from a point: the contribution to irradiance is weight x cos x Ft x (1
 /// if not occluded) x emission, emission being the light's colour (intensity, irradiance or radiance).
 struct LightSample {
   Vec3f direction;  ///< unit, from the point towards the light
@@ -47,6 +47,7 @@ struct EmitterHit {
   float t = 0;
   RgbF radiance{};
 };
+/// Where a ray meets a light that has an area, nearer than `far`.
 EmitterHit intersect_emitter(const Light& light, const Vec3f& origin, const Vec3f& direction, float far);
 
 /// Radiance that a ray sees of the light if it meets nothing.
@@ -61,6 +62,7 @@ struct LightExtent {
   std::optional<Vec3d> facing{};   ///< unit; it shines on this side only
   std::optional<Vec3d> towards{};  ///< unit; an infinitely far light lies that way
 };
+/// A ball around the light's shape, world units.
 LightExtent extent(const Light& light);
 
 /// All numbers that say where the light is and how large, none of its colour; of another kind, others.

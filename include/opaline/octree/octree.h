@@ -12,8 +12,8 @@ namespace opaline {
 
 /// One point of the cloud: what evaluation needs of a surface sample.
 struct FluxSample {
-  Vec3f position;   ///< mm, recentred
-  float area = 0;   ///< mm^2
+  Vec3f position;  ///< in the world's space and unit, as are all lengths here
+  float area = 0;
   RgbF irradiance;  ///< entered, W/mm^2
   Vec3f normal;
 };
@@ -47,7 +47,6 @@ struct Octree {
   float flux_unit = 1;
   /// By list_children: of node i, children[first_child[i]] to below first_child[i + 1].
   std::vector<std::uint32_t> first_child{}, children{};
-  std::size_t bytes() const;
 };
 
 /// Leaves hold at most this many samples, unless more coincide to 2^-21 of the box.

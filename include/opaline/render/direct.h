@@ -52,6 +52,7 @@ struct DirectEstimate {
   RgbF mean{};
   Rgb variance{};
 };
+/// Mean and standard error of a pixel, from the sums of all passes.
 DirectEstimate direct_estimate(const DirectState& state, std::size_t pixel);
 
 /// Rms over the pixels with light of the estimated standard error over sqrt(mean^2 + (1 % of the

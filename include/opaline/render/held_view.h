@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/evaluate/evaluate.h"
+#include "opaline/exitance/evaluate.h"
 #include "opaline/irradiance/irradiance.h"
 
 namespace opaline {

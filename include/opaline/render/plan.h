@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {

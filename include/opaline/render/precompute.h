@@ -10,12 +10,13 @@
 #include "opaline/core/monitor.h"
 #include "opaline/core/stopwatch.h"
 #include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/evaluate/evaluate.h"
-#include "opaline/evaluate/surface_cache.h"
+#include "opaline/exitance/evaluate.h"
+#include "opaline/exitance/surface_cache.h"
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/octree/octree.h"
 #include "opaline/render/plan.h"
 #include "opaline/sampling/sample_surface.h"
+#include "opaline/volume/volume_exitance.h"
 
 namespace opaline {
 
@@ -31,6 +32,7 @@ struct Body {
   CloudError cloud = {};                           ///< of the samples with this irradiance and kernel
   std::optional<SurfaceCache> surface_cache = {};  ///< the exitance everywhere, where that is cheaper than at
                                                    ///< the points of the picture
+  std::optional<VolumeExitance> volume = {};       ///< of Method::volume
 };
 
 struct PrecomputeInput {
@@ -55,10 +57,16 @@ std::uint64_t point_irradiance_seed(const Settings& settings);
 std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
                                          std::span<const SurfaceSample> samples,
                                          std::span<const Light> lights);
+/// The scene's lights in the world's space and unit.
 std::vector<Light> recentred_lights(const Scene& scene, const World& world);
+
+/// Random walks inside a body with its samples. Media are walked with isotropic scattering and the reduced
+/// coefficients: they are what a scene says of a medium.
+VolumeExitance walk_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights);
 
 /// irradiance: one a sample.
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);
+/// The kernel of a body, split at a distance that its samples' spacing decides.
 SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,
                          const Settings& settings);
 

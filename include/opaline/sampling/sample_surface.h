@@ -15,11 +15,11 @@ namespace opaline {
 struct SurfaceSample {
   std::uint32_t mesh = 0, triangle = 0;  ///< index into World::meshes, and there
   float u = 0, v = 0;                    ///< barycentrics of the second and third corner
-  Vec3f position;                        ///< mm, recentred
+  Vec3f position;                        ///< in the world's space and unit, as are all lengths here
   Vec3f normal;                          ///< shading normal
-  float area = 0;                        ///< its Voronoi cell on the surface, mm^2
-  /// Middle of the cell: flux that stands there instead of at the sample makes sums over the surface second
-  /// order.
+  float area = 0;                        ///< of its Voronoi cell on the surface
+  /// Centroid of the cell. Sums over the surface place a sample's flux here, not at `position`: the
+  /// first-order term of their error then vanishes.
   Vec3f centroid{};
 };
 
@@ -36,9 +36,9 @@ struct SamplingInput {
 
 struct SurfaceSamples {
   std::vector<SurfaceSample> samples;  ///< ordered by mesh and triangle
-  double area = 0;                     ///< of the surface, mm^2; the samples' areas sum to it within 1e-6
-  double radius = 0;                   ///< no two samples on one sheet are closer, mm
-  /// sqrt(area / count), mm.
+  double area = 0;                     ///< of the surface; the samples' areas sum to it within 1e-6
+  double radius = 0;                   ///< no two samples on one sheet are closer
+  /// sqrt(area / count).
   double spacing() const;
 };
 
@@ -51,9 +51,8 @@ inline bool same_sheet(const Vec3f& a, const Vec3f& b) {
 /// Samples whose places depend on the surface and the seed alone: not on the view, the lights, or the
 /// threads.
 /// out   every triangle's centroid has a sample of its sheet within two radii
-/// from  dart throwing in
-/// phase groups (Wei 2008) over a hash grid; shares: surface_shares
-///       cells: unless null, each sample's; they take a sixth of the time more
+///       cells: unless null, receives each sample's cell, which takes a sixth more time
+/// from  dart throwing in phase groups (Wei 2008) over a hash grid; areas: surface_shares
 SurfaceSamples sample_surface(const SamplingInput& input, SurfaceCells* cells = nullptr);
 
 }  // namespace opaline

@@ -19,6 +19,7 @@ struct SurfaceCells {
   std::vector<std::uint32_t> first;  ///< into parts, of each sample and behind the last one
   std::vector<CellPart> parts;       ///< sample by sample
 
+  /// Whether no cells were kept.
   bool empty() const { return first.empty(); }
 };
 

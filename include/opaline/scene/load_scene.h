@@ -28,4 +28,9 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
 /// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths stay as they are.
 std::string with_frame(const std::string& path, int frame);
 
+/// A medium by itself: a JSON object such as a member of a scene's `media`; its name is "medium".
+/// in    file: what messages call the text
+/// error as parse_scene
+Medium parse_medium(std::string_view text, const std::string& file);
+
 }  // namespace opaline

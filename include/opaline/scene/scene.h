@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "opaline/core/vec3.h"
+#include "opaline/scene/enumerations.h"
 #include "opaline/scene/source_place.h"
 
 namespace opaline {
@@ -31,12 +32,6 @@ inline Vec3d transform_point(const Transform& t, const Vec3d& p) {
 }
 
 // ---- media ----------------------------------------------------------------------------------------------
-
-/// Which radial diffuse reflectance profile R_d(r) stands for the medium.
-enum class ProfileKind {
-  dipole,               ///< Jensen et al. 2001
-  normalized_diffusion  ///< Christensen & Burley 2015
-};
 
 /// Reduced coefficients per channel, 1/mm, finite and >= 0.
 struct PhysicalMedium {
@@ -105,11 +100,6 @@ struct TorusShape {  ///< axis along y
 
 using ShapeSource = std::variant<MeshFile, SphereShape, BoxShape, QuadShape, SlabShape, TorusShape>;
 
-enum class NormalMode {
-  smooth,   ///< angle-weighted average at each vertex, or the file's own normals where it has them
-  faceted,  ///< geometric normals
-};
-
 struct Shape {
   std::string name;
   ShapeSource source;
@@ -175,8 +165,6 @@ struct Camera {
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-enum class PixelFilter { box, gaussian };
-
 struct Film {
   std::array<int, 2> resolution{512, 512};  ///< width, height
   std::optional<std::array<int, 4>> crop;   ///< x0, y0, x1, y1 in pixels, upper ends excluded; from top left
@@ -187,24 +175,6 @@ struct Film {
   double exposure = 0;   ///< stops, for PNG only
   friend bool operator==(const Film&, const Film&) = default;
 };
-
-enum class Method {
-  hierarchical,  ///< diffusion from the tree of samples
-  lambert,       ///< translucent surfaces as plain paint: the floor of all costs
-  direct         ///< the BSSRDF sampled at random: the reference of `hierarchical`, noisy instead of biased
-};
-enum class EvaluatorKind {
-  automatic,      ///< surface_cache where a picture has many more points than it needs, else dual_tree
-  dual_tree,      ///< clusters of points against nodes, to a tolerance
-  surface_cache,  ///< the same at places all over the surface, interpolated for each point
-  classic,        ///< each point walks the tree, as published
-  brute_force     ///< every sample
-};
-/// Where the irradiance of the near field is taken from; mixed: as much of each as keeps the kernel's width.
-enum class NearIrradiance { mixed, samples, point };
-/// Of the dual tree's inner loops; automatic: the widest that the machine has.
-enum class InstructionSet { automatic, baseline, avx2, avx512 };
-enum class EntryStrategy { disc_axes, chords };
 
 /// Of `direct`, where neither Settings::entry_samples nor Settings::until_error says.
 inline constexpr std::size_t kDefaultEntrySamples = 256;

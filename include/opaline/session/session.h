@@ -4,19 +4,15 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "opaline/cache/stage_cache.h"
-#include "opaline/cache/stage_keys.h"
 #include "opaline/render/first_light.h"
 #include "opaline/render/render.h"
+#include "opaline/session/stage_cache.h"
 
 namespace opaline {
-
-class LightMix;
 
 /// Work of one edit, counted where it is done.
 struct SessionWork {
@@ -42,25 +38,28 @@ struct SessionWork {
 ///   edit                                what is computed
 ///   camera, film                        camera rays and what they see; a surface cache is looked up again.
 ///                                       Other edits trace these rays again, too, unless the view is held
-///   a light's colour or power           sums over lights, trees; no ray from a sample
-///                                       Where lights may be mixed, from the second such edit in a row on, a
-///                                       picture by each that changes and one by the others; then their sum;
-///                                       at once where ready_light_mix was called before
+///   a light's colour or power           sums over lights, trees; no ray from a sample.
+///                                       Where lights may be mixed (hold_view): the second such edit in a row
+///                                       renders one picture for each light that changes and one for all the
+///                                       others together; that edit and each later one is their weighted sum.
+///                                       After ready_light_mix the first such edit is a sum already
 ///   a medium                            evaluation; its samples stay while they are dense enough and at most
 ///                                       twice as dense (in spacing) as it asks for
 ///   eta                                 the light that enters, trees, evaluation
 ///   a light moved, added or removed     that light's share, trees, evaluation
 ///   an object moved as a whole          no file is read; its samples go along; light that enters it, and
 ///                                       others where the shadow of a ball around it fell or falls
-///   a mesh bent, the same triangles     it is read, not checked; samples and their cells go along with their
-///                                       triangles (carry_samples); all else of it. Samples are placed anew
-///                                       where they would be more than settings.max_samples, or less than a
-///                                       sixteenth of settings.samples
+///   a mesh bent, the same triangles     the mesh is read, not checked; samples and their cells move with their
+///                                       triangles (carry_samples); everything else of it is computed again.
+///                                       Samples are placed anew if carrying would make them more than both
+///                                       settings.max_samples and twice their first number, or, where that
+///                                       number was set or limited by max_samples, less than a sixteenth of it
 ///   anything else                       what depends on it
 ///
-/// Pictures are those of a new session, bit for bit, but for such sums (within the tolerance) and for samples
-/// that went along or stayed denser. Those are the samples of the last surface that was sampled anew,
-/// wherever it has been since: a picture depends on that surface and the scene, not on the edits in between.
+/// A picture has the same bits as that of a new session, with two exceptions: mixed pictures (equal within the
+/// tolerance), and scenes whose samples were carried along or stayed denser than needed. Such samples were
+/// placed on the last surface that was sampled anew. The picture depends on that surface and on the scene as
+/// it is now, not on the edits in between.
 class Session {
  public:
   /// cache: where to look for what is not at hand, and to keep it; null: nowhere. Outlives the session.
@@ -81,26 +80,23 @@ class Session {
 
   /// How many pictures are to be made of the same surfaces in the same light, 1 at first: with the evaluator
   /// `automatic` a surface cache is made if it pays for all of them.
-  void expect_pictures(std::size_t pictures) { pictures_ = pictures; }
+  void expect_pictures(std::size_t pictures);
 
-  /// Whether what the camera sees, and how the lights reach it, is kept for the pictures to come: those of
-  /// other colours and media then trace neither again. Costs memory (HeldView); not at first.
-  /// mix_lights: pictures that differ by their lights' colours alone may then be sums of others (LightMix),
-  /// and trace no ray beside shadow edges where earlier ones did: their last bits and their noise there
-  /// depend on the pictures before.
-  void hold_view(bool hold, bool mix_lights = false) {
-    holds_view_ = hold;
-    mixes_lights_ = hold && mix_lights;
-  }
+  /// Whether to keep what the camera sees, and how the lights reach it, for later pictures. After an edit of
+  /// colours or media neither is then traced again. Costs memory (HeldView). Off by default.
+  /// mix_lights: a picture that differs from earlier ones only by its lights' colours may then be a sum of
+  /// pictures (LightMix). Beside shadow edges it traces no rays where an earlier picture did. So its last
+  /// bits, and its noise at those edges, depend on the pictures before it.
+  void hold_view(bool hold, bool mix_lights = false);
 
   /// A picture by each light, so that the next edit of colours is a sum already: for while nobody waits. Does
   /// nothing unless lights may be mixed.
   /// error as prepare
   void ready_light_mix(Monitor* monitor = nullptr);
 
-  /// Whether edits are to come, yes at first: what only they need is not kept otherwise. No picture depends
-  /// on it.
-  void expect_edits(bool edits) { edits_ = edits; }
+  /// If no further edits follow, the session drops the data that only edits reuse. Default: true. No picture
+  /// depends on it.
+  void expect_edits(bool edits);
 
   /// The ray structure alone, which prepare has made otherwise.
   void prepare_rays();
@@ -115,71 +111,23 @@ class Session {
   /// The picture of the scene; prepares it first.
   RenderResult render(Monitor* monitor = nullptr, const AfterTile& after_tile = {});
 
-  const Scene& scene() const { return scene_; }
-  const World& world() const { return *world_; }
-  const Plan& plan() const { return plan_; }
-  const RayScene& rays() const { return *rays_; }           ///< after prepare
-  std::span<const Body> bodies() const { return bodies_; }  ///< after prepare
-  const SessionWork& work() const { return work_; }         ///< of the last edit and since
-  const std::vector<std::string>& decisions() const {
-    return decisions_;
-  }  ///< what was kept, and what not; a line each
+  /// The scene of the last edit.
+  const Scene& scene() const;
+  /// Its meshes around one origin.
+  const World& world() const;
+  /// What the scene requires.
+  const Plan& plan() const;
+  const RayScene& rays() const;          ///< after prepare
+  std::span<const Body> bodies() const;  ///< after prepare
+  const SessionWork& work() const;       ///< of the last edit and since
+  /// What was kept, and what not; a line each.
+  const std::vector<std::string>& decisions() const;
   /// Rays, sampling, irradiance, octree, and exitance where there are surface caches.
-  const std::vector<StageCost>& costs() const { return costs_; }
+  const std::vector<StageCost>& costs() const;
 
  private:
-  struct BodyKeys;
-  /// What loading a shape found; the key is its source's, of zeros where loading failed.
-  struct ShapeMemory {
-    std::string name;
-    StageKey source;
-    MeshMemory mesh;
-  };
-
-  bool is_needed() const { return scene_.settings.method == Method::hierarchical && !plan_.groups.empty(); }
-  void arrange_memories(const Scene& scene, const std::vector<StageKey>& sources);
-  World loaded_world(const Scene& scene, const std::vector<StageKey>& sources,
-                     const std::vector<StageKey>& shapes, SessionWork& work);
-  void keep_spacing();
-  void bring_rays();
-  void arrange_bodies();
-  void bring_samples(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group);
-  void keep_samples(Body& body, BodyKeys& known);
-  void place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
-                  const StageKey& key);
-  void carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input, const StageKey& key);
-  void bring_lights(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
-                    const std::vector<Light>& lights);
-  void bring_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights);
-  void bring_kernel(Body& body, BodyKeys& known);
-  void bring_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t most_places);
-  HeldView* held_view();
-  bool can_mix() const;
-  Image recoloured(const Scene& scene, HeldView& view, Monitor* monitor);
-  void decide(const Body& body, const std::string& text);
-
-  StageCache* cache_;
-  Scene scene_;
-  std::shared_ptr<const World> world_;
-  std::vector<StageKey> shape_keys_;  // what each mesh was loaded from
-  std::vector<ShapeMemory> shape_memories_;
-  std::vector<MeshKeys> mesh_keys_;
-  Plan plan_;
-  std::unique_ptr<RayScene> rays_;
-  RayBuild rays_build_ = RayBuild::careful;
-  std::vector<MeshKeys> rays_keys_;
-  std::vector<Body> bodies_;
-  std::vector<BodyKeys> keys_;  // one a body
-  std::size_t pictures_ = 1;
-  bool holds_view_ = false, mixes_lights_ = false;
-  HeldView view_;
-  std::unique_ptr<LightMix> mix_;
-  StageKey view_key_, view_surfaces_key_;
-  std::vector<StageKey> view_light_keys_;
-  bool edits_ = true, prepared_ = false, anchored_ = false;
-  SessionWork work_;
-  std::vector<std::string> decisions_;
-  std::vector<StageCost> costs_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace opaline

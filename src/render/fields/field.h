@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/geometry/world.h"
+#include "opaline/geometry/ray_scene.h"
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/render/held_view.h"
 

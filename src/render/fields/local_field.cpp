@@ -8,7 +8,7 @@ namespace opaline {
 LocalField::LocalField(const RenderInput& input, std::span<const RgbF> albedos, float eta)
     : albedos_(albedos.begin(), albedos.end()),
       eta_(eta),
-      estimates_error_(input.scene.settings.method == Method::hierarchical),
+      estimates_error_(has_samples(input.scene.settings.method)),
       is_noisy_(has_area_lights(input.scene)) {}
 
 LeavingLight LocalField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass&,

@@ -8,6 +8,7 @@
 #include "render/fields/direct_field.h"
 #include "render/fields/local_field.h"
 #include "render/fields/sample_field.h"
+#include "render/fields/volume_field.h"
 
 namespace opaline {
 namespace {
@@ -28,7 +29,7 @@ Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_s
   const Shape& shape = input.scene.shapes[mesh];
   if (!shape.medium) return {};
   Source source{.eta = float(input.scene.media[*shape.medium].eta)};
-  if (input.scene.settings.method == Method::hierarchical)
+  if (has_samples(input.scene.settings.method))
     for (const Body& group : input.groups)
       if (has_mesh(group.plan.meshes, mesh)) source.group = &group;
   for (const EntrySampler& sampler : entry_samplers)
@@ -38,6 +39,8 @@ Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_s
 
 std::unique_ptr<Field> make_field(const RenderInput& input, const Source& source,
                                   std::span<const RgbF> albedos) {
+  if (source.group != nullptr && input.scene.settings.method == Method::volume)
+    return std::make_unique<VolumeField>(*source.group);
   if (source.group != nullptr) return std::make_unique<SampleField>(input, *source.group);
   if (source.entries != nullptr) return std::make_unique<DirectField>(*source.entries, source.eta);
   return std::make_unique<LocalField>(input, albedos, source.eta);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "evaluate/crease_error.h"
-#include "evaluate/surface_patch.h"
+#include "opaline/exitance/crease_error.h"
+#include "opaline/exitance/surface_patch.h"
 #include "render/fields/make_fields.h"
 #include "render/selection_bias.h"
 

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a radial profile is made from.
+#pragma once
+
+namespace opaline {
+
+/// One channel of a medium by similarity: scattering without direction. 1 - alpha' is carried by itself,
+/// against cancellation.
+struct ReducedMedium {
+  double mean_free_path = 0;  ///< 1/sigma_t', >= 0
+  double absorbed = 1;        ///< 1 - alpha' = sigma_a/sigma_t', [0, 1]
+  double eta = 1;             ///< index of refraction, inside / outside
+};
+
+}  // namespace opaline

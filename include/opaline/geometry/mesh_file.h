@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mesh files as files: what their names and bytes tell without reading the mesh.
+#pragma once
+
+#include <string>
+
+namespace opaline {
+
+/// Whether a file's name ends as those of a mesh format do, in upper or lower case.
+bool is_mesh_file_name(const std::string& path);
+
+/// The bytes of a mesh file as they are.
+/// error Error naming the file: missing, with the nearest name in its folder; not a file, empty, not readable
+std::string read_mesh_bytes(const std::string& path);
+
+}  // namespace opaline

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The choices that a scene makes, each beside the words that scene files, options, reports and metadata use
+// for it, in the order of the enumeration.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace opaline {
+
+using NameList = std::span<const std::string_view>;
+
+/// Which radial diffuse reflectance profile R_d(r) stands for the medium; in the order of ChannelProfile
+/// (diffuse_profile.h).
+enum class ProfileKind { dipole, normalized_diffusion, better_dipole };
+inline constexpr std::array<std::string_view, 3> kProfileNames{"dipole", "normalized_diffusion",
+                                                               "better_dipole"};
+inline constexpr std::array<std::string_view, 3> kProfileSources{"Jensen et al. 2001",
+                                                                 "Christensen & Burley 2015", "d'Eon 2012"};
+/// The words for its values, in their order.
+constexpr NameList names_of(ProfileKind) {
+  return kProfileNames;
+}
+
+enum class NormalMode {
+  smooth,   ///< angle-weighted average at each vertex, or the file's own normals where it has them
+  faceted,  ///< geometric normals
+};
+inline constexpr std::array<std::string_view, 2> kNormalNames{"smooth", "faceted"};
+/// The words for its values, in their order.
+constexpr NameList names_of(NormalMode) {
+  return kNormalNames;
+}
+
+enum class PixelFilter { box, gaussian };
+inline constexpr std::array<std::string_view, 2> kFilterNames{"box", "gaussian"};
+/// The words for its values, in their order.
+constexpr NameList names_of(PixelFilter) {
+  return kFilterNames;
+}
+
+enum class Method {
+  hierarchical,  ///< diffusion from the tree of samples
+  lambert,       ///< translucent surfaces as plain paint: the floor of all costs
+  direct,        ///< the BSSRDF sampled at random: the reference of `hierarchical`, noisy instead of biased
+  volume         ///< random walks inside the bodies: no model, the truth, noisy
+};
+inline constexpr std::array<std::string_view, 4> kMethodNames{"hierarchical", "lambert", "direct", "volume"};
+/// The words for its values, in their order.
+constexpr NameList names_of(Method) {
+  return kMethodNames;
+}
+
+/// Whether translucent bodies get samples.
+constexpr bool has_samples(Method method) {
+  return method == Method::hierarchical || method == Method::volume;
+}
+
+enum class EvaluatorKind {
+  automatic,      ///< surface_cache where a picture has many more points than it needs, else dual_tree
+  dual_tree,      ///< clusters of points against nodes, to a tolerance
+  surface_cache,  ///< the same at places all over the surface, interpolated for each point
+  classic,        ///< each point walks the tree, as published
+  brute_force     ///< every sample
+};
+inline constexpr std::array<std::string_view, 5> kEvaluatorNames{"automatic", "dual_tree", "surface_cache",
+                                                                 "classic", "brute_force"};
+/// The words for its values, in their order.
+constexpr NameList names_of(EvaluatorKind) {
+  return kEvaluatorNames;
+}
+
+/// Where the irradiance of the near field is taken from; mixed: as much of each as keeps the kernel's width.
+enum class NearIrradiance { mixed, samples, point };
+inline constexpr std::array<std::string_view, 3> kNearIrradianceNames{"mixed", "samples", "point"};
+/// The words for its values, in their order.
+constexpr NameList names_of(NearIrradiance) {
+  return kNearIrradianceNames;
+}
+
+/// Of the dual tree's inner loops; automatic: the widest that the machine has.
+enum class InstructionSet { automatic, baseline, avx2, avx512 };
+inline constexpr std::array<std::string_view, 4> kInstructionSetNames{"automatic", "baseline", "avx2",
+                                                                      "avx512"};
+/// The words for its values, in their order.
+constexpr NameList names_of(InstructionSet) {
+  return kInstructionSetNames;
+}
+
+enum class EntryStrategy { disc_axes, chords };
+inline constexpr std::array<std::string_view, 2> kEntryStrategyNames{"disc_axes", "chords"};
+/// The words for its values, in their order.
+constexpr NameList names_of(EntryStrategy) {
+  return kEntryStrategyNames;
+}
+
+}  // namespace opaline

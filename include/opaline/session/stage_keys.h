@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which result of a scene's stages depends on what: the one notion that the disk cache and the session share.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "opaline/cache/stage_key.h"
+#include "opaline/render/precompute.h"
+
+namespace opaline {
+
+/// Keys of a mesh of the world, after loading, mending and moving: its places alone (what throws shadows),
+/// and with the normals; and a ball around it.
+struct MeshKeys {
+  StageKey shape, all;
+  Vec3d center{};
+  double radius = 0;
+};
+/// Of one mesh.
+MeshKeys mesh_keys(const Mesh& mesh);
+/// One a mesh of the world.
+std::vector<MeshKeys> mesh_keys(const World& world);
+
+/// Of a group's samples placed anew: its meshes, their count and random numbers.
+StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group);
+
+/// Of the samples of key `from`, carried along to the group's meshes as they are now.
+/// in    unit: of the world they come from over that of this one
+StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes,
+                             double unit);
+
+/// Of the light that enters at samples from one light: the samples, where and how large the light is but not
+/// its colour, the index of refraction, random numbers, and every mesh that could throw a shadow from this
+/// light onto the group. Shadow rays are Embree's: its version and the machine's instruction set belong to
+/// it.
+/// in    light: recentred
+StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
+                      std::size_t group, const Light& light);
+
+/// Of the tree: its samples, each light's transfer and colour.
+StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
+                    std::span<const Light> lights);
+
+/// Of what camera rays meet: the camera, the film, all meshes, how the structure was built that rays walk.
+StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes);
+
+/// Of which surfaces the camera's rays meet are of which kind, lights that hide some included, and of the
+/// random numbers that lights are sampled with there.
+/// in    lights: recentred
+StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights);
+
+/// Of how one light reaches them: where it is and how large, but not its colour.
+/// in    light: recentred
+StageKey view_light_key(const Light& light);
+
+/// Whether a mesh could be in the way between a light and a group's meshes, to judge by the balls around them
+/// all; at most too cautious.
+/// in    light: recentred; unit: World::unit
+bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
+                const Light& light, double unit);
+
+/// Of the exitance all over a group's surfaces: its tree, its kernel, its meshes with their normals, the
+/// tolerance, and the instruction set, which rounds.
+StageKey exitance_key(const StageKey& tree, const StageKey& kernel, std::span<const MeshKeys> meshes,
+                      const GroupPlan& group, const Settings& settings);
+
+}  // namespace opaline

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `opaline profile` measures: each radial profile of a medium beside random walks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "opaline/core/monitor.h"
+#include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/volume/laboratory.h"
+
+namespace opaline {
+
+struct ProfileRequest {
+  std::string name;  ///< of the medium, to be shown
+  PhysicalMedium coefficients;
+  double eta = 1.3;
+  double g = 0;                                                ///< that walks scatter with; sigma_s' stays
+  double thickness = std::numeric_limits<double>::infinity();  ///< mm; infinite: a half space
+  std::optional<std::size_t> walks;  ///< a channel and way of entry; none: as many as some seconds allow
+  std::uint64_t seed = 1;
+};
+
+/// One channel, or all where they are alike.
+struct ProfiledChannel {
+  std::string name;
+  HomogeneousMedium medium;
+  std::vector<ChannelProfile> models;  ///< as kProfileNames has them
+  SlabWalks diffuse, normal;           ///< by the way of entry
+};
+
+/// Notes as in BenchReport.
+struct ProfileReport {
+  ProfileRequest request;
+  std::vector<std::pair<std::string, std::string>> notes;
+  std::vector<ProfiledChannel> channels;
+
+  bool is_slab() const { return request.thickness < std::numeric_limits<double>::infinity(); }
+};
+
+/// The same bits for any number of threads: the number of walks follows from collisions counted, not from time.
+/// error as walk_slab
+ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor);
+
+/// What a model says of the light on one face of the slab: a point of the far face is lit through it.
+struct ModelFace {
+  const ChannelProfile* profile;
+  double height = 0;  ///< thickness for the far face, mm
+
+  double within(double r) const;      ///< share of the entered flux that leaves there, nearer than r
+  double profile_at(double r) const;  ///< 1/mm^2
+  double total() const;
+};
+
+/// Largest difference of the shares, each of its own total, that leave within the same distance.
+double shape_difference(const ModelFace& model, const WalkedFace& walked);
+
+}  // namespace opaline

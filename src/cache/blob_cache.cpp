@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/cache/blob_cache.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+
+#include "cache/entry_file.h"
+#include "opaline/cache/cache_folder.h"
+#include "opaline/core/error.h"
+
+namespace opaline {
+
+BlobCache::BlobCache(std::string folder, std::uint64_t most_bytes)
+    : folder_(std::move(folder)), most_bytes_(most_bytes) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder_, failure);
+  if (!std::filesystem::is_directory(folder_))
+    throw run_failed(folder_, "cannot make the cache's folder" + (failure ? ": " + failure.message() : ""));
+}
+
+std::optional<BlobReader> BlobCache::find(const char* stage, const StageKey& key, std::uint64_t most_bytes) {
+  const EntryName name{stage, key};
+  auto opened = open_entry(folder_, name, most_bytes);
+  if (const auto* bad = std::get_if<BadEntry>(&opened))
+    unusable_.push_back(file_name(name) + ' ' + bad->reason);
+  if (auto* entry = std::get_if<BlobReader>(&opened)) return std::move(*entry);
+  return {};
+}
+
+void BlobCache::reject(const char* stage, const StageKey& key) {
+  unusable_.push_back(file_name({stage, key}) + " holds something else");
+}
+
+void BlobCache::keep(const char* stage, const StageKey& key, const std::function<void(BlobWriter&)>& fill) {
+  if (!not_kept_.empty()) return;
+  try {
+    if (!write_entry(folder_, {stage, key}, most_bytes_, fill))
+      too_large_.push_back(file_name({stage, key}));
+    else
+      prune();
+  } catch (const Error& failure) {
+    not_kept_ = failure.what();
+  }
+}
+
+// Whoever holds the lock for a moment makes room, too.
+void BlobCache::prune() {
+  constexpr int kLooks = 100;  // a second
+  int looks = 0;
+  const bool waits = !is_locked_;
+  prune_cache(folder_, most_bytes_, [&] {
+    is_locked_ = !waits || ++looks >= kLooks;
+    return !is_locked_;
+  });
+}
+
+std::string BlobCache::warning() const {
+  std::vector<std::string> parts;
+  if (!unusable_.empty())
+    parts.push_back(fmt::format("{}, and was computed again", fmt::join(unusable_, ", ")));
+  if (!too_large_.empty())
+    parts.push_back(
+        fmt::format("not all was kept: {}: larger than the whole cache may be", fmt::join(too_large_, ", ")));
+  if (!not_kept_.empty()) parts.push_back("not all was kept: " + not_kept_);
+  if (is_locked_)
+    parts.push_back(
+        "another process holds its lock, so that nothing was removed: it may be larger than its bound");
+  return parts.empty() ? "" : fmt::format("cache {}: {}", folder_, fmt::join(parts, "; "));
+}
+
+}  // namespace opaline

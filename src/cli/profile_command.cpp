@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+
+#include "benchmark/machine.h"
+#include "benchmark/profile_page.h"
+#include "cli/commands.h"
+#include "cli/progress.h"
+#include "opaline/core/atomic_file.h"
+#include "opaline/core/error.h"
+#include "opaline/core/interrupt.h"
+#include "opaline/core/stopwatch.h"
+#include "opaline/core/units.h"
+#include "opaline/scene/enumerations.h"
+#include "opaline/scene/json_tree.h"
+#include "opaline/scene/load_scene.h"
+#include "opaline/scene/nearest_name.h"
+#include "opaline/scene/schema.h"
+
+namespace opaline {
+namespace {
+
+constexpr const char* kGiven = "MEDIUM";  // what messages call the argument, as --help does
+
+bool is_object(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string::npos && text[first] == '{';
+}
+
+Medium preset_medium(const std::string& name) {
+  const std::span<const std::string_view> names = key_info("medium", "preset").choices;
+  if (std::ranges::find(names, name) != names.end())
+    return parse_medium("{\"preset\": \"" + name + "\"}", kGiven);
+  const std::string near = did_you_mean(name, names);
+  throw Error(ErrorKind::bad_input, {}, 0, 0, "there is no medium '" + printable(name) + "'" + near,
+              near.empty()
+                  ? "one of " + join(names) + R"(, or an object such as {"sigma_a": 0.01, "sigma_s": 2})"
+                  : "");
+}
+
+/// The mean cosine of a medium's own text; a scene's medium has it worked into its coefficients.
+double anisotropy_of(const std::string& text) {
+  if (!is_object(text)) return 0;
+  const Document document{kGiven, text, {}, {}, 1, line_starts_of(text)};
+  const Node root = parse_tree(document, text);
+  const Node* g = find_member(root, "g");
+  return g == nullptr ? 0 : g->number;
+}
+
+ProfileRequest request_of(const ProfileArguments& arguments) {
+  const Medium medium =
+      is_object(arguments.medium) ? parse_medium(arguments.medium, kGiven) : preset_medium(arguments.medium);
+  const auto* coefficients = std::get_if<PhysicalMedium>(&medium.coefficients);
+  if (coefficients == nullptr)
+    throw Error(ErrorKind::bad_input, {}, 0, 0,
+                "each model makes another medium of subsurface_color, so that there is none to walk through",
+                "sigma_a and sigma_s_prime, or sigma_a and sigma_s");
+  ProfileRequest request;
+  request.name = is_object(arguments.medium) ? "the medium" : arguments.medium;
+  request.coefficients = *coefficients;
+  request.eta = arguments.eta.value_or(medium.eta);
+  const Range& range = key_info("medium", "eta").range;
+  check_value(request.eta >= range.low && request.eta <= range.high, "--eta", "a number from .1 to 10",
+              request.eta);
+  request.g = arguments.g.value_or(anisotropy_of(arguments.medium));
+  check_value(std::abs(request.g) < 1, "--g", "a number between -1 and 1", request.g);
+  if (arguments.thickness) request.thickness = *arguments.thickness;
+  check_value(request.thickness > 0, "--thickness", "a length above 0", request.thickness);
+  if (arguments.walks) request.walks = std::size_t(*arguments.walks);
+  request.seed = arguments.seed;
+  return request;
+}
+
+/// A folder that is there and takes files: what cannot be written is said before the work.
+void prepare_folder(const std::string& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) throw run_failed(folder, "cannot make the folder: " + failure.message());
+  AtomicFile(folder + "/index.html");
+}
+
+/// The page last: what it links to is there then.
+void write_report(const std::string& folder, const ProfileReport& report) {
+  write_file(folder + "/totals.csv", to_csv(totals_table(report)));
+  write_file(folder + "/profile.csv", to_csv(rings_table(report)));
+  write_file(folder + "/angles.csv", to_csv(angles_table(report)));
+  for (const ProfiledChannel& channel : report.channels)
+    if (channel.medium.sigma_s > 0)
+      write_file(folder + "/profile-" + channel.name + ".svg", profile_svg(report, channel));
+  write_file(folder + "/index.html", to_page(report));
+}
+
+void print_row(const std::string& label, const std::vector<std::string>& cells) {
+  std::string line = fmt::format("{:<22}", label);
+  for (const std::string& cell : cells) line += fmt::format("{:<30}", cell);
+  write_line(stdout, line.substr(0, line.find_last_not_of(' ') + 1));
+}
+
+template <class Cell>
+void print_channels(const ProfileReport& report, const std::string& label, const Cell& cell) {
+  std::vector<std::string> cells;
+  for (const ProfiledChannel& channel : report.channels) cells.push_back(cell(channel));
+  print_row(label, cells);
+}
+
+void print_face(const ProfileReport& report, const char* title, WalkedFace SlabWalks::*face, double height) {
+  print_channels(report, title, [](const ProfiledChannel& channel) { return channel.name; });
+  for (const bool is_diffuse : {true, false})
+    print_channels(
+        report, is_diffuse ? "walks, diffuse" : "walks, normal", [&](const ProfiledChannel& channel) {
+          return walked_text(((is_diffuse ? channel.diffuse : channel.normal).*face).total, " +- ");
+        });
+  for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind)
+    print_channels(report, std::string(kProfileNames[kind]), [&](const ProfiledChannel& channel) {
+      const ModelFace model{&channel.models[kind], height};
+      const WalkedFace& walked = channel.diffuse.*face;
+      std::string text = fmt::format("{:.4f}", model.total());
+      if (walked.total.value > 0)
+        text += fmt::format(" {:+.1f} %, shape {:.1f} %", 100 * (model.total() / walked.total.value - 1),
+                            100 * shape_difference(model, walked));
+      return text;
+    });
+}
+
+void print_text(const ProfileReport& report) {
+  const ProfileRequest& request = report.request;
+  print_row("medium", {fmt::format("{}, {}, eta {:.4g}, g {:.4g}", request.name, shape_words(report),
+                                   request.eta, request.g)});
+  print_channels(report, "walks",
+                 [](const ProfiledChannel& c) { return fmt::format("2 x {}", grouped(c.diffuse.walks)); });
+  print_face(report, "comes back", &SlabWalks::back, 0);
+  if (report.is_slab()) print_face(report, "goes through", &SlabWalks::through, request.thickness);
+  const auto is_unfinished = [](const ProfiledChannel& c) { return c.diffuse.unfinished.value > 0; };
+  if (std::ranges::any_of(report.channels, is_unfinished))
+    print_channels(report, "unfinished, diffuse",
+                   [](const ProfiledChannel& c) { return walked_text(c.diffuse.unfinished, " +- "); });
+}
+
+Json walked_json(const WalkedValue& value) {
+  return {{"share", value.value}, {"error", value.error}};
+}
+
+Json report_json(const ProfileReport& report) {
+  Json channels = Json::object();
+  for (const ProfiledChannel& channel : report.channels) {
+    Json& json = channels[channel.name];
+    for (const bool is_far : {false, true}) {
+      if (is_far && !report.is_slab()) continue;
+      const auto face = is_far ? &SlabWalks::through : &SlabWalks::back;
+      Json& totals = json[is_far ? "through" : "back"];
+      totals["walks_diffuse"] = walked_json((channel.diffuse.*face).total);
+      totals["walks_normal"] = walked_json((channel.normal.*face).total);
+      for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind) {
+        const ModelFace model{&channel.models[kind], is_far ? report.request.thickness : 0};
+        totals[std::string(kProfileNames[kind])] = {
+            {"share", model.total()}, {"shape_difference", shape_difference(model, channel.diffuse.*face)}};
+      }
+    }
+    json["unfinished"] = walked_json(channel.diffuse.unfinished);
+    json["walks"] = channel.diffuse.walks;
+  }
+  Json json{{"medium", report.request.name}, {"eta", report.request.eta}, {"g", report.request.g}};
+  if (report.is_slab()) json["thickness"] = report.request.thickness;
+  json["channels"] = std::move(channels);
+  return json;
+}
+
+}  // namespace
+
+void profile_command(const ProfileArguments& arguments) {
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not cost the report
+  const ProfileRequest request = request_of(arguments);
+  if (!arguments.report.empty()) prepare_folder(arguments.report);
+  std::optional<tbb::global_control> threads;
+  if (arguments.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
+  Monitor monitor;
+  const InterruptHandler interrupt(monitor);
+  const Stopwatch watch;
+  ProfileReport report = [&] {
+    Log log = arguments.log;
+    log.quiet = log.format == LogFormat::json;  // one object and nothing else
+    const Progress progress(log, monitor, "walks");
+    return measure_profiles(request, monitor);
+  }();
+  advance(&monitor, 0);
+  if (!arguments.report.empty()) {
+    report.notes = machine_notes();
+    report.notes.emplace_back("command", "opaline" + arguments.command_line);
+    report.notes.emplace_back(
+        "threads",
+        std::to_string(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+    for (const ProfiledChannel& channel : report.channels)
+      report.notes.emplace_back(
+          "walks " + channel.name,
+          fmt::format("{} in diffuse light and as many along the normal", channel.diffuse.walks));
+    report.notes.emplace_back("seed", std::to_string(request.seed));
+    report.notes.emplace_back("cost", fmt::format("{:.1f} s of CPU", watch.cost("walks").cpu_seconds));
+    for (auto& [key, value] : report.notes) std::ranges::replace(value, '\n', ' ');
+    write_report(arguments.report, report);
+  }
+  if (arguments.log.format == LogFormat::json)
+    print_event(arguments.log, "profile", report_json(report));
+  else
+    print_text(report);
+  if (!arguments.report.empty() && arguments.log.format == LogFormat::text)
+    print_row("wrote", {arguments.report + "/index.html"});
+  if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
+}
+
+}  // namespace opaline

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/diffusion/better_dipole.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "opaline/diffusion/fresnel.h"
+
+namespace opaline {
+namespace {
+
+// (1 - e^-x) / x, 1 at 0.
+double mean_decay(double x) {
+  return x > 0 ? -std::expm1(-x) / x : 1;
+}
+
+// The integral of r' R_d 4 pi / alpha'^2 from r to infinity: of z (1 + s d) e^-sd / d^3 it is z e^-sd / d, of
+// e^-sd / d it is e^-sd / s, whose difference between the sources has no 0/0. r in mean free paths.
+double beyond_radius(const BetterDipole& p, double r) {
+  const double real = std::hypot(r, 1.0), high = std::hypot(r, p.height);
+  const double apart = (p.height - 1) * (p.height + 1) / (real + high);  // high - real
+  const double decayed = std::exp(-p.decay * real), ratio = std::exp(-p.decay * apart);
+  return decayed * (p.from_flux * (1 / real + p.height / high * ratio) +
+                    p.from_fluence * apart * mean_decay(p.decay * apart));
+}
+
+// R_d 4 pi / alpha'^2, r in mean free paths.
+double density(const BetterDipole& p, double r) {
+  const double real = std::hypot(r, 1.0), high = std::hypot(r, p.height);
+  const auto flux = [&](double z, double d) { return z * (1 + p.decay * d) / (d * d * d); };
+  const double apart = (p.height - 1) * (p.height + 1) / (real + high);
+  const double decayed = std::exp(-p.decay * real), ratio = std::exp(-p.decay * apart);
+  // e^-sa/a - e^-sb/b = e^-sa ((b - a)/a + 1 - e^-s(b-a)) / b
+  const double fluence = (apart / real - std::expm1(-p.decay * apart)) / high;
+  return decayed * (p.from_flux * (flux(1, real) + flux(p.height, high) * ratio) + p.from_fluence * fluence);
+}
+
+// The r > 0 at which a falling function of it, 1 at 0, is `share`; in mean free paths.
+template <class Falling>
+double find_radius(const Falling& falling, double share) {
+  if (share >= 1) return 0;
+  double low = -40, high = 1;  // log2
+  while (falling(std::exp2(high)) > share && high < 400) high *= 2;
+  for (int i = 0; i < 64; ++i) {
+    const double middle = 0.5 * (low + high);
+    (falling(std::exp2(middle)) > share ? low : high) = middle;
+  }
+  return std::exp2(0.5 * (low + high));
+}
+
+}  // namespace
+
+BetterDipole make_profile(const ReducedMedium& medium, std::type_identity<BetterDipole>) {
+  const double reduced_albedo = 1 - medium.absorbed;
+  const double D = (1 + medium.absorbed) / 3;  // Grosjean's (2 sigma_a + sigma_s') / (3 sigma_t'^2)
+  const double C1 = average_reflectance_inside(medium.eta) / 2, C2 = reflectance_moment_inside(medium.eta);
+  const double A = (1 + 3 * C2) / (1 - 2 * C1);
+  return {.mean_free_path = medium.mean_free_path,
+          .strength = reduced_albedo * reduced_albedo,
+          .height = 1 + 4 * A * D,
+          .decay = std::sqrt(medium.absorbed / D),
+          .from_fluence = (1 - 2 * C1) / 4 / D,
+          .from_flux = (1 - 3 * C2) / 2};
+}
+
+double diffuse_reflectance_profile(const BetterDipole& p, double r) {
+  const double l = p.mean_free_path;
+  if (l == 0) return 0;
+  return p.strength / (4 * std::numbers::pi * l * l) * density(p, r / l);
+}
+
+double diffuse_reflectance_within(const BetterDipole& p, double r) {
+  if (r <= 0) return 0;
+  if (p.mean_free_path == 0) return total_diffuse_reflectance(p);
+  return p.strength / 2 * (beyond_radius(p, 0) - beyond_radius(p, r / p.mean_free_path));
+}
+
+double total_diffuse_reflectance(const BetterDipole& p) {
+  return p.strength / 2 * beyond_radius(p, 0);
+}
+
+double sample_diffusion_distance(const BetterDipole& p, double beyond) {
+  const double all = beyond_radius(p, 0);
+  return p.mean_free_path * find_radius([&](double r) { return beyond_radius(p, r) / all; }, beyond);
+}
+
+// By parts: what lies beyond R is the profile beyond R and pi R^2 R_d(R).
+double sample_chord_sphere_radius(const BetterDipole& p, double u, double) {
+  const double all = beyond_radius(p, 0);
+  const auto beyond = [&](double r) { return (beyond_radius(p, r) + r * r / 2 * density(p, r)) / all; };
+  return p.mean_free_path * find_radius(beyond, 1 - u);
+}
+
+double slowest_decay(const BetterDipole& p) {
+  return p.mean_free_path > 0 ? p.decay / p.mean_free_path : 0;
+}
+
+}  // namespace opaline

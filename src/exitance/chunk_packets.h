@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A chunk of neighbouring queries as packets of lanes.
+#pragma once
+
+#include "exitance/query_order.h"
+#include "exitance/simd/lane_kernels.h"
+
+namespace opaline {
+
+/// A box and the sphere around it.
+struct Sphere {
+  Vec3f center{}, half{};  ///< of the box
+  float radius = 0;
+};
+
+Sphere around(const Vec3f& low, const Vec3f& high);
+
+struct ChunkPackets {
+  std::size_t count = 0;
+  std::array<Packet, PacketCut::kMost> packets;  ///< lanes past a packet's queries repeat the last
+  std::array<Sphere, PacketCut::kMost> spheres;
+  /// One point of each packet, lane by lane.
+  std::array<Packet, PacketCut::kMost / kLanes> middles;
+  Sphere all;
+
+  /// order: of the chunk's queries, as sort_into_packets left it
+  void fill(std::span<const Query> queries, std::span<const std::uint32_t> order, const PacketCut& cut);
+};
+
+/// A coarse exitance of each packet, which errors are measured against: at its middle, or the least of its
+/// points' where they lie so far apart that one does not speak for the others. The near field is guessed from
+/// the far one, as if the irradiance were even.
+void guess_exitance(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
+                    const ChunkPackets& packets, std::span<RgbF> guesses);
+
+}  // namespace opaline

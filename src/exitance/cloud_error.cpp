@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/exitance/cloud_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/near_samples.h"
+#include "exitance/point_sums.h"
+#include "opaline/exitance/refined_stake.h"
+#include "opaline/sampling/sample_surface.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::size_t kRuns = 16, kRun = 4;  // of trial sums, at samples that follow each other in the tree
+constexpr std::size_t kRoughnessTrials = 128;
+constexpr double kWider = 1.41421356;
+constexpr double kFineTolerance = 1.5e-3;
+// Samples so near each other, in spacings, are neighbours.
+constexpr float kNeighbours = 1.6f;
+// Normals of neighbours with a cosine below this belong to a crease, or to samples too few for the curvature.
+constexpr float kCrease = 0.7f;
+// Where creases are all over, errors are so much larger than neighbours show; in part where fewer than
+// kManyCreases of the samples are beside one. On smooth surfaces they are smaller, down to kLeast, but for
+// shadows, which few of the trials meet: kRough times the roughness at least, up to 1.
+constexpr double kAtCreases = 1.6, kManyCreases = 0.02, kLeast = 0.03, kMost = 10, kRough = 4;
+// Of the tolerance: the nodes' mean error, at least and at most.
+constexpr double kLeastHierarchy = 0.005, kMostHierarchy = 0.15;
+// Of what solid angles suggest: the mean error of the nodes of `classic`, at least and at most.
+constexpr double kLeastFlattened = 0.02, kMostFlattened = 4;
+// Darker than this part of the brightest, errors are absolute.
+constexpr float kDark = 1e-3f;
+
+struct Roughness {
+  RgbF residual{}, square{};  // sums of squares
+  double creased = 0, trials = 0;
+};
+
+/// Adds what a sample is off its neighbours' mean, weighted by their nearness.
+void add_roughness(const Octree& tree, std::uint32_t sample, float spacing, Roughness& sums) {
+  const TreeSample& own = tree.samples[sample];
+  const Vec3f position{own.x, own.y, own.z};
+  const float reach = kNeighbours * spacing;
+  RgbF mean{};
+  float weights = 0;
+  bool creased = false;
+  for_each_near(tree, position, reach, [&](std::uint32_t s) {
+    const TreeSample& other = tree.samples[s];
+    const Vec3f apart = Vec3f{other.x, other.y, other.z} - position;
+    const float r2 = dot(apart, apart), cosine = dot(tree.normals[s], tree.normals[sample]);
+    if (s == sample || r2 >= reach * reach || cosine <= -kCrease) return;
+    creased = creased || cosine < kCrease;
+    if (cosine <= 0) return;
+    const float weight = 1 / (r2 + 0.1f * spacing * spacing);
+    mean += irradiance_of(other) * weight;
+    weights += weight;
+  });
+  sums.trials += 1;
+  sums.creased += creased ? 1 : 0;
+  if (!(weights > 0)) return;
+  const RgbF e = irradiance_of(own), off = e - mean / weights;
+  sums.residual += off * off * own.area;
+  sums.square += e * e * own.area;
+}
+
+struct Trials {
+  std::vector<Query> queries;
+  std::vector<RgbF> irradiance;
+};
+
+Trials trials_at_samples(const Octree& tree) {
+  Trials trials;
+  const std::size_t n = tree.samples.size(), run = std::min(kRun, n);
+  for (std::size_t r = 0; r < kRuns; ++r)
+    for (std::size_t k = 0; k < run; ++k) {
+      const std::size_t i = (2 * r + 1) * (n - run) / (2 * kRuns) + k;
+      const TreeSample& s = tree.samples[i];
+      trials.queries.push_back({{s.x, s.y, s.z}, tree.normals[i]});
+      trials.irradiance.push_back(irradiance_of(s) * tree.flux_unit);
+    }
+  return trials;
+}
+
+bool is_refined(const SplitKernel& kernel, const Exitance& e, const RgbF& own) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float share = kernel.own_irradiance[c];
+    if (e.near[c] * share * (1 - share) * std::abs(own[c] - e.irradiance[c]) > kRefinedStake * e.exitance[c])
+      return true;
+  }
+  return false;
+}
+
+/// Means over the trials, relative, of a channel.
+struct Differences {
+  double wider = 0, finer = 0, expected = 0;
+};
+
+/// By the walk of `classic`; their errors are those of its nodes alone.
+std::vector<Exitance> classic_sums(const CloudErrorInput& input, const Trials& trials) {
+  return evaluate({.octree = input.octree,
+                   .kernel = input.kernel,
+                   .queries = trials.queries,
+                   .irradiance = trials.irradiance,
+                   .evaluator = EvaluatorKind::classic,
+                   .max_solid_angle = input.max_solid_angle,
+                   .cloud = {.scale = {}, .other_sheets = 0}});
+}
+
+/// How far `classic` sums are off finer ones, over what they expect of their nodes alone; 1 without nodes.
+float flattened_part(const std::vector<Exitance>& fine, const std::vector<Exitance>& classic, std::size_t c) {
+  double off = 0, expected = 0;
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    const float m = fine[i].exitance[c];
+    if (!(m > 0)) continue;
+    off += double(std::abs(classic[i].exitance[c] - m) / m);
+    expected += double(classic[i].error[c] / m) / double(kMeanDeviation);
+  }
+  return expected > 0 ? float(std::clamp(off / expected, kLeastFlattened, kMostFlattened)) : 1;
+}
+
+Differences differences(const std::vector<Exitance>& fine, const std::vector<Exitance>& coarse,
+                        const std::vector<Exitance>& wide, const std::vector<bool>& refined, std::size_t c) {
+  float brightest = 0;
+  for (const Exitance& e : fine) brightest = std::max(brightest, e.exitance[c]);
+  Differences sums;
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    const float m = fine[i].exitance[c], scale = std::max(m, kDark * brightest);
+    if (!(scale > 0)) continue;
+    sums.finer += double(std::abs(coarse[i].exitance[c] - m) / scale);
+    sums.expected += double(fine[i].error[c] / scale);
+    if (!refined[i]) sums.wider += double(std::abs(wide[i].exitance[c] - m) / scale);
+  }
+  return sums;
+}
+
+}  // namespace
+
+CloudError tell_cloud_error(const CloudErrorInput& input) {
+  CloudError result;
+  const Octree& tree = input.octree;
+  const std::size_t n = tree.samples.size();
+  if (tree.nodes.empty()) return result;
+  const double spacing = double(input.kernel.radius) / 2.5;
+  Roughness rough;
+  const std::size_t tried = std::min(n, kRoughnessTrials);
+  for (std::size_t k = 0; k < tried; ++k)
+    add_roughness(tree, std::uint32_t((2 * k + 1) * n / (2 * tried)), float(spacing), rough);
+  const Trials trials = trials_at_samples(tree);
+  const double fine_tolerance = std::min(input.tolerance, kFineTolerance);
+  const auto sums = [&](const SplitKernel& kernel, double tolerance) {
+    const CloudError none{.hierarchy = {}, .other_sheets = 0};
+    return evaluate({.octree = tree,
+                     .kernel = kernel,
+                     .queries = trials.queries,
+                     .irradiance = trials.irradiance,
+                     .tolerance = tolerance,
+                     .instruction_set = input.instruction_set,
+                     .cloud = none});
+  };
+  const std::vector<Exitance> fine = sums(input.kernel, fine_tolerance);
+  const std::vector<Exitance> coarse =
+      fine_tolerance < input.tolerance ? sums(input.kernel, input.tolerance) : fine;
+  const std::vector<Exitance> wide = sums(input.kernel_of(kWider * spacing), fine_tolerance);
+  const std::vector<Exitance> classic =
+      input.evaluator == EvaluatorKind::classic ? classic_sums(input, trials) : std::vector<Exitance>{};
+  std::vector<bool> refined;
+  for (std::size_t i = 0; i < fine.size(); ++i)
+    refined.push_back(is_refined(input.kernel, fine[i], trials.irradiance[i]));
+  const double creases = kAtCreases * std::min(1.0, rough.creased / rough.trials / kManyCreases);
+  for (std::size_t c = 0; c < 3; ++c) {
+    double sum = 0, squares = 0;
+    for (const TreeSample& s : tree.samples) {
+      sum += double(s.flux[c]);
+      squares += double(s.flux[c]) * double(s.flux[c]);
+    }
+    if (!(sum > 0)) continue;
+    result.far_squares[c] = float(squares / (sum * sum));
+    if (rough.square[c] > 0) result.roughness[c] = std::sqrt(rough.residual[c] / rough.square[c]);
+    const Differences d = differences(fine, coarse, wide, refined, c);
+    const double least = std::max({kLeast, creases, std::min(1.0, kRough * double(result.roughness[c]))});
+    if (input.kernel.split && d.expected > 0)
+      result.scale[c] = float(std::clamp(d.wider / d.expected, least, kMost));
+    if (!classic.empty()) result.flattened[c] = flattened_part(fine, classic, c);
+    if (fine_tolerance < input.tolerance)
+      result.hierarchy[c] =
+          float(std::clamp(d.finer / double(fine.size()) / input.tolerance, kLeastHierarchy, kMostHierarchy));
+  }
+  return result;
+}
+
+}  // namespace opaline

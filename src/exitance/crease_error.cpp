@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/exitance/crease_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "exitance/near_samples.h"
+#include "opaline/core/random.h"
+#include "opaline/exitance/refined_stake.h"
+
+namespace opaline {
+namespace {
+
+// Points beside creases at which the error is worked out.
+constexpr std::size_t kTrials = 32;
+// Faces whose normals have a cosine below this, and above its negative, meet in a crease; normals with one
+// above kSameFace belong to the same face.
+constexpr float kCrease = 0.7f, kSameFace = 0.9f;
+// Mean cosine between a normal and those of its own face, from which on the face is flat.
+constexpr double kFlat = 0.97;
+// A face of which this part or more lies on either side of the plane of another crosses it.
+constexpr double kCrossing = 0.2;
+// A wall that has this part of an endless one is endless: the rest is the noise of its few samples, and what
+// is left of an even light is a small difference.
+constexpr double kWhole = 0.8;
+// Darker than this part of the brightest trial, errors are absolute. A relative error above kMost counts as
+// kMost.
+constexpr float kDark = 1e-3f;
+constexpr double kMost = 2;
+
+Vec3f position_of(const TreeSample& s) {
+  return {s.x, s.y, s.z};
+}
+
+bool is_other_face(const Vec3f& a, const Vec3f& b) {
+  return std::abs(dot(a, b)) < kCrease;
+}
+
+std::vector<std::uint32_t> samples_within(const Octree& tree, std::uint32_t sample, float distance) {
+  std::vector<std::uint32_t> near;
+  const Vec3f p = position_of(tree.samples[sample]);
+  for_each_near(tree, p, distance, [&](std::uint32_t s) {
+    const Vec3f apart = position_of(tree.samples[s]) - p;
+    if (dot(apart, apart) < distance * distance) near.push_back(s);
+  });
+  return near;
+}
+
+/// The cosine at which the eye sees a sample, or 0 where it sees the other side: as many pixels show it.
+double facing(const Octree& tree, std::uint32_t sample, const Vec3f& eye) {
+  const Vec3f towards = eye - position_of(tree.samples[sample]);
+  return double(std::max(0.0f, dot(tree.normals[sample], towards) / length(towards)));
+}
+
+/// Samples of the leaves through which a crease runs.
+std::vector<std::uint32_t> samples_at_creases(const Octree& tree) {
+  std::vector<std::uint32_t> found;
+  for (const OctreeNode& node : tree.nodes) {
+    if (!node.leaf) continue;
+    bool creased = false;
+    for (std::uint32_t s = node.first + 1; s < node.first + node.count; ++s)
+      creased = creased || is_other_face(tree.normals[node.first], tree.normals[s]);
+    for (std::uint32_t s = node.first; creased && s < node.first + node.count; ++s) found.push_back(s);
+  }
+  return found;
+}
+
+/// A sample within h of a crease, and how many of all samples it stands for.
+struct Trial {
+  std::uint32_t sample;
+  double weight;
+};
+
+// A neighbour of a sample at a crease, drawn at random, is drawn as often as there are such samples around
+// it.
+std::vector<Trial> draw_trials(const Octree& tree, float radius) {
+  const std::vector<std::uint32_t> creased = samples_at_creases(tree);
+  std::vector<bool> is_creased(tree.samples.size());
+  for (const std::uint32_t s : creased) is_creased[s] = true;
+  const std::size_t count = std::min(kTrials, creased.size());
+  std::vector<Trial> trials;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t seed = creased[(2 * k + 1) * creased.size() / (2 * count)];
+    const std::vector<std::uint32_t> near = samples_within(tree, seed, radius);
+    const std::uint32_t drawn = near[hash_bits(4000, k) % near.size()];
+    const std::vector<std::uint32_t> around = samples_within(tree, drawn, radius);
+    const auto seeds = std::ranges::count_if(around, [&](std::uint32_t s) { return is_creased[s]; });
+    trials.push_back({drawn, double(near.size()) / double(std::max<std::ptrdiff_t>(1, seeds)) *
+                                 double(creased.size()) / double(count)});
+  }
+  return trials;
+}
+
+/// What of another face lies within h of a point.
+struct Face {
+  Vec3f normal;
+  bool above = false;   // the point's own plane
+  double distance = 0;  // of the point below its plane: weighted sum, then mean
+  double weight = 0;    // area times (1 - r^2/h^2)^2
+  std::array<double, 3> flux{};
+  double area = 0;
+};
+
+// Where two bodies of a group cross, each has a part inside the other, which nobody sees: none of a point on
+// such a part, and for a point outside those above its plane.
+std::vector<Face> visible_faces(std::vector<Face> faces) {
+  std::vector<Face> visible;
+  for (const Face& f : faces) {
+    const bool crosses = std::ranges::any_of(faces, [&](const Face& g) {
+      return g.above != f.above && g.weight > kCrossing * f.weight && f.weight > kCrossing * g.weight &&
+             dot(f.normal, g.normal) > kSameFace;
+    });
+    if (crosses && f.distance > 0) return {};
+    if (!crosses || f.above) visible.push_back(f);
+  }
+  for (Face& f : visible) f.distance = std::abs(f.distance);
+  return visible;
+}
+
+// None where the point's own face is not flat: a curved surface is no crease.
+std::vector<Face> other_faces(const Octree& tree, std::uint32_t sample, float radius) {
+  std::vector<Face> faces;
+  const Vec3f p = position_of(tree.samples[sample]);
+  double cosines = 0, count = 0;
+  for (const std::uint32_t s : samples_within(tree, sample, radius)) {
+    const float cosine = dot(tree.normals[s], tree.normals[sample]);
+    if (cosine >= kCrease) cosines += double(cosine), count += 1;
+    if (std::abs(cosine) >= kCrease) continue;
+    const TreeSample& other = tree.samples[s];
+    const Vec3f apart = position_of(other) - p;
+    const bool above = dot(apart, tree.normals[sample]) > 0;
+    auto face = std::ranges::find_if(
+        faces, [&](const Face& f) { return f.above == above && dot(f.normal, tree.normals[s]) > kSameFace; });
+    if (face == faces.end()) {
+      faces.push_back({tree.normals[s], above});
+      face = faces.end() - 1;
+    }
+    const double rest = 1 - double(dot(apart, apart) / (radius * radius)),
+                 w = double(other.area) * rest * rest;
+    face->weight += w;
+    face->distance += w * double(dot(apart, tree.normals[s]));
+    face->area += double(other.area);
+    for (std::size_t c = 0; c < 3; ++c) face->flux[c] += double(other.flux[c]);
+  }
+  if (cosines < kFlat * count) return {};
+  for (Face& f : faces) f.distance /= f.weight;
+  return visible_faces(std::move(faces));
+}
+
+/// Of a half plane at right angles, as long as the near field: how much of it is there.
+double part_there(const Face& face, double radius) {
+  const double t = std::min(1.0, face.distance / radius), rest = 1 - t * t;
+  const double whole = std::numbers::pi * radius * radius / 6 * rest * rest * rest;
+  if (!(whole > 0)) return 0;
+  return face.weight > kWhole * whole ? 1 : face.weight / whole;
+}
+
+/// What a near field is made of: the share of a plane's on the point's own face, and what enters through
+/// others, in flux units, times their shares.
+struct NearLight {
+  std::array<double, 3> plane{1, 1, 1}, walls{};
+};
+
+NearLight near_light(const std::vector<Face>& faces, const NearRings& rings, double radius) {
+  NearLight light;
+  for (const Face& face : faces) {
+    const std::array<double, 3> beyond = rings.beyond_border(face.distance),
+                                wall = rings.on_wall(face.distance);
+    const double there = part_there(face, radius);
+    for (std::size_t c = 0; c < 3; ++c) {
+      light.plane[c] = std::max(0.0, light.plane[c] - beyond[c]);
+      light.walls[c] += there * wall[c] * face.flux[c] / face.area;
+    }
+  }
+  return light;
+}
+
+struct TrialError {
+  double error = 0, truth = 0;  // of the exitance
+};
+
+// e: as evaluated with the point's own irradiance.
+TrialError error_of(const SplitKernel& kernel, const NearLight& light, const Exitance& e,
+                    const RgbF& irradiance, double flux_unit, std::size_t c) {
+  const double own = double(irradiance[c]), share = double(kernel.own_irradiance[c]),
+               taken = double(e.near[c]);
+  double used = share * own + (1 - share) * double(e.irradiance[c]), exitance = double(e.exitance[c]);
+  if (taken * share * std::abs(own - used) > double(kRefinedStake) * exitance) {
+    exitance += taken * (own - used);
+    used = own;
+  }
+  const double error =
+      taken * used - double(kernel.near[c]) * (light.plane[c] * own + light.walls[c] * flux_unit);
+  return {error, exitance - error};
+}
+
+}  // namespace
+
+NearRings::NearRings(const DiffuseProfile& profile, double radius) {
+  std::array<double, 3> sums{};
+  for (std::size_t i = 0; i < kRings; ++i) {
+    const double low = double(i) / kRings, high = double(i + 1) / kRings;
+    const double t = (low * low + high * high) / 2, width = high * high - low * low;
+    distances_[i] = t * radius;
+    for (std::size_t c = 0; c < 3; ++c) {
+      masses_[i][c] = near_ring(profile.channels[c], radius, t) * width;
+      sums[c] += masses_[i][c];
+    }
+  }
+  for (auto& ring : masses_)
+    for (std::size_t c = 0; c < 3; ++c) ring[c] = sums[c] > 0 ? ring[c] / sums[c] : 0;
+}
+
+std::array<double, 3> NearRings::beyond_border(double distance) const {
+  std::array<double, 3> sum{};
+  for (std::size_t i = 0; i < kRings; ++i) {
+    if (distances_[i] <= distance) continue;
+    const double part = std::acos(distance / distances_[i]) * std::numbers::inv_pi;
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += masses_[i][c] * part;
+  }
+  return sum;
+}
+
+std::array<double, 3> NearRings::on_wall(double distance) const {
+  std::array<double, 3> sum{};
+  for (std::size_t i = 0; i < kRings; ++i)
+    for (std::size_t c = 0; c < 3 && distances_[i] > distance; ++c) sum[c] += masses_[i][c] / 2;
+  return sum;
+}
+
+std::array<float, 3> crease_error(const CreaseErrorInput& input) {
+  const Octree& tree = input.octree;
+  std::array<float, 3> result{};
+  if (!input.kernel.split || tree.nodes.empty()) return result;
+  const std::vector<Trial> trials = draw_trials(tree, input.kernel.radius);
+  std::vector<Query> queries;
+  std::vector<RgbF> irradiance;
+  for (const Trial& trial : trials) {
+    queries.push_back({position_of(tree.samples[trial.sample]), tree.normals[trial.sample]});
+    irradiance.push_back(irradiance_of(tree.samples[trial.sample]) * tree.flux_unit);
+  }
+  const std::vector<Exitance> sums = evaluate({.octree = tree,
+                                               .kernel = input.kernel,
+                                               .queries = queries,
+                                               .irradiance = irradiance,
+                                               .instruction_set = input.instruction_set});
+  const NearRings rings(input.profile, double(input.kernel.radius));
+  RgbF brightest{};
+  for (const Exitance& e : sums) brightest = component_max(brightest, e.exitance);
+  std::array<double, 3> total{};
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const std::vector<Face> faces = other_faces(tree, trials[i].sample, input.kernel.radius);
+    if (faces.empty()) continue;
+    const NearLight light = near_light(faces, rings, double(input.kernel.radius));
+    for (std::size_t c = 0; c < 3; ++c) {
+      const TrialError e = error_of(input.kernel, light, sums[i], irradiance[i], double(tree.flux_unit), c);
+      const double truth = std::max(e.truth, double(kDark * brightest[c]));
+      if (truth > 0)
+        total[c] += trials[i].weight * facing(tree, trials[i].sample, input.eye) *
+                    std::min(kMost, std::abs(e.error) / truth);
+    }
+  }
+  double whole = 0;
+  for (std::uint32_t s = 0; s < tree.samples.size(); ++s) whole += facing(tree, s, input.eye);
+  for (std::size_t c = 0; c < 3 && whole > 0; ++c) result[c] = float(total[c] / whole);
+  return result;
+}
+
+}  // namespace opaline

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a surface cache has its nodes.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <unordered_map>
+
+#include "exitance/cut_surface.h"
+#include "opaline/core/random.h"
+#include "opaline/exitance/surface_patch.h"
+
+namespace opaline {
+namespace {
+
+// Shares of the tolerance: of the evaluation at the nodes, and of what interpolation may be off by its own
+// estimate.
+constexpr double kEvaluationShare = 0.6, kInterpolationShare = 0.4;
+// Of what slopes add to the middle of an edge, and of what a lattice's predecessor missed at its new nodes:
+// the part that interpolation still misses (measured, test_surface_cache).
+constexpr float kRiseError = 0.6f, kRest = 0.4f;
+// In near-field radii, over which the far kernel varies: patches longer than kReach could hide what lies
+// between their vertices; nodes closer than kFinest see the noise of the samples; a
+// shadow's edge, as the near field blurs it, shows at vertices closer than kBlur.
+constexpr double kReach = 2, kFinest = 0.25, kBlur = 0.5;
+
+// Two vertices between which the light that depends on the irradiance at the place itself changes by more
+// than twice this part of all light may have a shadow's edge between them.
+constexpr float kJump = 0.02f;
+
+// A node's place: k of n segments along the edge of two vertices, for all patches there, or inside a patch.
+struct PlaceKey {
+  std::uint64_t where = 0;
+  std::uint32_t i = 0, j = 0, n = 0;
+  friend bool operator==(const PlaceKey&, const PlaceKey&) = default;
+};
+struct PlaceHash {
+  std::size_t operator()(const PlaceKey& k) const {
+    return hash_bits(hash_bits(k.where, k.n), std::uint64_t(k.i) << 32 | k.j);
+  }
+};
+
+constexpr std::uint32_t kOnEdge = ~0u;
+
+PlaceKey edge_key(std::uint32_t a, std::uint32_t b, std::uint32_t k, std::uint32_t n) {
+  if (k == 0) return {a, 0, kOnEdge, 0};
+  if (k == n) return {b, 0, kOnEdge, 0};
+  if (a > b) std::swap(a, b), k = n - k;
+  const int common = std::countr_zero(k | n);
+  return {std::uint64_t(a) << 32 | b, k >> common, kOnEdge, n >> common};
+}
+
+PlaceKey inner_key(std::uint32_t patch, std::uint32_t i, std::uint32_t j, std::uint32_t n) {
+  const int common = std::countr_zero(i | j | n);
+  return {patch, i >> common, j >> common, n >> common};
+}
+
+// A patch whose vertices alone do not tell.
+struct Refined {
+  std::uint32_t patch, segments;
+  bool edge;  // a shadow's may run through it
+  std::vector<std::uint32_t> nodes;
+};
+
+class Builder {
+ public:
+  explicit Builder(const SurfaceCacheInput& input) : input_(input) {
+    if (!input.add_own_light) cache_.own_irradiance = input.kernel.own_irradiance;
+    normals_ = cut_surface(input.world, input.meshes, kReach * double(input.kernel.radius), cache_);
+  }
+
+  std::optional<SurfaceCache> build() {
+    for (std::size_t v = 0; v < normals_.size(); ++v)
+      queries_.push_back({cache_.vertices[v].position, normals_[v]});
+    const std::vector<Exitance> at_vertices = evaluated(vertex_doubts_);
+    for (std::size_t v = 0; v < at_vertices.size(); ++v) cache_.vertices[v].value = at_vertices[v];
+    set_floor();
+    set_slopes();
+    std::vector<Refined> active = ill_told_patches();
+    while (!active.empty()) {
+      for (Refined& r : active) set_nodes(r);
+      if (cache_.places() > input_.most_places) return {};
+      std::vector<PlaceDoubt> doubts;
+      const std::vector<Exitance> at_nodes = evaluated(doubts);
+      node_noise_.resize(cache_.nodes.size());
+      for (std::size_t i = 0; i < at_nodes.size(); ++i) {
+        cache_.nodes[new_nodes_[i]] = at_nodes[i];
+        node_noise_[new_nodes_[i]] = doubts[i].noise;
+      }
+      new_nodes_.clear();
+      std::erase_if(active, [&](Refined& r) { return !wants_more(r); });
+    }
+    return std::move(cache_);
+  }
+
+ private:
+  // At the queries noted since the last time; without irradiance of their own, which leaves that part out
+  // until it is added. doubts: as AddOwnLight's
+  std::vector<Exitance> evaluated(std::vector<PlaceDoubt>& doubts) {
+    const std::vector<RgbF> dark(queries_.size());
+    std::vector<Exitance> result = evaluate({.octree = input_.octree,
+                                             .kernel = input_.kernel,
+                                             .queries = queries_,
+                                             .irradiance = dark,
+                                             .tolerance = kEvaluationShare * input_.tolerance,
+                                             .instruction_set = input_.instruction_set,
+                                             .cloud = input_.cloud,
+                                             .monitor = input_.monitor});
+    doubts.assign(queries_.size(), {});
+    if (input_.add_own_light) {
+      std::vector<SurfacePoint> points;
+      for (const Query& q : queries_) points.push_back({q.position, q.normal, q.normal});
+      input_.add_own_light(points, result, doubts);
+    }
+    queries_.clear();
+    return result;
+  }
+
+  RgbF whole(const Exitance& e) const {
+    return e.exitance + own_part(cache_.own_irradiance, e, e.irradiance);
+  }
+
+  // Below 1e-3 of the p99 errors are absolute.
+  void set_floor() {
+    std::vector<float> values(cache_.vertices.size());
+    if (values.empty()) return;
+    const std::size_t p99 = (values.size() * 99 + 99) / 100 - 1;
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::ranges::transform(cache_.vertices, values.begin(),
+                             [&](const auto& v) { return whole(v.value)[c]; });
+      std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(p99));
+      floor_[c] = 1e-3f * values[p99];
+    }
+  }
+
+  // A vertex's slope is the mean of its patches', weighted by area.
+  void set_slopes() {
+    std::vector<float> areas(cache_.vertices.size());
+    for (const SurfaceCache::Patch& patch : cache_.patches) {
+      const auto& [ia, ib, ic] = patch.vertices;
+      const SurfaceCache::Vertex &a = cache_.vertices[ia], &b = cache_.vertices[ib], &c = cache_.vertices[ic];
+      const Vec3f ab = b.position - a.position, ac = c.position - a.position, normal = cross(ab, ac);
+      const float area = length(normal);
+      if (!(area > 0)) continue;
+      const Vec3f towards_b = cross(ac, normal) / area,
+                  towards_c = cross(normal, ab) / area;  // slopes x area
+      const RgbF rise_b = b.value.exitance - a.value.exitance, rise_c = c.value.exitance - a.value.exitance;
+      for (const std::uint32_t v : patch.vertices) {
+        areas[v] += area;
+        for (std::size_t k = 0; k < 3; ++k)
+          cache_.vertices[v].slope[k] += towards_b * rise_b[k] + towards_c * rise_c[k];
+      }
+    }
+    for (std::size_t v = 0; v < areas.size(); ++v)
+      for (Vec3f& slope : cache_.vertices[v].slope) slope *= areas[v] > 0 ? 1 / areas[v] : 0;
+  }
+
+  bool is_too_much(const RgbF& error, const RgbF& exitance, const RgbF& noise) const {
+    for (std::size_t c = 0; c < 3; ++c)
+      if (std::abs(error[c]) >
+          float(kInterpolationShare * input_.tolerance) * std::max(exitance[c], floor_[c]) + noise[c])
+        return true;
+    return false;
+  }
+
+  std::vector<Refined> ill_told_patches() const {
+    std::vector<Refined> all;
+    for (std::uint32_t p = 0; p < cache_.patches.size(); ++p) {
+      const bool edge =
+          longest_side(p) > float(kBlur) * input_.kernel.radius &&
+          any_edge(p, [&](std::uint32_t a, std::uint32_t b) { return may_hide_shadow_edge(a, b); });
+      if (edge || any_edge(p, [&](std::uint32_t a, std::uint32_t b) { return is_ill_told(a, b); }))
+        all.push_back({p, 2, edge, {}});
+    }
+    return all;
+  }
+
+  template <class Predicate>
+  bool any_edge(std::uint32_t patch, const Predicate& is_true) const {
+    const auto& [a, b, c] = cache_.patches[patch].vertices;
+    return is_true(a, b) || is_true(b, c) || is_true(c, a);
+  }
+
+  bool is_ill_told(std::uint32_t ia, std::uint32_t ib) const {
+    const SurfaceCache::Vertex &a = cache_.vertices[ia], &b = cache_.vertices[ib];
+    const RgbF middle = (whole(a.value) + whole(b.value)) * 0.5f,
+               noise = (vertex_doubts_[ia].noise + vertex_doubts_[ib].noise) * 0.5f;
+    return is_too_much(rise_between(a, b) * kRiseError, middle, noise);
+  }
+
+  // Slopes say nothing of an edge half way: they are the same on both sides.
+  bool may_hide_shadow_edge(std::uint32_t ia, std::uint32_t ib) const {
+    if (vertex_doubts_[ia].beside_edge || vertex_doubts_[ib].beside_edge) return true;
+    if (!input_.add_own_light) return false;
+    const Exitance &a = cache_.vertices[ia].value, &b = cache_.vertices[ib].value;
+    const RgbF own_a = own_part(input_.kernel.own_irradiance, a, a.irradiance),
+               own_b = own_part(input_.kernel.own_irradiance, b, b.irradiance);
+    for (std::size_t c = 0; c < 3; ++c)
+      if (std::abs(own_a[c] - own_b[c]) > kJump * (a.exitance[c] + b.exitance[c])) return true;
+    return false;
+  }
+
+  void set_nodes(Refined& r) {
+    r.nodes.clear();
+    for (std::uint32_t j = 0; j <= r.segments; ++j)
+      for (std::uint32_t i = 0; i + j <= r.segments; ++i) r.nodes.push_back(node(r, i, j));
+  }
+
+  PlaceKey key_of(const Refined& r, std::uint32_t i, std::uint32_t j) const {
+    const auto& [a, b, c] = cache_.patches[r.patch].vertices;
+    if (j == 0) return edge_key(a, b, i, r.segments);
+    if (i == 0) return edge_key(a, c, j, r.segments);
+    if (i + j == r.segments) return edge_key(b, c, j, r.segments);
+    return inner_key(r.patch, i, j, r.segments);
+  }
+
+  std::uint32_t node(const Refined& r, std::uint32_t i, std::uint32_t j) {
+    const PlaceKey key = key_of(r, i, j);
+    const auto [known, is_new] = places_.try_emplace(key, std::uint32_t(cache_.nodes.size()));
+    if (!is_new) return known->second;
+    cache_.nodes.emplace_back();
+    if (key.n == 0) {
+      cache_.nodes.back() = cache_.vertices[key.where].value;
+      node_noise_.resize(cache_.nodes.size());
+      node_noise_.back() = vertex_doubts_[key.where].noise;
+    } else {
+      new_nodes_.push_back(known->second);
+      queries_.push_back(place_of(r, i, j));
+    }
+    return known->second;
+  }
+
+  Query place_of(const Refined& r, std::uint32_t i, std::uint32_t j) const {
+    const auto& [a, b, c] = cache_.patches[r.patch].vertices;
+    const float u = float(i) / float(r.segments), v = float(j) / float(r.segments), w = 1 - u - v;
+    return {
+        cache_.vertices[a].position * w + cache_.vertices[b].position * u + cache_.vertices[c].position * v,
+        normalized(normals_[a] * w + normals_[b] * u + normals_[c] * v)};
+  }
+
+  // What the patch would give at an odd node of its lattice without it.
+  RgbF predicted(const Refined& r, std::uint32_t i, std::uint32_t j) const {
+    const float u = float(i) / float(r.segments), v = float(j) / float(r.segments);
+    if (r.segments == 2) return between_vertices(cache_, cache_.patches[r.patch], u, v).exitance;
+    const CellPlace cell = cell_place(r.segments / 4, u, v);
+    const SixNodes six(cell.u, cell.v);
+    RgbF sum;
+    for (std::size_t k = 0; k < 6; ++k) {
+      const auto [ci, cj] = cell.node(4, 2 * six.offsets[k][0], 2 * six.offsets[k][1]);
+      sum += value(r, ci, cj).exitance * six.weights[k];
+    }
+    return sum;
+  }
+
+  const Exitance& value(const Refined& r, std::uint32_t i, std::uint32_t j) const {
+    return cache_.nodes[r.nodes[lattice_index(r.segments, i, j)]];
+  }
+
+  // Keeps the lattice, or doubles it if its nodes were ill predicted by those of the one before.
+  bool wants_more(Refined& r) {
+    const bool may_grow = longest_side(r.patch) > float(kFinest) * input_.kernel.radius * float(r.segments);
+    if (may_grow && is_ill_predicted(r)) {
+      r.segments *= 2;
+      return true;
+    }
+    cache_.patches[r.patch].lattice = std::uint32_t(cache_.lattices.size());
+    cache_.lattices.push_back({std::uint32_t(cache_.lattice_nodes.size()), r.segments});
+    cache_.lattice_nodes.insert(cache_.lattice_nodes.end(), r.nodes.begin(), r.nodes.end());
+    return false;
+  }
+
+  float longest_side(std::uint32_t patch) const {
+    const auto& corners = cache_.patches[patch].vertices;
+    float longest = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      longest = std::max(longest, length(cache_.vertices[corners[k]].position -
+                                         cache_.vertices[corners[(k + 1) % 3]].position));
+    return longest;
+  }
+
+  bool is_ill_predicted(const Refined& r) const {
+    if (r.edge && r.segments == 2) return true;  // its one new node may lie in the middle of the edge
+    for (std::uint32_t j = 0; j <= r.segments; ++j)
+      for (std::uint32_t i = 0; i + j <= r.segments; ++i) {
+        if (i % 2 == 0 && j % 2 == 0) continue;
+        const Exitance& known = value(r, i, j);
+        const RgbF& noise = node_noise_[r.nodes[lattice_index(r.segments, i, j)]];
+        if (is_too_much((predicted(r, i, j) - known.exitance) * kRest, whole(known), noise)) return true;
+      }
+    return false;
+  }
+
+  const SurfaceCacheInput& input_;
+  SurfaceCache cache_;
+  std::vector<Vec3f> normals_;  // of its vertices
+  std::vector<Query> queries_;  // to evaluate: of vertices at first, then of nodes
+  std::vector<PlaceDoubt> vertex_doubts_;
+  std::vector<RgbF> node_noise_;
+  std::vector<std::uint32_t> new_nodes_;  // where the latter go
+  std::unordered_map<PlaceKey, std::uint32_t, PlaceHash> places_;
+  RgbF floor_{};
+};
+
+}  // namespace
+
+std::optional<SurfaceCache> make_surface_cache(const SurfaceCacheInput& input) {
+  if (least_cache_places(input.world, input.meshes, input.kernel) > input.most_places) return {};
+  return Builder(input).build();
+}
+
+std::size_t least_cache_places(const World& world, std::span<const std::uint32_t> meshes,
+                               const SplitKernel& kernel) {
+  std::size_t places = 0;
+  for (const std::uint32_t m : meshes) {
+    const Mesh& mesh = world.meshes[m];
+    places += mesh.positions.size();
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      if (const std::uint32_t n = segments_of(mesh, t, kReach * double(kernel.radius)); n > 1)
+        places += lattice_size(n) - 3;
+  }
+  return places;
+}
+
+}  // namespace opaline

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is summed sample by sample at a packet, and what its sums come to.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/simd/lane_kernels.h"
+#include "opaline/exitance/evaluate.h"
+
+namespace opaline {
+
+/// Adds the samples of leaves, those of another sheet with their whole kernel. room: scratch
+void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
+                 const std::vector<std::uint32_t>& leaves, const Packet& packet, PacketSums& sums,
+                 std::vector<std::uint32_t>& room);
+
+/// Of the queries that stand in a packet's lanes.
+void set_exitance(const EvaluateInput& input, const PacketSums& sums, std::span<const std::uint32_t> queries,
+                  std::span<Exitance> result);
+
+}  // namespace opaline

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes of the octree sixteen at a time, field by field, as vector registers want them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exitance/simd/lanes.h"
+#include "opaline/octree/octree.h"
+
+namespace opaline {
+
+struct alignas(64) SourceBlock {
+  float x[3][kLanes], y[3][kLanes], z[3][kLanes];  ///< centroids of the channels
+  float all[3][kLanes];                            ///< of all channels together
+  float aside[kLanes];  ///< how far the centroid of a channel lies off, mm; 0: none does
+  float flux[3][kLanes];
+  float spread[6][kLanes];                   ///< OctreeNode::spread
+  float size[kLanes];                        ///< root of its trace
+  float center[3][kLanes], half[3][kLanes];  ///< of the box
+  std::uint32_t node[kLanes];
+  bool one_colour = true;  ///< no lane has a channel aside
+};
+
+/// The first sixteen nodes of the list; lanes past its end repeat the last node, without flux.
+void gather(const OctreeNode* nodes, std::span<const std::uint32_t> list, SourceBlock& block);
+
+}  // namespace opaline

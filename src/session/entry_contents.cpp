@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/entry_contents.h"
+
+#include <algorithm>
+
+#include "session/check_contents.h"
+
+namespace opaline {
+namespace {
+
+constexpr BlobNumber kFloat = BlobNumber::float32, kUint = BlobNumber::uint32;
+
+}  // namespace
+
+template <>
+BlobType blob_type<Vec3f>() {
+  return {sizeof(Vec3f), {{"", 0, kFloat, 3}}};
+}
+
+template <>
+BlobType blob_type<SurfaceSample>() {
+  using S = SurfaceSample;
+  static_assert(sizeof(S) == 56, "every member is in the list below");
+  return {sizeof(S),
+          {{"mesh", offsetof(S, mesh), kUint},
+           {"triangle", offsetof(S, triangle), kUint},
+           {"u", offsetof(S, u), kFloat},
+           {"v", offsetof(S, v), kFloat},
+           {"position", offsetof(S, position), kFloat, 3},
+           {"normal", offsetof(S, normal), kFloat, 3},
+           {"area", offsetof(S, area), kFloat},
+           {"centroid", offsetof(S, centroid), kFloat, 3}}};
+}
+
+template <>
+BlobType blob_type<OctreeNode>() {
+  using N = OctreeNode;
+  static_assert(sizeof(N) == 128 && offsetof(N, leaf) == 124, "every member is in the list below");
+  return {sizeof(N),
+          {{"x", offsetof(N, x), kFloat, 4},
+           {"y", offsetof(N, y), kFloat, 4},
+           {"z", offsetof(N, z), kFloat, 4},
+           {"flux", offsetof(N, flux), kFloat, 4},
+           {"center", offsetof(N, center), kFloat, 3},
+           {"half", offsetof(N, half), kFloat, 3},
+           {"spread", offsetof(N, spread), kFloat, 6},
+           {"skip", offsetof(N, skip), kUint},
+           {"first", offsetof(N, first), kUint},
+           {"count", offsetof(N, count), kUint},
+           {"leaf", offsetof(N, leaf), BlobNumber::uint8}}};
+}
+
+template <>
+BlobType blob_type<TreeSample>() {
+  using S = TreeSample;
+  static_assert(sizeof(S) == 32, "every member is in the list below");
+  return {sizeof(S),
+          {{"x", offsetof(S, x), kFloat},
+           {"y", offsetof(S, y), kFloat},
+           {"z", offsetof(S, z), kFloat},
+           {"area", offsetof(S, area), kFloat},
+           {"flux", offsetof(S, flux), kFloat, 4}}};
+}
+
+template <>
+BlobType blob_type<Exitance>() {
+  using E = Exitance;
+  static_assert(sizeof(E) == 48, "every member is in the list below");
+  return {sizeof(E),
+          {{"exitance", offsetof(E, exitance), kFloat, 3},
+           {"irradiance", offsetof(E, irradiance), kFloat, 3},
+           {"near", offsetof(E, near), kFloat, 3},
+           {"error", offsetof(E, error), kFloat, 3}}};
+}
+
+template <>
+BlobType blob_type<SurfaceCache::Vertex>() {
+  using V = SurfaceCache::Vertex;
+  static_assert(sizeof(V) == 96 && offsetof(V, value) == 0, "every member is in the list below");
+  return {sizeof(V),
+          {{"value", offsetof(V, value), kFloat, 12},
+           {"position", offsetof(V, position), kFloat, 3},
+           {"slope", offsetof(V, slope), kFloat, 9}}};
+}
+
+template <>
+BlobType blob_type<SurfaceCache::Patch>() {
+  using P = SurfaceCache::Patch;
+  static_assert(sizeof(P) == 16, "every member is in the list below");
+  return {sizeof(P),
+          {{"vertices", offsetof(P, vertices), kUint, 3}, {"lattice", offsetof(P, lattice), kUint}}};
+}
+
+template <>
+BlobType blob_type<SurfaceCache::Lattice>() {
+  using L = SurfaceCache::Lattice;
+  static_assert(sizeof(L) == 8, "every member is in the list below");
+  return {sizeof(L), {{"first", offsetof(L, first), kUint}, {"segments", offsetof(L, segments), kUint}}};
+}
+
+template <>
+BlobType blob_type<SurfaceCache::Split>() {
+  using S = SurfaceCache::Split;
+  static_assert(sizeof(S) == 8, "every member is in the list below");
+  return {sizeof(S), {{"first", offsetof(S, first), kUint}, {"segments", offsetof(S, segments), kUint}}};
+}
+
+void put_samples(BlobWriter& file, const SurfaceSamples& samples, std::span<const std::uint32_t> meshes) {
+  std::vector<SurfaceSample> local = samples.samples;
+  for (SurfaceSample& s : local) s.mesh = std::uint32_t(std::ranges::find(meshes, s.mesh) - meshes.begin());
+  file.put("samples", std::span<const SurfaceSample>(local));
+  file.put("area", samples.area);
+  file.put("radius", samples.radius);
+}
+
+std::optional<SurfaceSamples> get_samples(const BlobReader& entry, const SampledSurface& surface) {
+  auto samples = entry.get<SurfaceSample>("samples");
+  const std::optional<double> area = entry.number("area"), radius = entry.number("radius");
+  if (!samples || !area || !radius) return {};
+  for (SurfaceSample& s : *samples) {
+    if (s.mesh >= surface.meshes.size()) return {};
+    s.mesh = surface.meshes[s.mesh];
+  }
+  SurfaceSamples all{std::move(*samples), *area, *radius};
+  if (!are_samples_of(all, surface)) return {};
+  return all;
+}
+
+void put_light(BlobWriter& file, const LightTransfer& transfer) {
+  file.put("weights", std::span(transfer.weights));
+  file.put("relative_error", transfer.relative_error);
+  file.put("edge_shift", transfer.edge_shift);
+}
+
+std::optional<LightTransfer> get_light(const BlobReader& entry, std::size_t samples) {
+  auto weights = entry.get<float>("weights");
+  const std::optional<double> error = entry.number("relative_error");
+  const std::optional<double> shift = entry.number("edge_shift");
+  if (!weights || !error || !shift) return {};
+  LightTransfer transfer{std::move(*weights), *error, *shift};
+  if (!is_light_of(transfer, samples)) return {};
+  return transfer;
+}
+
+void put_octree(BlobWriter& file, const Octree& octree) {
+  file.put("nodes", std::span(octree.nodes));
+  file.put("samples", std::span(octree.samples));
+  file.put("normals", std::span(octree.normals));
+  file.put("flux_unit", double(octree.flux_unit));
+}
+
+std::optional<Octree> get_octree(const BlobReader& entry, const SurfaceSamples& samples) {
+  const auto bytes = entry.bytes_of("nodes", sizeof(OctreeNode));
+  if (!bytes || !has_flags(*bytes, sizeof(OctreeNode), offsetof(OctreeNode, leaf))) return {};
+  auto nodes = entry.get<OctreeNode>("nodes");
+  auto tree_samples = entry.get<TreeSample>("samples");
+  auto normals = entry.get<Vec3f>("normals");
+  const std::optional<double> unit = entry.number("flux_unit");
+  if (!nodes || !tree_samples || !normals || !unit) return {};
+  Octree octree{std::move(*nodes), std::move(*tree_samples), std::move(*normals), float(*unit)};
+  if (!is_tree_of(octree, samples)) return {};
+  list_children(octree);
+  return octree;
+}
+
+void put_exitance(BlobWriter& file, const SurfaceCache& exitance, std::span<const std::uint32_t> meshes) {
+  std::vector<std::uint32_t> triangles;
+  std::vector<SurfaceCache::Split> splits;
+  for (const std::uint32_t m : meshes) {
+    triangles.push_back(std::uint32_t(exitance.splits[m].size()));
+    splits.insert(splits.end(), exitance.splits[m].begin(), exitance.splits[m].end());
+  }
+  const std::vector<float> own(exitance.own_irradiance.begin(), exitance.own_irradiance.end());
+  file.put("own_irradiance", std::span(own));
+  file.put("triangles", std::span<const std::uint32_t>(triangles));
+  file.put("splits", std::span<const SurfaceCache::Split>(splits));
+  file.put("patches", std::span(exitance.patches));
+  file.put("vertices", std::span(exitance.vertices));
+  file.put("lattices", std::span(exitance.lattices));
+  file.put("lattice_nodes", std::span(exitance.lattice_nodes));
+  file.put("nodes", std::span(exitance.nodes));
+}
+
+std::optional<SurfaceCache> get_exitance(const BlobReader& entry, const World& world,
+                                         std::span<const std::uint32_t> meshes) {
+  const auto own = entry.get<float>("own_irradiance");
+  const auto triangles = entry.get<std::uint32_t>("triangles");
+  const auto splits = entry.get<SurfaceCache::Split>("splits");
+  auto patches = entry.get<SurfaceCache::Patch>("patches");
+  auto vertices = entry.get<SurfaceCache::Vertex>("vertices");
+  auto lattices = entry.get<SurfaceCache::Lattice>("lattices");
+  auto lattice_nodes = entry.get<std::uint32_t>("lattice_nodes");
+  auto nodes = entry.get<Exitance>("nodes");
+  if (!own || own->size() != 3 || !triangles || triangles->size() != meshes.size() || !splits || !patches ||
+      !vertices || !lattices || !lattice_nodes || !nodes)
+    return {};
+  SurfaceCache exitance{{(*own)[0], (*own)[1], (*own)[2]},
+                        {},
+                        std::move(*patches),
+                        std::move(*vertices),
+                        std::move(*lattices),
+                        std::move(*lattice_nodes),
+                        std::move(*nodes)};
+  exitance.splits.resize(world.meshes.size());
+  auto next = splits->begin();
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    if (splits->end() - next < std::ptrdiff_t((*triangles)[m])) return {};
+    exitance.splits[meshes[m]].assign(next, next + std::ptrdiff_t((*triangles)[m]));
+    next += std::ptrdiff_t((*triangles)[m]);
+  }
+  if (!is_exitance_of(exitance, world, meshes)) return {};
+  return exitance;
+}
+
+namespace {
+constexpr std::uint64_t kAroundSets = 1 << 16;  // what HDF5 adds, generously
+}
+
+std::uint64_t most_bytes_of_samples(const SampledSurface& surface) {
+  return most_samples(surface) * sizeof(SurfaceSample) + kAroundSets;
+}
+
+std::uint64_t most_bytes_of_light(std::size_t samples) {
+  return samples * sizeof(float) + kAroundSets;
+}
+
+// A node that is no leaf has two children or more.
+std::uint64_t most_bytes_of_octree(std::size_t samples) {
+  return samples * (2 * sizeof(OctreeNode) + sizeof(TreeSample) + sizeof(Vec3f)) + kAroundSets;
+}
+
+}  // namespace opaline

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a session keeps, and how each part of it is brought up to date with the scene.
+#pragma once
+
+#include "opaline/session/session.h"
+#include "session/body_keys.h"
+#include "session/light_mix.h"
+
+namespace opaline {
+
+struct Session::State {
+  explicit State(StageCache* cache) : cache_(cache) {}
+
+  /// What loading a shape found; the key is its source's, of zeros where loading failed.
+  struct ShapeMemory {
+    std::string name;
+    StageKey source;
+    MeshMemory mesh;
+  };
+
+  // What Session's functions of the same names do.
+  void anchor(Scene scene, Monitor* monitor);
+  void edit(Scene scene);
+  void ready_light_mix(Monitor* monitor);
+  void prepare_rays();
+  Image first_light(Monitor* monitor);
+  void prepare(Monitor* monitor);
+  RenderResult render(Monitor* monitor, const AfterTile& after_tile);
+
+  bool is_needed() const { return has_samples(scene_.settings.method) && !plan_.groups.empty(); }
+  void arrange_memories(const Scene& scene, const std::vector<StageKey>& sources);
+  World loaded_world(const Scene& scene, const std::vector<StageKey>& sources,
+                     const std::vector<StageKey>& shapes, SessionWork& work);
+  void keep_spacing();
+  void update_rays();
+  void arrange_bodies();
+  void update_samples(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group);
+  void keep_samples(Body& body, BodyKeys& known);
+  void place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
+                  const StageKey& key);
+  void carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input, const StageKey& key);
+  void update_lights(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
+                     const std::vector<Light>& lights);
+  void update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights);
+  void update_kernel(Body& body, BodyKeys& known);
+  void update_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t most_places);
+  void update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
+                    const std::vector<Light>& lights);
+  HeldView* held_view();
+  bool can_mix() const;
+  Image recoloured(const Scene& scene, HeldView& view, Monitor* monitor);
+  void decide(const Body& body, const std::string& text);
+
+  StageCache* cache_;
+  Scene scene_;
+  std::shared_ptr<const World> world_;
+  std::vector<StageKey> shape_keys_;  // what each mesh was loaded from
+  std::vector<ShapeMemory> shape_memories_;
+  std::vector<MeshKeys> mesh_keys_;
+  Plan plan_;
+  std::unique_ptr<RayScene> rays_;
+  RayBuild rays_build_ = RayBuild::careful;
+  std::vector<MeshKeys> rays_keys_;
+  std::vector<Body> bodies_;
+  std::vector<BodyKeys> keys_;  // one a body
+  std::size_t pictures_ = 1;
+  bool holds_view_ = false, mixes_lights_ = false;
+  HeldView view_;
+  LightMix mix_;
+  StageKey view_key_, view_surfaces_key_;
+  std::vector<StageKey> view_light_keys_;
+  bool edits_ = true, prepared_ = false, anchored_ = false;
+  SessionWork work_;
+  std::vector<std::string> decisions_;
+  std::vector<StageCost> costs_;
+};
+
+}  // namespace opaline

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/session/stage_keys.h"
+
+#include <embree3/rtcore_config.h>
+
+#include "opaline/lights/light.h"
+
+namespace opaline {
+namespace {
+
+// Raise a stage's number when it computes other values from the same input (test_stage_versions).
+constexpr std::uint64_t kSamplesVersion = 2, kCarriedVersion = 3, kTransferVersion = 2, kOctreeVersion = 1,
+                        kExitanceVersion = 6;
+
+const char* widest_instructions() {
+  if (__builtin_cpu_supports("avx512f")) return "avx512";
+  if (__builtin_cpu_supports("avx2")) return "avx2";
+  if (__builtin_cpu_supports("avx")) return "avx";
+  return __builtin_cpu_supports("sse4.2") ? "sse4.2" : "sse2";
+}
+
+}  // namespace
+
+MeshKeys mesh_keys(const Mesh& mesh) {
+  KeyBuilder shape("mesh", 1);
+  shape.add_array(std::span(mesh.positions)).add_array(std::span(mesh.triangles));
+  MeshKeys keys{shape.key(), {}, {}, 0};
+  keys.all = KeyBuilder("mesh with normals", 1).add(keys.shape).add_array(std::span(mesh.normals)).key();
+  const Bounds box = bounds(mesh);
+  keys.center = 0.5 * (box.low + box.high);
+  for (const Vec3d& p : mesh.positions) keys.radius = std::max(keys.radius, length(p - keys.center));
+  return keys;
+}
+
+std::vector<MeshKeys> mesh_keys(const World& world) {
+  std::vector<MeshKeys> keys;
+  for (const Mesh& mesh : world.meshes) keys.push_back(mesh_keys(mesh));
+  return keys;
+}
+
+StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group) {
+  const GroupPlan& plan = input.plan.groups[group];
+  KeyBuilder key("samples", kSamplesVersion);
+  key.add(std::uint64_t(plan.samples)).add(sampling_seed(input.scene.settings, group));
+  for (const std::uint32_t m : plan.meshes) key.add(meshes[m].all);
+  return key.key();
+}
+
+StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes,
+                             double unit) {
+  KeyBuilder key("carried samples", kCarriedVersion);
+  key.add(from).add(unit);
+  for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
+  return key.key();
+}
+
+StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
+                      std::size_t group, const Light& light) {
+  const GroupPlan& plan = input.plan.groups[group];
+  const Settings& settings = input.scene.settings;
+  KeyBuilder key("transfer", kTransferVersion);
+  key.add(std::string(RTC_VERSION_STRING)).add(std::string(widest_instructions()));
+  key.add(samples).add(input.scene.media[plan.medium].eta).add(std::uint64_t(light.source.index()));
+  key.add_array(std::span<const double>(geometry(light)));
+  if (!is_delta(light))
+    key.add(settings.light_samples).add(light_seed(irradiance_seed(settings, group), light));
+  for (std::uint32_t m = 0; m < meshes.size(); ++m)
+    if (may_shadow(meshes, m, plan, light, input.world.unit)) key.add(meshes[m].shape);
+  return key.key();
+}
+
+StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes) {
+  const Camera& camera = input.scene.camera;
+  const Film& film = input.scene.film;
+  KeyBuilder key("view", 2);
+  key.add(camera.position).add(camera.look_at).add(camera.up).add(camera.field_of_view);
+  key.add(input.world.origin).add(input.world.unit);
+  key.add(film.resolution).add(film.samples_per_pixel).add(film.filter);
+  if (film.crop) key.add(*film.crop);
+  key.add(input.plan.rays);
+  for (const MeshKeys& mesh : meshes) key.add(mesh.all);
+  return key.key();
+}
+
+StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights) {
+  const Settings& settings = input.scene.settings;
+  KeyBuilder key("surfaces of the view", 1);
+  key.add(settings.method).add(settings.light_samples).add(point_irradiance_seed(settings));
+  for (const Light& light : lights)
+    if (!is_delta(light)) key.add(view_light_key(light));
+  for (const Shape& shape : input.scene.shapes) {
+    key.add(shape.medium.has_value());
+    if (shape.medium) key.add(input.scene.media[*shape.medium].eta);
+  }
+  for (const GroupPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));
+  return key.key();
+}
+
+StageKey view_light_key(const Light& light) {
+  KeyBuilder key("light of the view", 1);
+  key.add(std::uint64_t(light.source.index())).add(light_seed(0, light));
+  key.add_array(std::span<const double>(geometry(light)));
+  return key.key();
+}
+
+StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
+                    std::span<const Light> lights) {
+  KeyBuilder key("octree", kOctreeVersion);
+  key.add(samples);
+  for (std::size_t l = 0; l < lights.size(); ++l) key.add(transfers[l]).add(emission(lights[l]));
+  return key.key();
+}
+
+StageKey exitance_key(const StageKey& tree, const StageKey& kernel, std::span<const MeshKeys> meshes,
+                      const GroupPlan& group, const Settings& settings) {
+  KeyBuilder key("exitance", kExitanceVersion);
+  key.add(tree).add(kernel).add(settings.tolerance).add(settings.instruction_set);
+  key.add(settings.light_samples).add(settings.seed);
+  key.add(std::string(widest_instructions()));
+  for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
+  return key.key();
+}
+
+}  // namespace opaline

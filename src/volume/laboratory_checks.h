@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all experiments of the laboratory have in common.
+#pragma once
+
+#include <cstddef>
+
+#include "opaline/volume/laboratory.h"
+
+namespace opaline {
+
+/// error Error{bad_input} that names the first setting out of its range
+void check_settings(const LaboratorySettings& settings);
+
+inline std::size_t walks_of_a_batch(const LaboratorySettings& settings) {
+  return (settings.walks - 1) / kWalkBatches + 1;
+}
+
+}  // namespace opaline

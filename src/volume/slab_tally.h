@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sums over a batch of walks, and what many batches amount to.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "opaline/volume/laboratory.h"
+#include "volume/slab_controls.h"
+
+namespace opaline {
+
+/// Sums of weight that left by one face.
+struct FaceTally {
+  double total = 0, uncollided = 0;
+  std::vector<double> rings;    ///< one more than there are radii: the last is what lies beyond
+  std::vector<double> cosines;  ///< outside
+};
+
+struct SlabTally {
+  FaceTally back, through;
+  SlabControls::Sums controls{};
+  double absorbed = 0, unfinished = 0, collisions = 0;
+  std::vector<double> entered,
+      returned;  ///< by cosine of entry, diffuse entry alone: weight at the start, and back
+};
+
+/// Where light that leaves is counted.
+struct TallyBins {
+  std::vector<double> radii, squared_radii;
+  std::size_t cosines = 0;
+  bool by_entry = false;
+
+  std::size_t ring_of(double squared_radius) const;
+  std::size_t cosine_of(double cosine) const;
+};
+
+TallyBins make_bins(std::vector<double> radii, std::size_t cosines, bool by_entry);
+
+SlabTally empty_tally(const TallyBins& bins);
+
+/// Means and standard errors, by regression on the controls, over batches of `walks_each`.
+SlabWalks summarize(const TallyBins& bins, std::span<const SlabTally> batches, std::size_t walks_each);
+
+}  // namespace opaline

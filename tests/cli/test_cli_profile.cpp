@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `opaline profile`: figures, files, answers to mistakes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "benchmark/csv.h"
+#include "opaline/diffusion/fresnel.h"
+#include "opaline/scene/enumerations.h"
+#include "run_program.h"
+
+namespace opaline {
+namespace {
+
+nlohmann::json totals_of(const std::vector<std::string>& more) {
+  std::vector<std::string> line{"profile", "--json"};
+  line.insert(line.end(), more.begin(), more.end());
+  const Outcome outcome = run_program(line);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(events_of(outcome.out).size(), 1u) << outcome.out;
+  return event_of(events_of(outcome.out), "profile");
+}
+
+std::vector<std::string> cells_of(const CsvTable& table, const std::string& name) {
+  const auto at = std::size_t(std::ranges::find(table.names, name) - table.names.begin());
+  EXPECT_LT(at, table.names.size()) << name;
+  std::vector<std::string> cells;
+  for (const auto& row : table.rows) cells.push_back(row.at(at));
+  return cells;
+}
+
+// Claim: a medium given by its coefficients has the reflectance of the published tables, per entered flux, and stands
+// beside every model there is. Source: albedo .9, eta 1.3, .2857857 of a beam along the normal and .2883414 of diffuse
+// light, per incident flux (tests/volume/test_half_space.cpp). Tolerance: five standard errors. Fails if: the two ways
+// of entry are mixed up, or g stretches sigma_s twice (sigma_s' would be .09).
+TEST(CliProfile, TotalsOfGivenCoefficients) {
+  const nlohmann::json event =
+      totals_of({R"({"sigma_a": 0.1, "sigma_s_prime": 0.9, "eta": 1.3})", "--walks", "50000"});
+  const nlohmann::json& back = event["channels"]["all"]["back"];
+  const auto expect = [&](const char* row, double truth) {
+    EXPECT_NEAR(back[row]["share"].get<double>(), truth, 5 * back[row]["error"].get<double>()) << row;
+    EXPECT_LT(back[row]["error"].get<double>(), 1e-3) << row;
+  };
+  expect("walks_normal", .2857857 / fresnel_transmittance(1., 1.3));
+  expect("walks_diffuse", .2883414 / (1 - average_reflectance_outside(1.3)));
+  for (const std::string_view model : kProfileNames)
+    EXPECT_TRUE(back[std::string(model)]["share"].is_number()) << model;
+  EXPECT_FALSE(event["channels"]["all"].contains("through"));
+}
+
+// Claim: --g keeps the reduced scattering, and a medium's own g is walked with. Source: similarity; Jensen et al. 2001.
+// By hand: sigma_s 9 with g .9 is sigma_s' .9. Fails if: g is taken into sigma_s twice, or dropped.
+TEST(CliProfile, ScatteringWithDirection) {
+  const nlohmann::json given =
+      totals_of({R"({"sigma_a": 0.1, "sigma_s": 9, "g": 0.9, "eta": 1.3})", "--walks", "20000"});
+  const nlohmann::json option =
+      totals_of({R"({"sigma_a": 0.1, "sigma_s_prime": 0.9, "eta": 1.3})", "--g", "0.9", "--walks", "20000"});
+  EXPECT_EQ(given["g"], .9);
+  EXPECT_EQ(option["g"], .9);
+  const auto share = [](const nlohmann::json& event, const char* row) {
+    return event["channels"]["all"]["back"][row]["share"].get<double>();
+  };
+  EXPECT_NEAR(share(given, "walks_diffuse"), share(option, "walks_diffuse"), .01);
+  EXPECT_NEAR(share(given, "dipole"), share(option, "dipole"), 1e-9);
+}
+
+// Claim: the folder holds a page with a chart a channel and no address but its tables', the tables, and a drawing a
+// channel; figures in the tables are those printed; a second run with another number of threads writes the same
+// figures. Source: the help of profile. Fails if: the page needs a network, a slab has no far face, or a seed depends
+// on the thread.
+TEST(CliProfile, Report) {
+  const ScratchFolder folder;
+  const auto run = [&](const std::string& name, const std::string& threads) {
+    const Outcome outcome = run_program({"profile", "skin1", "--thickness", "2mm", "--walks", "2000", "-o",
+                                         folder.file(name), "--threads", threads});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome;
+  };
+  const Outcome outcome = run("one", "1");
+  run("three", "3");
+  for (const char* file : {"profile.csv", "totals.csv", "angles.csv"}) {
+    const CsvTable one = parse_csv(bytes_of(folder.file("one/" + std::string(file))), file);
+    EXPECT_EQ(one.rows, parse_csv(bytes_of(folder.file("three/" + std::string(file))), file).rows) << file;
+    EXPECT_GT(one.rows.size(), 10u) << file;
+  }
+  const std::string page = bytes_of(folder.file("one/index.html"));
+  for (const char* part :
+       {"Channel R", "Channel G", "Channel B", "Goes through", "profile.csv", "better dipole"})
+    EXPECT_TRUE(contains(page, part)) << part;
+  for (const char* part : {"http://", "https://", "nan", "{{"}) EXPECT_FALSE(contains(page, part)) << part;
+  for (const char* channel : {"R", "G", "B"})
+    EXPECT_TRUE(contains(bytes_of(folder.file(std::string("one/profile-") + channel + ".svg")), "</svg>"));
+  const CsvTable totals = parse_csv(bytes_of(folder.file("one/totals.csv")), "totals.csv");
+  EXPECT_EQ(totals.rows.size(), 3 * 2 * (2 + kProfileNames.size()));
+  char first[16];  // as the table on the terminal rounds it
+  std::snprintf(first, sizeof first, "%.4f", std::stod(cells_of(totals, "share")[0]));
+  EXPECT_TRUE(contains(outcome.out, first)) << first << " in " << outcome.out;
+}
+
+// Claim: R_d by rings is the share of a ring over its area, for walks and models alike: both add up to what leaves
+// within the last ring. Source: profile_page.h. Tolerance: eight digits as written. Fails if: a model's value at the
+// middle of a ring stands for its mean, or an area is a radius.
+TEST(CliProfile, RingsAddUp) {
+  const ScratchFolder folder;
+  const Outcome outcome = run_program(
+      {"profile", R"({"sigma_a": 0.1, "sigma_s_prime": 2})", "--walks", "2000", "-o", folder.file("out")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const CsvTable rings = parse_csv(bytes_of(folder.file("out/profile.csv")), "profile.csv");
+  const auto low = cells_of(rings, "r_low"), high = cells_of(rings, "r_high");
+  for (const std::string by : {"diffuse", "normal", "dipole", "normalized_diffusion", "better_dipole"}) {
+    const auto profile = cells_of(rings, by + "_profile"), within = cells_of(rings, by + "_within");
+    double sum = 0;
+    for (std::size_t i = 0; i < rings.rows.size(); ++i)
+      sum +=
+          std::stod(profile[i]) * M_PI * (std::pow(std::stod(high[i]), 2) - std::pow(std::stod(low[i]), 2));
+    EXPECT_NEAR(sum, std::stod(within.back()), 1e-6) << by;
+  }
+}
+
+// Claim: mistakes are named in one line, with what was expected or the nearest name, before any work: exit 2, or 3
+// where a folder cannot be made; nothing is written. Source: commands.h. Fails if: a check is missing.
+TEST(CliProfile, Mistakes) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("file"), "");
+  const struct {
+    std::vector<std::string> arguments;
+    int exit_code;
+    std::string named;
+  } cases[] = {
+      {{}, 2, "MEDIUM"},
+      {{"marbel"}, 2, "did you mean 'marble'"},
+      {{"gold"}, 2, "one of apple, "},
+      {{R"({"sigma_a": 0.1, "sigma_s": -1})"}, 2, "MEDIUM:1:29: 'medium.sigma_s' is out of range"},
+      {{R"({"sigma_a": 0.1, "sigma_t": 1})"}, 2, "unknown key 'sigma_t'"},
+      {{R"({"sigma_a": 0.1)"}, 2, "MEDIUM:1:16: broken JSON"},
+      {{R"({"subsurface_color": 0.5, "subsurface_radius": 1})"}, 2, "sigma_a and sigma_s_prime"},
+      {{"marble", "--eta", "0"}, 2, "'--eta'"},
+      {{"marble", "--g", "1"}, 2, "'--g'"},
+      {{"marble", "--thickness", "0"}, 2, "'--thickness'"},
+      {{"marble", "--thickness", "2in"}, 2, "--thickness"},
+      {{"marble", "--walks", "0"}, 2, "--walks: expected a whole number from 1"},
+      {{"marble", "--walk", "3"}, 2, "did you mean '--walks'"},
+      {{"marble", "-o", folder.file("file/out")}, 3, "file/out"},
+  };
+  for (const auto& c : cases) {
+    std::vector<std::string> line{"profile"};
+    line.insert(line.end(), c.arguments.begin(), c.arguments.end());
+    const Outcome outcome = run_program(line);
+    EXPECT_EQ(outcome.exit_code, c.exit_code) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, c.named)) << "no \"" << c.named << "\" in: " << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  }
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+// Claim: Ctrl-C ends the walks with exit code 130 and leaves the old report. Source: the help of profile. Fails if: the
+// walks do not look at the monitor, or the page is opened for writing at the start.
+TEST(CliProfile, InterruptLeavesTheOldReport) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("index.html"), "old");
+  Child child({"profile", "spectralon", "--walks", "100000000", "-o", folder.path.string()});
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  child.send(SIGINT);
+  EXPECT_EQ(child.wait(60).exit_code, 130);
+  EXPECT_EQ(bytes_of(folder.file("index.html")), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+}  // namespace
+}  // namespace opaline
