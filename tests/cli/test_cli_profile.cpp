@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `opaline profile`: figures, files, answers to mistakes.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -94,9 +95,8 @@ TEST(CliProfile, Report) {
     EXPECT_TRUE(contains(bytes_of(folder.file(std::string("one/profile-") + channel + ".svg")), "</svg>"));
   const CsvTable totals = parse_csv(bytes_of(folder.file("one/totals.csv")), "totals.csv");
   EXPECT_EQ(totals.rows.size(), 3 * 2 * (2 + kProfileNames.size()));
-  char first[16];  // as the table on the terminal rounds it
-  std::snprintf(first, sizeof first, "%.4f", std::stod(cells_of(totals, "share")[0]));
-  EXPECT_TRUE(contains(outcome.out, first)) << first << " in " << outcome.out;
+  const std::string first = fmt::format("{:.4f} +- ", std::stod(cells_of(totals, "share")[0]));
+  EXPECT_TRUE(contains(outcome.out, "walks, diffuse        " + first)) << first << " in " << outcome.out;
 }
 
 // Claim: R_d by rings is the share of a ring over its area, for walks and models alike: both add up to what leaves

@@ -42,7 +42,7 @@ TEST(LaboratoryExtremes, FiniteAndWhole) {
         for (const double eta : {.75, 1., 3.})
           for (const double thickness : {.01, 50., std::numeric_limits<double>::infinity()}) {
             LaboratorySettings settings = walks_of_seed(1024, 3);
-            settings.most_collisions = 20000;
+            settings.most_collisions = 4000;
             const SlabWalks walked =
                 walk_slab({sigma_a, sigma_s, g, eta}, {thickness}, kDiffuseEntry, settings);
             const std::string what = testing::PrintToString(std::array{sigma_a, sigma_s, g, eta, thickness});
@@ -62,7 +62,7 @@ TEST(LaboratoryExtremes, FiniteAndWhole) {
 TEST(LaboratoryExtremes, WhiteHalfSpace) {
   double before = 0;
   for (const std::uint64_t most : {4000, 16000}) {
-    LaboratorySettings settings = walks_of_seed(20000, 4);
+    LaboratorySettings settings = walks_of_seed(10000, 4);
     settings.most_collisions = most;
     const SlabWalks walked = walk_slab(medium_of_albedo(1, 1.5), {}, kDiffuseEntry, settings);
     EXPECT_EQ(walked.absorbed.value, 0);
@@ -73,7 +73,7 @@ TEST(LaboratoryExtremes, WhiteHalfSpace) {
     }
     before = walked.unfinished.value;
   }
-  const SlabWalks whole = walk_slab(medium_of_albedo(1, 1.5), {}, kDiffuseEntry, walks_of_seed(5000, 4));
+  const SlabWalks whole = walk_slab(medium_of_albedo(1, 1.5), {}, kDiffuseEntry, walks_of_seed(2048, 4));
   EXPECT_NEAR(whole.back.total.value, 1, .002);  // as things are by default
 }
 

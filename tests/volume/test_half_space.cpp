@@ -80,7 +80,7 @@ class HFunction {
 
 // Claim: the albedo by cosine of entry is 1 - sqrt(1-c) H(mu), and light that entered along the normal leaves with
 // radiance in proportion to H(mu) / (1 + mu). Source: Chandrasekhar 1960, chapter V. Tolerance: four standard errors;
-// the means over a bin against five points of it. Fails if: bins are by the cosine inside (with a boundary), the
+// the means over a bin against five points of it. Fails if: the
 // radiance is not divided by the cosine, or entry and exit are mixed up.
 TEST(HalfSpace, ByAngle) {
   constexpr double albedo = .9;
@@ -105,6 +105,28 @@ TEST(HalfSpace, ByAngle) {
     sum += bin.value.value * (bin.high * bin.high - bin.low * bin.low);
   }
   EXPECT_NEAR(sum, 1, 1e-9);
+}
+
+// Claim: in a white furnace a half space that absorbs nothing cannot be seen: what leaves in a direction and what is
+// reflected there add up to the light that comes from there. So the radiance of what leaves is (1 - F) / (1 - F_bar) of
+// a Lambert emitter's, and all light comes back whatever its angle of entry. Source: the second law. Tolerance: four
+// standard errors. Fails if: exit is counted by the cosine inside, or entry weighted without Fresnel's transmittance.
+TEST(HalfSpace, WhiteFurnaceByAngle) {
+  constexpr double eta = 1.4;
+  const SlabWalks walked = walk_slab(medium_of_albedo(1, eta), {}, kDiffuseEntry, walks_of_seed(8000, 12));
+  expect_walked(walked.energy, 1, 1e-6, "energy");
+  const auto transmitted = [](double c) { return 2 * c * fresnel_transmittance(c, eta); };
+  for (const WalkedCosine& bin : walked.back.angular_exit)
+    expect_walked(bin.value,
+                  test::integral(transmitted, bin.low, bin.high) / (bin.high * bin.high - bin.low * bin.low) /
+                      walked.entered,
+                  .1, "exit at " + std::to_string(bin.high));
+  double sum = 0;
+  for (const WalkedCosine& bin : walked.albedo_by_entry) {
+    expect_walked(bin.value, 1, .3, "entry at " + std::to_string(bin.high));
+    sum += bin.value.value * test::integral(transmitted, bin.low, bin.high) / walked.entered;
+  }
+  EXPECT_NEAR(sum, 1, .01);
 }
 
 // Claim: a beam at an angle brings back 1 - sqrt(1-c) H(mu) too. Source: as above. Fails if: the beam's cosine is
