@@ -181,7 +181,7 @@ constexpr std::size_t kBytesOfWalkedCell = 8 * 24 + 2 * 24 + 40;
 std::string shading_stage(const Settings& settings) {
   if (settings.method == Method::lambert) return "shading: lambert";
   if (settings.method == Method::hierarchical) return "shading: hierarchical";
-  if (settings.method == Method::volume) return "shading: cells, interpolated";
+  if (has_cells(settings.method)) return "shading: cells, interpolated";
   if (settings.until_error)
     return fmt::format("shading: direct, until the noise is {:.3g} %", 100 * *settings.until_error);
   return fmt::format("shading: direct, {} entry samples a pixel",
@@ -213,20 +213,27 @@ std::string walks_stage(const Settings& settings) {
   return fmt::format("random walks, {} a sample and channel", kDefaultWalks);
 }
 
+std::string irradiance_stage(const Scene& scene) {
+  std::size_t rays = 0;
+  for (const Light& light : scene.lights)
+    rays += is_delta(light) ? 1 : std::size_t(scene.settings.light_samples);
+  return fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample", scene.lights.size(), rays);
+}
+
 void list_stages(const Scene& scene, Plan& plan) {
-  if (scene.settings.method == Method::volume && !plan.groups.empty()) {
+  const Method method = scene.settings.method;
+  if (has_samples(method) && !plan.groups.empty()) {
     plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
-    plan.stages.push_back(walks_stage(scene.settings));
-  }
-  if (scene.settings.method == Method::hierarchical && !plan.groups.empty()) {
-    plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
-    std::size_t rays = 0;
-    for (const Light& light : scene.lights)
-      rays += is_delta(light) ? 1 : std::size_t(scene.settings.light_samples);
-    plan.stages.push_back(
-        fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample", scene.lights.size(), rays));
-    plan.stages.push_back("octree");
-    plan.stages.push_back(evaluation_stage(scene.settings));
+    if (method == Method::volume) {
+      plan.stages.push_back(walks_stage(scene.settings));
+    } else {
+      plan.stages.push_back(irradiance_stage(scene));
+    }
+    if (method == Method::volume_diffusion) plan.stages.push_back("diffusion: cells inside the bodies");
+    if (method == Method::hierarchical) {
+      plan.stages.push_back("octree");
+      plan.stages.push_back(evaluation_stage(scene.settings));
+    }
   }
   plan.stages.push_back(shading_stage(scene.settings));
 }

@@ -8,6 +8,7 @@
 #include "opaline/core/random.h"
 #include "opaline/exitance/cloud_error.h"
 #include "opaline/lights/light.h"
+#include "opaline/volume/volume_diffusion.h"
 
 namespace opaline {
 std::uint64_t sampling_seed(const Settings& settings, std::size_t group) {
@@ -48,20 +49,40 @@ std::vector<Light> recentred_lights(const Scene& scene, const World& world) {
   return lights;
 }
 
-VolumeExitance walk_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights) {
-  VolumeInput walks{input.rays, input.world, body.plan.meshes, body.surface.samples, {}, lights};
+namespace {
+
+/// In the world's unit.
+std::array<HomogeneousMedium, 3> isotropic_media(const DiffuseProfile& profile) {
+  std::array<HomogeneousMedium, 3> media;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double length = body.profile.mean_free_path[c];
+    media[c].eta = profile.eta;
+    const double length = profile.mean_free_path[c];
     if (!(length > 0)) continue;
-    const double decay = length / body.profile.diffuse_mean_free_path[c];  // its square is 3 (1 - alpha')
+    const double decay = length / profile.diffuse_mean_free_path[c];  // its square is 3 (1 - alpha')
     const double absorbed = decay * decay / 3;
-    walks.media[c] = {absorbed / length, (1 - absorbed) / length, 0, body.profile.eta};
+    media[c] = {absorbed / length, (1 - absorbed) / length, 0, profile.eta};
   }
-  for (HomogeneousMedium& medium : walks.media) medium.eta = body.profile.eta;
+  return media;
+}
+
+}  // namespace
+
+VolumeExitance walk_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights) {
+  VolumeInput walks{
+      input.rays, input.world, body.plan.meshes, body.surface.samples, isotropic_media(body.profile), lights};
   walks.until_error = input.scene.settings.until_error;
   walks.seed = hash_bits(input.scene.settings.seed, 3000);
   walks.monitor = input.monitor;
   return volume_exitance(walks);
+}
+
+VolumeExitance diffuse_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights) {
+  double densest = 0;  // mean free path
+  for (const double length :
+       {body.profile.mean_free_path.x, body.profile.mean_free_path.y, body.profile.mean_free_path.z})
+    if (length > 0 && (densest == 0 || length < densest)) densest = length;
+  return volume_diffusion({input.world, body.plan.meshes, body.surface.samples, lights, body.transfers,
+                           isotropic_media(body.profile), kCellMeanFreePaths * densest, input.monitor});
 }
 
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance) {

@@ -29,7 +29,7 @@ bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Setti
 /// What a body's results were computed from.
 struct BodyKeys {
   SampleOrigin origin;
-  StageKey samples_key, tree_key, kernel_key, exitance_key, walks_key;
+  StageKey samples_key, tree_key, kernel_key, exitance_key, volume_key;
   std::vector<std::uint32_t> meshes;        // that the samples name
   std::vector<StageKey> light_keys;         // of the transfers
   std::optional<SurfaceCache> spare_cache;  // of no use for the picture at hand

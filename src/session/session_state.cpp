@@ -178,6 +178,12 @@ void Session::State::prepare(Monitor* monitor) {
   }
   each("irradiance",
        [&](Body& body, BodyKeys& known, std::size_t g) { update_lights(body, known, input, g, lights); });
+  if (scene_.settings.method == Method::volume_diffusion) {
+    each("diffusion",
+         [&](Body& body, BodyKeys& known, std::size_t) { update_diffusion(body, known, input, lights); });
+    prepared_ = true;
+    return;
+  }
   each("octree", [&](Body& body, BodyKeys& known, std::size_t) {
     update_tree(body, known, lights);
     update_kernel(body, known);
@@ -219,7 +225,7 @@ void Session::State::ready_light_mix(Monitor* monitor) {
 
 /// After prepare.
 bool Session::State::can_mix() const {
-  return mixes_lights_ && scene_.settings.method != Method::volume &&
+  return mixes_lights_ && !has_cells(scene_.settings.method) &&
          std::ranges::none_of(bodies_, [](const Body& g) { return g.surface_cache.has_value(); });
 }
 

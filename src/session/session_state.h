@@ -46,6 +46,8 @@ struct Session::State {
   void update_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t most_places);
   void update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
                     const std::vector<Light>& lights);
+  void update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                        const std::vector<Light>& lights);
   HeldView* held_view();
   bool can_mix() const;
   Image recoloured(const Scene& scene, HeldView& view, Monitor* monitor);

@@ -180,11 +180,25 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
   builder.add(scene_.settings.seed).add(scene_.settings.until_error.value_or(0));
   for (const MeshKeys& mesh : mesh_keys_) builder.add(mesh.shape);
   const StageKey key = builder.key();
-  if (key == known.walks_key && body.volume) return decide(body, "random walks kept");
-  known.walks_key = {};
+  if (key == known.volume_key) return decide(body, "random walks kept");
+  known.volume_key = {};
   body.volume = walk_body(input, body, lights);
-  known.walks_key = key;
+  known.volume_key = key;
   decide(body, "walked at random");
+}
+
+void Session::State::update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                                      const std::vector<Light>& lights) {
+  KeyBuilder builder("volume diffusion", 1);
+  builder.add(octree_key(known.samples_key, known.light_keys, lights)).add(body.profile.eta);
+  builder.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
+  for (const std::uint32_t mesh : body.plan.meshes) builder.add(mesh_keys_[mesh].shape);
+  const StageKey key = builder.key();
+  if (key == known.volume_key) return decide(body, "diffusion kept");
+  known.volume_key = {};
+  body.volume = diffuse_body(input, body, lights);
+  known.volume_key = key;
+  decide(body, "diffusion solved");
 }
 
 void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights) {

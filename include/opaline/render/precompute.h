@@ -32,7 +32,7 @@ struct Body {
   CloudError cloud = {};                           ///< of the samples with this irradiance and kernel
   std::optional<SurfaceCache> surface_cache = {};  ///< the exitance everywhere, where that is cheaper than at
                                                    ///< the points of the picture
-  std::optional<VolumeExitance> volume = {};       ///< of Method::volume
+  std::optional<VolumeExitance> volume = {};       ///< of Method::volume and volume_diffusion
 };
 
 struct PrecomputeInput {
@@ -63,6 +63,9 @@ std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 /// Random walks inside a body with its samples. Media are walked with isotropic scattering and the reduced
 /// coefficients: they are what a scene says of a medium.
 VolumeExitance walk_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights);
+
+/// The diffusion equation inside a body with its samples and transfers; media as for walks.
+VolumeExitance diffuse_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights);
 
 /// irradiance: one a sample.
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);

@@ -45,9 +45,11 @@ enum class Method {
   hierarchical,  ///< diffusion from the tree of samples
   lambert,       ///< translucent surfaces as plain paint: the floor of all costs
   direct,        ///< the BSSRDF sampled at random: the reference of `hierarchical`, noisy instead of biased
-  volume         ///< random walks inside the bodies: no model, the truth, noisy
+  volume,        ///< random walks inside the bodies: no model, the truth, noisy
+  volume_diffusion  ///< the diffusion equation solved inside the bodies: no kernel, no noise
 };
-inline constexpr std::array<std::string_view, 4> kMethodNames{"hierarchical", "lambert", "direct", "volume"};
+inline constexpr std::array<std::string_view, 5> kMethodNames{"hierarchical", "lambert", "direct", "volume",
+                                                              "volume_diffusion"};
 /// The words for its values, in their order.
 constexpr NameList names_of(Method) {
   return kMethodNames;
@@ -55,7 +57,11 @@ constexpr NameList names_of(Method) {
 
 /// Whether translucent bodies get samples.
 constexpr bool has_samples(Method method) {
-  return method == Method::hierarchical || method == Method::volume;
+  return method != Method::lambert && method != Method::direct;
+}
+/// Whether what leaves a body is known as means over its samples' cells.
+constexpr bool has_cells(Method method) {
+  return method == Method::volume || method == Method::volume_diffusion;
 }
 
 enum class EvaluatorKind {

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far each model's radiant exitance is from random walks, patch by patch.
+//
+//   bench_volume_models SCENE TRUTH [KEY=VALUE ...]
+//
+// TRUTH keeps the walks' result (kWalks a sample and channel; minutes) for later runs; it is made where it is
+// missing. KEY=VALUE as for `opaline render --set`, beside those that choose samples or light. Patches of about
+// .9 mm^2 of a 50 mm bunny: one for each of kPatches samples. rms and bias are shares of the mean exitance, in
+// percent; the walks' own noise, known from their batches, is taken out of the rms.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "opaline/scene/load_scene.h"
+#include "opaline/session/session.h"
+#include "opaline/volume/nearest_sample.h"
+#include "user_seconds.h"
+
+using namespace opaline;
+
+namespace {
+
+constexpr std::size_t kPatches = 6500;
+constexpr double kUntilError = .045;  // of a sample's cell; a patch has about four
+
+struct Truth {
+  std::vector<RgbF> exitance, error;
+};
+
+bool read_truth(const std::string& path, Truth& truth) {
+  std::ifstream file(path, std::ios::binary);
+  std::uint64_t count = 0;
+  if (!file.read(reinterpret_cast<char*>(&count), sizeof count)) return false;
+  for (std::vector<RgbF>* values : {&truth.exitance, &truth.error}) {
+    values->resize(count);
+    file.read(reinterpret_cast<char*>(values->data()), std::streamsize(count * sizeof(RgbF)));
+  }
+  return bool(file);
+}
+
+void write_truth(const std::string& path, const Truth& truth) {
+  std::ofstream file(path, std::ios::binary);
+  const std::uint64_t count = truth.exitance.size();
+  file.write(reinterpret_cast<const char*>(&count), sizeof count);
+  for (const std::vector<RgbF>* values : {&truth.exitance, &truth.error})
+    file.write(reinterpret_cast<const char*>(values->data()), std::streamsize(count * sizeof(RgbF)));
+}
+
+struct Patches {
+  std::vector<std::uint32_t> of_sample;
+  std::vector<double> area;
+};
+
+Patches make_patches(const Session& session) {
+  const Body& body = session.bodies()[0];
+  const SurfaceSamples seeds =
+      sample_surface({.world = session.world(), .meshes = body.plan.meshes, .count = kPatches, .seed = 99});
+  const NearestSample nearest(seeds.samples);
+  Patches patches;
+  patches.area.resize(seeds.samples.size());
+  for (const SurfaceSample& s : body.surface.samples) {
+    patches.of_sample.push_back(nearest.at(s.position, s.normal));
+    patches.area[patches.of_sample.back()] += double(s.area);
+  }
+  return patches;
+}
+
+void print_errors(const std::string& name, const Body& body, const Patches& patches, const Truth& truth,
+                  const std::vector<RgbF>& exitance, double seconds) {
+  std::vector<Rgb> difference(patches.area.size()), variance(patches.area.size());
+  Rgb mean{}, bias{}, squares{};
+  double area = 0;
+  for (std::size_t i = 0; i < exitance.size(); ++i) {
+    const double a = double(body.surface.samples[i].area);
+    const std::uint32_t p = patches.of_sample[i];
+    difference[p] += (Rgb(exitance[i]) - Rgb(truth.exitance[i])) * a;
+    const Rgb error = Rgb(truth.error[i]) * a;
+    variance[p] += error * error;
+    mean += Rgb(truth.exitance[i]) * a;
+    bias += (Rgb(exitance[i]) - Rgb(truth.exitance[i])) * a;
+    area += a;
+  }
+  std::array<std::vector<double>, 3> sizes;
+  for (std::size_t p = 0; p < patches.area.size(); ++p) {
+    if (!(patches.area[p] > 0)) continue;
+    const Rgb d = difference[p] / patches.area[p];
+    squares += (d * d - variance[p] / (patches.area[p] * patches.area[p])) * patches.area[p];
+    for (std::size_t c = 0; c < 3; ++c) sizes[c].push_back(std::abs(d[c]) * area / mean[c]);
+  }
+  fmt::print("{:<28}", name);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto p99 = sizes[c].begin() + std::ptrdiff_t(.99 * double(sizes[c].size()));
+    std::ranges::nth_element(sizes[c], p99);
+    fmt::print("{:>8.2f}{:>+7.2f}{:>6.1f}",
+               100 * std::sqrt(std::max(0.0, squares[c] / area)) * area / mean[c], 100 * bias[c] / mean[c],
+               100 * *p99);
+  }
+  fmt::print("{:>9.2f}\n", seconds);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) return fmt::print("usage: bench_volume_models SCENE TRUTH [KEY=VALUE ...]\n"), 2;
+  const std::vector<std::string> overrides(argv + 3, argv + argc);
+  Scene scene = load_scene(argv[1], overrides);
+  Session session;
+  Truth truth;
+  scene.settings.method = Method::volume;
+  scene.settings.until_error = kUntilError;
+  if (!read_truth(argv[2], truth)) {
+    session.edit(scene);
+    session.prepare();
+    const Body& body = session.bodies()[0];
+    truth = {body.volume->exitance, body.volume->error};
+    fmt::print("{} walks, error {:.1f} %\n", body.volume->walks, 100 * body.volume->relative_error);
+    write_truth(argv[2], truth);
+  }
+  fmt::print("{:<28}", "rms, bias, p99 in %");
+  for (const char* channel : {"red", "green", "blue"}) fmt::print("{:>14}{:>7}", channel, "");
+  fmt::print("{:>9}\n", "seconds");
+  const auto measure = [&](const std::string& name, const auto& exitance_of) {
+    std::vector<RgbF> exitance;
+    const double seconds = user_seconds([&] {
+      session.edit(scene);
+      session.prepare();
+      exitance = exitance_of(session.bodies()[0]);
+    });
+    const Body& body = session.bodies()[0];
+    print_errors(name, body, make_patches(session), truth, exitance, seconds);
+  };
+  scene.settings.method = Method::hierarchical;
+  for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind) {
+    for (Medium& medium : scene.media) medium.profile = ProfileKind(kind);
+    measure(std::string(kProfileNames[kind]), [&](const Body& body) {
+      std::vector<Vec3d> points;
+      std::vector<Vec3f> normals;
+      for (const SurfaceSample& s : body.surface.samples) {
+        points.push_back(out_of_world(session.world(), Vec3d(s.position)));
+        normals.push_back(s.normal);
+      }
+      return radiant_exitance(body, session.world(), points, normals, scene.settings);
+    });
+  }
+  scene.settings.method = Method::volume_diffusion;
+  measure("volume_diffusion", [](const Body& body) { return body.volume->exitance; });
+}

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/diffusion_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace opaline {
+namespace {
+
+constexpr double kLeastVolume = .05;                    // of a lattice cell: what is less belongs to no cell
+constexpr double kLeastDistance = .25;                  // of two centres
+constexpr std::array<double, 3> kThirds{.25, .5, .25};  // trapezoids through three lines
+
+/// A flag for each cell of one size.
+class Flags {
+ public:
+  Flags(int nx, int ny, int nz)
+      : n_{nx, ny, nz}, flags_(std::size_t(nx) * std::size_t(ny) * std::size_t(nz)) {}
+
+  bool at(int i, int j, int k) const { return flags_[place(i, j, k)]; }
+  void set(int i, int j, int k) {
+    if (i >= 0 && j >= 0 && k >= 0 && i < n_[0] && j < n_[1] && k < n_[2]) flags_[place(i, j, k)] = 1;
+  }
+  Flags halved() const {
+    Flags result((n_[0] + 1) / 2, (n_[1] + 1) / 2, (n_[2] + 1) / 2);
+    for_each([&](int i, int j, int k) { result.set(i / 2, j / 2, k / 2); });
+    return result;
+  }
+  /// With all 26 neighbours of each.
+  Flags widened() const {
+    Flags result(n_[0], n_[1], n_[2]);
+    for_each([&](int i, int j, int k) {
+      for (int z = k - 1; z <= k + 1; ++z)
+        for (int y = j - 1; y <= j + 1; ++y)
+          for (int x = i - 1; x <= i + 1; ++x) result.set(x, y, z);
+    });
+    return result;
+  }
+
+ private:
+  std::size_t place(int i, int j, int k) const {
+    return (std::size_t(k) * std::size_t(n_[1]) + std::size_t(j)) * std::size_t(n_[0]) + std::size_t(i);
+  }
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    std::size_t place = 0;
+    for (int k = 0; k < n_[2]; ++k)
+      for (int j = 0; j < n_[1]; ++j)
+        for (int i = 0; i < n_[0]; ++i)
+          if (flags_[place++]) visit(i, j, k);
+  }
+
+  std::array<int, 3> n_;
+  std::vector<std::uint8_t> flags_;
+};
+
+/// Which cells of size 2 the surface meets.
+Flags met_by_surface(const InsideLines& lines, const Lattice& lattice, std::span<const Vec3f> surface) {
+  Flags met(lattice.nx / 2, lattice.ny / 2, lattice.nz / 2);
+  for (const Vec3f& p : surface) met.set(int(p.x) / 2, int(p.y) / 2, int(p.z) / 2);
+  for (int row = 0; row < lines.rows(); ++row)
+    for (int column = 0; column < lines.columns(); ++column)
+      for (const float z : lines.bounds(column, row))
+        for (const int j : {(row - 1) / 4, row / 4})
+          for (const int i : {(column - 1) / 4, column / 4}) met.set(i, j, int(z) / 2);
+  return met;
+}
+
+}  // namespace
+
+struct DiffusionGrid::Builder {
+  Builder(DiffusionGrid& grid_, const InsideLines& lines_, const Lattice& lattice,
+          std::span<const Vec3f> surface)
+      : grid(grid_), lines(lines_), levels{met_by_surface(lines_, lattice, surface)} {
+    while (levels.size() < 3) levels.push_back(levels.back().halved());
+    for (Flags& level : levels) level = level.widened();
+  }
+
+  // `size` cells along each side from (i, j, k) on; divided where the surface is near.
+  void fill(int i, int j, int k, int size) {
+    if (size == 1) return fill_one(i, j, k);
+    const int level = size == 2 ? 0 : size == 4 ? 1 : 2;
+    if (levels[std::size_t(level)].at(i / size, j / size, k / size)) {
+      const int half = size / 2;
+      for (int z = 0; z < size; z += half)
+        for (int y = 0; y < size; y += half)
+          for (int x = 0; x < size; x += half) fill(i + x, j + y, k + z, half);
+      return;
+    }
+    const double middle = .5 * size;
+    if (!lines.contains(2 * i + size, 2 * j + size, k + middle)) return;
+    add({Vec3f(Vec3d(i + middle, j + middle, k + middle)), float(size * size * size)}, {i, j, k}, size);
+  }
+
+  void fill_one(int i, int j, int k) {
+    double volume = 0;
+    Vec3d moment;
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 3; ++x) {
+        const double weight = kThirds[std::size_t(x)] * kThirds[std::size_t(y)];
+        const int column = 2 * i + x, row = 2 * j + y;
+        const double covered = lines.covered(column, row, k, k + 1);
+        if (!(covered > 0)) continue;
+        // What is covered lies against one end of the cell or, where it is whole, in its middle.
+        const bool low = lines.contains(column, row, k);
+        const bool high = lines.contains(column, row, k + 1);
+        const double z = low == high ? .5 : low ? .5 * covered : 1 - .5 * covered;
+        volume += weight * covered;
+        moment += Vec3d(.5 * x, .5 * y, z) * (weight * covered);
+      }
+    if (!(volume > kLeastVolume)) return;
+    add({Vec3f(Vec3d(i, j, k) + moment / volume), float(volume)}, {i, j, k}, 1);
+  }
+
+  void add(const Cell& cell, std::array<int, 3> corner, int size) {
+    const auto index = std::uint32_t(grid.cells_.size());
+    grid.cells_.push_back(cell);
+    corners.push_back(corner);
+    sizes.push_back(size);
+    if (size == kLargest) {
+      grid.bricks_[brick] = kWhole + index;
+      return;
+    }
+    if (grid.bricks_[brick] == kNone) {
+      grid.bricks_[brick] = std::uint32_t(grid.slots_.size());
+      grid.slots_.resize(grid.slots_.size() + 512, kNone);
+    }
+    for (int z = 0; z < size; ++z)
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x)
+          grid.slots_[grid.bricks_[brick] +
+                      std::uint32_t((((corner[2] + z) & 7) * 8 + ((corner[1] + y) & 7)) * 8 +
+                                    ((corner[0] + x) & 7))] = index;
+  }
+
+  // Of the lattice face below (i, j, k) along an axis, how much is inside.
+  double aperture(int i, int j, int k, int axis) const {
+    double sum = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+      const int m = int(n);
+      if (axis == 0) sum += kThirds[n] * lines.covered(2 * i, 2 * j + m, k, k + 1);
+      if (axis == 1) sum += kThirds[n] * lines.covered(2 * i + m, 2 * j, k, k + 1);
+      for (std::size_t x = 0; axis == 2 && x < 3; ++x)
+        sum += kThirds[n] * kThirds[x] * double(lines.contains(2 * i + int(x), 2 * j + m, k));
+    }
+    return sum;
+  }
+
+  template <class Found>
+  void link_above(std::uint32_t cell, int axis, const Found& found) const {
+    const int size = sizes[cell], half = std::max(1, size / 2), parts = size > 1 ? 2 : 1;
+    std::uint32_t before = kNone;
+    for (int v = 0; v < parts; ++v)
+      for (int u = 0; u < parts; ++u) {
+        std::array<int, 3> p = corners[cell];
+        p[std::size_t(axis)] += size;
+        p[std::size_t((axis + 1) % 3)] += u * half;
+        p[std::size_t((axis + 2) % 3)] += v * half;
+        const std::uint32_t other = grid.at(p[0], p[1], p[2]);
+        if (other == kNone || other == before) continue;
+        before = other;
+        const int edge = std::min(size, sizes[other]);
+        const double area = edge > 1 ? edge * edge : aperture(p[0], p[1], p[2], axis);
+        const auto component = std::size_t(axis);
+        const double distance =
+            double(grid.cells_[other].centre[component] - grid.cells_[cell].centre[component]);
+        if (area > 0) found(other, float(area / std::max(kLeastDistance, distance)));
+      }
+  }
+
+  void link() {
+    struct Pair {
+      std::uint32_t a, b;
+      float conductance;
+    };
+    std::vector<Pair> pairs;
+    for (std::uint32_t cell = 0; cell < grid.cells_.size(); ++cell)
+      for (int axis = 0; axis < 3; ++axis)
+        link_above(cell, axis, [&](std::uint32_t other, float conductance) {
+          pairs.push_back({cell, other, conductance});
+        });
+    std::vector<std::uint32_t>& first = grid.first_link_;
+    first.assign(grid.cells_.size() + 1, 0);
+    for (const Pair& pair : pairs) ++first[pair.a + 1], ++first[pair.b + 1];
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    grid.links_.resize(2 * pairs.size());
+    for (const Pair& pair : pairs) {
+      grid.links_[next[pair.a]++] = {pair.b, pair.conductance};
+      grid.links_[next[pair.b]++] = {pair.a, pair.conductance};
+    }
+  }
+
+  DiffusionGrid& grid;
+  const InsideLines& lines;
+  std::vector<Flags> levels;                // of sizes 2, 4, 8: what must be divided
+  std::size_t brick = 0;                    // under way
+  std::vector<std::array<int, 3>> corners;  // of the cells
+  std::vector<int> sizes;
+};
+
+DiffusionGrid::DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Vec3f> surface)
+    : bricks_of_{lattice.nx / kLargest, lattice.ny / kLargest, lattice.nz / kLargest},
+      bricks_(std::size_t(bricks_of_[0]) * std::size_t(bricks_of_[1]) * std::size_t(bricks_of_[2]), kNone) {
+  Builder builder(*this, lines, lattice, surface);
+  for (int k = 0; k < bricks_of_[2]; ++k)
+    for (int j = 0; j < bricks_of_[1]; ++j)
+      for (int i = 0; i < bricks_of_[0]; ++i, ++builder.brick)
+        builder.fill(i * kLargest, j * kLargest, k * kLargest, kLargest);
+  builder.link();
+}
+
+std::uint32_t DiffusionGrid::at(int i, int j, int k) const {
+  if (i < 0 || j < 0 || k < 0) return kNone;
+  const int x = i / kLargest, y = j / kLargest, z = k / kLargest;
+  if (x >= bricks_of_[0] || y >= bricks_of_[1] || z >= bricks_of_[2]) return kNone;
+  const std::uint32_t brick = bricks_[std::size_t((z * bricks_of_[1] + y) * bricks_of_[0] + x)];
+  if (brick == kNone) return kNone;
+  if ((brick & kWhole) != 0) return brick & ~kWhole;
+  return slots_[brick + std::uint32_t(((k & 7) * 8 + (j & 7)) * 8 + (i & 7))];
+}
+
+std::uint32_t DiffusionGrid::at(const Vec3f& point) const {
+  return at(int(std::floor(point.x)), int(std::floor(point.y)), int(std::floor(point.z)));
+}
+
+}  // namespace opaline

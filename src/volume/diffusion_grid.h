@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cells that fill a body: small ones at its surface, larger ones further in.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "volume/inside_lines.h"
+
+namespace opaline {
+
+/// Cells of 1, 2, 4 and 8 lattice cells; a cell has none of less than half its size beside it. Those that the
+/// surface cuts are of size 1, with the share of their volume and of their faces that is inside.
+class DiffusionGrid {
+ public:
+  static constexpr std::uint32_t kNone = ~0u;
+  static constexpr int kLargest = 8;
+
+  struct Cell {
+    Vec3f centre;      ///< of what is inside, lattice units, as all here
+    float volume = 0;  ///< of what is inside
+  };
+  /// To a neighbour. Both cells have one.
+  struct Link {
+    std::uint32_t to;
+    float conductance;  ///< area of the common face over the distance of the centres
+  };
+
+  /// in    surface: points in lattice units; every lattice cell that the surface meets has one in it or beside it
+  ///       lattice: nx, ny, nz multiples of kLargest
+  DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Vec3f> surface);
+
+  std::span<const Cell> cells() const { return cells_; }
+  std::span<const Link> links(std::size_t cell) const {
+    return std::span(links_).subspan(first_link_[cell], first_link_[cell + 1] - first_link_[cell]);
+  }
+  /// The cell around a point; kNone outside the body.
+  std::uint32_t at(const Vec3f& point) const;
+
+ private:
+  struct Builder;
+  static constexpr std::uint32_t kWhole = 0x80000000u;  // a brick that is one cell
+
+  std::uint32_t at(int i, int j, int k) const;
+
+  std::array<int, 3> bricks_of_{};     // along each axis
+  std::vector<std::uint32_t> bricks_;  // kNone, kWhole + cell, or first of its 512 slots
+  std::vector<std::uint32_t> slots_;   // a cell for each lattice cell of a divided brick
+  std::vector<Cell> cells_;
+  std::vector<std::uint32_t> first_link_;
+  std::vector<Link> links_;
+};
+
+}  // namespace opaline

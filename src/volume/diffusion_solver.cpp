@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/diffusion_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "opaline/core/parallel.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::size_t kChunk = 4096;
+constexpr int kMostIterations = 4000;
+
+using Sums = std::array<double, 4>;
+
+class ConjugateGradients {
+ public:
+  ConjugateGradients(const DiffusionProblem& problem, std::vector<Channels> start)
+      : problem_(problem), count_(problem.grid.cells().size()), x_(std::move(start)) {
+    for (std::size_t c = 0; c < 3; ++c) diffusivity_.c[c] = problem.diffusivity[c];
+    const bool from_zero = x_.size() != count_;
+    if (from_zero) x_.assign(count_, {});
+    residual_ = problem.source;
+    inverse_.resize(count_);
+    direction_.resize(count_);
+    product_.resize(count_);
+    squared_ = sum([&](std::size_t i, Sums& sums) {
+      Channels weight;
+      for (const DiffusionGrid::Link& link : problem_.grid.links(i))
+        for (std::size_t c = 0; c < 4; ++c) weight.c[c] += link.conductance;
+      for (std::size_t c = 0; c < 4; ++c) {
+        const float diagonal = diffusivity_.c[c] * weight.c[c] + problem_.loss[i].c[c];
+        inverse_[i].c[c] = diagonal > 0 ? 1 / diagonal : 0;
+        sums[c] += double(residual_[i].c[c]) * double(residual_[i].c[c]) * double(inverse_[i].c[c]);
+      }
+    });
+    source_ = squared_;
+    if (!from_zero) {
+      direction_ = x_;
+      multiply();
+      squared_ = sum([&](std::size_t i, Sums& sums) {
+        for (std::size_t c = 0; c < 4; ++c) {
+          residual_[i].c[c] -= product_[i].c[c];
+          sums[c] += double(residual_[i].c[c]) * double(residual_[i].c[c]) * double(inverse_[i].c[c]);
+        }
+      });
+    }
+    sum([&](std::size_t i, Sums&) {
+      for (std::size_t c = 0; c < 4; ++c) direction_[i].c[c] = residual_[i].c[c] * inverse_[i].c[c];
+    });
+  }
+
+  bool has_converged(double tolerance) const {
+    for (std::size_t c = 0; c < 3; ++c)
+      if (squared_[c] > tolerance * tolerance * source_[c]) return false;
+    return true;
+  }
+
+  void step() {
+    const Sums curvature = multiply();
+    Channels length;
+    for (std::size_t c = 0; c < 4; ++c)
+      length.c[c] = curvature[c] > 0 ? float(squared_[c] / curvature[c]) : 0;
+    const Sums next = sum([&](std::size_t i, Sums& sums) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        x_[i].c[c] += length.c[c] * direction_[i].c[c];
+        residual_[i].c[c] -= length.c[c] * product_[i].c[c];
+        const float scaled = residual_[i].c[c] * inverse_[i].c[c];
+        sums[c] += double(residual_[i].c[c] * scaled);
+      }
+    });
+    Channels turn;
+    for (std::size_t c = 0; c < 4; ++c) turn.c[c] = squared_[c] > 0 ? float(next[c] / squared_[c]) : 0;
+    squared_ = next;
+    sum([&](std::size_t i, Sums&) {
+      for (std::size_t c = 0; c < 4; ++c)
+        direction_[i].c[c] = residual_[i].c[c] * inverse_[i].c[c] + turn.c[c] * direction_[i].c[c];
+    });
+  }
+
+  std::vector<Channels> take() { return std::move(x_); }
+
+ private:
+  // product = matrix x direction; their dot products.
+  Sums multiply() {
+    return sum([&](std::size_t i, Sums& sums) {
+      const Channels own = direction_[i];
+      Channels flow;
+      for (const DiffusionGrid::Link& link : problem_.grid.links(i))
+        for (std::size_t c = 0; c < 4; ++c)
+          flow.c[c] += link.conductance * (own.c[c] - direction_[link.to].c[c]);
+      for (std::size_t c = 0; c < 4; ++c) {
+        product_[i].c[c] = diffusivity_.c[c] * flow.c[c] + problem_.loss[i].c[c] * own.c[c];
+        sums[c] += double(product_[i].c[c] * own.c[c]);
+      }
+    });
+  }
+
+  // Calls visit(cell, sums) for each cell, and adds up the sums of chunks in their order.
+  template <class Visit>
+  Sums sum(const Visit& visit) {
+    std::vector<Sums> parts(chunk_count(count_, kChunk));
+    parallel_chunks(count_, kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+      Sums part{};
+      for (std::size_t i = begin; i < end; ++i) visit(i, part);
+      parts[chunk] = part;
+    });
+    Sums total{};
+    for (const Sums& part : parts)
+      for (std::size_t c = 0; c < 4; ++c) total[c] += part[c];
+    return total;
+  }
+
+  const DiffusionProblem& problem_;
+  std::size_t count_;
+  Channels diffusivity_;
+  std::vector<Channels> x_, residual_, inverse_, direction_, product_;
+  Sums squared_{}, source_{};  // of the residual and of the source
+};
+
+}  // namespace
+
+DiffusionSolution solve_diffusion(const DiffusionProblem& problem, double tolerance,
+                                  std::vector<Channels> start, Monitor* monitor) {
+  ConjugateGradients gradients(problem, std::move(start));
+  DiffusionSolution solution;
+  while (!gradients.has_converged(tolerance) && solution.iterations < kMostIterations) {
+    gradients.step();
+    ++solution.iterations;
+    advance(monitor, 0);
+  }
+  solution.fluence = gradients.take();
+  return solution;
+}
+
+}  // namespace opaline

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Steady diffusion on a grid, all colour channels at once.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "opaline/core/monitor.h"
+#include "volume/diffusion_grid.h"
+
+namespace opaline {
+
+/// R G B and a fourth, unused, that makes them one vector of the machine.
+struct alignas(16) Channels {
+  std::array<float, 4> c{};
+};
+
+/// For each cell: sum over links of diffusivity x conductance x (own - other's fluence) + loss x fluence = source.
+struct DiffusionProblem {
+  const DiffusionGrid& grid;
+  std::array<float, 3> diffusivity{};
+  std::vector<Channels> loss;    ///< one a cell, >= 0
+  std::vector<Channels> source;  ///< one a cell
+};
+
+struct DiffusionSolution {
+  std::vector<Channels> fluence;  ///< one a cell
+  int iterations = 0;
+};
+
+/// Conjugate gradients, preconditioned by the diagonal: on cells that grow inwards a step reaches far.
+/// in    start: a guess, empty or one a cell
+///       tolerance: of the residual, in the norm of the inverse diagonal, over that of the source
+/// out   the same bits for any number of threads
+/// error Error{interrupted}
+DiffusionSolution solve_diffusion(const DiffusionProblem& problem, double tolerance,
+                                  std::vector<Channels> start = {}, Monitor* monitor = nullptr);
+
+}  // namespace opaline
