@@ -17,8 +17,8 @@
 namespace opaline {
 namespace {
 
-constexpr double kTolerance = 1e-4;  // of the solver
-constexpr int kDepths = 2;           // first collisions of a point and light
+constexpr double kTolerance = 1e-3;  // of the solver
+constexpr std::size_t kDepths = 4;   // first collisions of a point and light
 
 Lattice lattice_around(const VolumeDiffusionInput& input, double cell) {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
@@ -33,6 +33,12 @@ Lattice lattice_around(const VolumeDiffusionInput& input, double cell) {
     return DiffusionGrid::kLargest * int(std::ceil((extent / cell + 2.8) / DiffusionGrid::kLargest));
   };
   return {low - margin, cell, cells(high.x - low.x), cells(high.y - low.y), cells(high.z - low.z)};
+}
+
+// Evenly over [0, 1).
+double golden_point(std::size_t i) {
+  const double turns = .5 + .6180339887498949 * double(i);
+  return turns - std::floor(turns);
 }
 
 /// A boundary point in its cell.
@@ -52,21 +58,22 @@ class Solver {
     attach();
   }
 
-  std::vector<RgbF> exitance(int& iterations) const {
+  /// Fills fluence, from that of larger cells if there is any, and gives the exitance, one a sample.
+  std::vector<RgbF> exitance(const Solver* larger) {
     DiffusionProblem problem{grid_, {}, {}, {}};
     for (std::size_t c = 0; c < 3; ++c) problem.diffusivity[c] = float(media_[c].diffusion * lattice_.cell);
     problem.loss = losses();
     std::vector<RgbF> direct(points_.size());
     problem.source = sources(direct);
-    const DiffusionSolution solution = solve_diffusion(problem, kTolerance, {}, input_.monitor);
-    iterations = solution.iterations;
+    std::vector<Channels> start;
+    if (larger != nullptr) start = larger->fluence_in(*this);
+    fluence_ = solve_diffusion(problem, kTolerance, std::move(start), input_.monitor).fluence;
     std::vector<Rgb> flux(input_.samples.size());
     for (std::size_t i = 0; i < points_.size(); ++i) {
       Rgb leaving(direct[i]);
       if (attached_[i].cell != DiffusionGrid::kNone)
         for (std::size_t c = 0; c < 3; ++c)
-          leaving[c] +=
-              double(solution.fluence[attached_[i].cell].c[c]) * media_[c].conductance(attached_[i].depth);
+          leaving[c] += double(fluence_[attached_[i].cell].c[c]) * media_[c].conductance(attached_[i].depth);
       flux[points_[i].sample] += leaving * double(points_[i].area);
     }
     std::vector<RgbF> result;
@@ -75,9 +82,18 @@ class Solver {
     return result;
   }
 
-  std::size_t cells() const { return grid_.cells().size(); }
-
  private:
+  /// The fluence here at the centres of another's cells.
+  std::vector<Channels> fluence_in(const Solver& other) const {
+    std::vector<Channels> result;
+    for (const DiffusionGrid::Cell& cell : other.grid_.cells()) {
+      const Vec3d position = Vec3d(cell.centre) * other.lattice_.cell + other.lattice_.low;
+      const std::uint32_t here = grid_.at(Vec3f(lattice_.into(position)));
+      result.push_back(here == DiffusionGrid::kNone ? Channels{} : fluence_[here]);
+    }
+    return result;
+  }
+
   DiffusionGrid make_grid() const {
     const InsideLines lines(input_.world, input_.meshes, lattice_);
     std::vector<Vec3f> surface;
@@ -132,6 +148,9 @@ class Solver {
     if (!(dot(towards, point.normal) > 0)) return;
     const Vec3d inward = refracted_inward(-Vec3d(towards), normal, input_.media[0].eta);
     const double cosine = -dot(inward, normal), depth = attached_[i].depth;
+    std::array<double, kDepths> depths;  // mean free paths, one of each quarter of the light
+    for (std::size_t k = 0; k < depths.size(); ++k)
+      depths[k] = -std::log1p(-(double(k) + golden_point(i)) / double(kDepths));
     for (std::size_t c = 0; c < 3; ++c) {
       const CalibratedMedium& medium = media_[c];
       if (!(medium.albedo > 0)) continue;
@@ -143,9 +162,8 @@ class Solver {
       direct[c] += float(enters * at_once);
       const double flux = enters * double(point.area);
       source[attached_[i].cell].c[c] += float(flux * (1 - passed - at_once));
-      for (int k = 0; k < kDepths; ++k) {
-        const double share = (k + .5 * (square[0] + square[1])) / kDepths;
-        const double t = path - free_path * std::log1p(-share);
+      for (const double collided : depths) {
+        const double t = path + free_path * collided;
         const std::uint32_t cell = grid_.at(Vec3f(Vec3d(point.position) + inward * (t / lattice_.cell)));
         if (cell != DiffusionGrid::kNone) source[cell].c[c] += float(flux * passed / kDepths);
       }
@@ -158,6 +176,7 @@ class Solver {
   DiffusionGrid grid_;
   std::array<CalibratedMedium, 3> media_;
   std::vector<Attached> attached_;  // one a point
+  std::vector<Channels> fluence_;   // one a cell, once it is solved
 };
 
 }  // namespace
@@ -165,9 +184,13 @@ class Solver {
 VolumeExitance volume_diffusion(const VolumeDiffusionInput& input) {
   VolumeExitance result;
   if (input.samples.empty()) return result;
-  int iterations = 0;
-  result.exitance = Solver(input, input.cell).exitance(iterations);
-  result.error.resize(result.exitance.size());
+  Solver coarse(input, 2 * input.cell);
+  const std::vector<RgbF> rough = coarse.exitance(nullptr);
+  result.exitance = Solver(input, input.cell).exitance(&coarse);
+  for (std::size_t i = 0; i < rough.size(); ++i) {
+    const RgbF change = result.exitance[i] - rough[i];
+    result.error.push_back({std::abs(change.x), std::abs(change.y), std::abs(change.z)});
+  }
   return result;
 }
 
