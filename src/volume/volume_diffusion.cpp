@@ -41,6 +41,8 @@ double golden_point(std::size_t i) {
   return turns - std::floor(turns);
 }
 
+constexpr double kLeastCosine = 1e-3;  // of light inside: against division by 0 where eta < 1
+
 /// A boundary point in its cell.
 struct Attached {
   std::uint32_t cell = DiffusionGrid::kNone;
@@ -147,7 +149,7 @@ class Solver {
     const Vec3d normal(point.normal);
     if (!(dot(towards, point.normal) > 0)) return;
     const Vec3d inward = refracted_inward(-Vec3d(towards), normal, input_.media[0].eta);
-    const double cosine = -dot(inward, normal), depth = attached_[i].depth;
+    const double cosine = std::max(kLeastCosine, -dot(inward, normal)), depth = attached_[i].depth;
     std::array<double, kDepths> depths;  // mean free paths, one of each quarter of the light
     for (std::size_t k = 0; k < depths.size(); ++k)
       depths[k] = -std::log1p(-(double(k) + golden_point(i)) / double(kDepths));

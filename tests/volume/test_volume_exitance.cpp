@@ -1,52 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random walks inside meshes.
 #include "opaline/diffusion/fresnel.h"
-#include "opaline/lights/light.h"
 #include "opaline/volume/laboratory.h"
-#include "opaline/volume/volume_exitance.h"
-#include "support/surfaces.h"
-#include "volume/volume_test.h"
+#include "volume/lit_body.h"
 
 namespace opaline {
 namespace {
 
 using namespace test;
-
-struct LitBody {
-  World world;
-  RayScene rays;
-  std::vector<std::uint32_t> meshes{0};
-  SurfaceSamples surface;
-
-  LitBody(const ShapeSource& shape, std::size_t samples, NormalMode normals = NormalMode::smooth)
-      : world(world_of({shape}, normals)), rays(world), surface(sample_surface({world, meshes, samples})) {}
-
-  VolumeExitance walked(const HomogeneousMedium& medium, const LightSource& source,
-                        std::optional<double> until_error = {}) const {
-    HomogeneousMedium own = medium;
-    own.sigma_a *= world.unit;
-    own.sigma_s *= world.unit;
-    const std::vector<Light> lights{recentred({"light", source}, world.origin, world.unit)};
-    return volume_exitance(
-        {rays, world, meshes, surface.samples, {own, own, own}, lights, until_error, 7, nullptr});
-  }
-
-  /// Mean over samples that `counts`, and its standard error as if cells were independent.
-  template <class Counts>
-  WalkedValue mean_where(const VolumeExitance& exitance, const Counts& counts) const {
-    double area = 0, sum = 0, square = 0;
-    for (std::size_t i = 0; i < surface.samples.size(); ++i) {
-      const SurfaceSample& s = surface.samples[i];
-      if (!counts(s)) continue;
-      area += double(s.area);
-      sum += double(s.area) * double(exitance.exitance[i].x);
-      square += std::pow(double(s.area) * double(exitance.error[i].x), 2);
-    }
-    return {sum / area, std::sqrt(square) / area};
-  }
-};
-
-const auto everywhere = [](const SurfaceSample&) { return true; };
 
 // Claim: a body that absorbs nothing in the same light from everywhere sends out all that enters, all over its
 // surface: a white furnace. Source: conservation; symmetry of the sphere. Tolerance: the mean within 4 standard
