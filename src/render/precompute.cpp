@@ -8,7 +8,6 @@
 #include "opaline/core/random.h"
 #include "opaline/exitance/cloud_error.h"
 #include "opaline/lights/light.h"
-#include "opaline/volume/volume_diffusion.h"
 
 namespace opaline {
 std::uint64_t sampling_seed(const Settings& settings, std::size_t group) {
@@ -76,13 +75,13 @@ VolumeExitance walk_body(const PrecomputeInput& input, const Body& body, std::sp
   return volume_exitance(walks);
 }
 
-VolumeExitance diffuse_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights) {
-  double densest = 0;  // mean free path
-  for (const double length :
-       {body.profile.mean_free_path.x, body.profile.mean_free_path.y, body.profile.mean_free_path.z})
+VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body) {
+  const Rgb& lengths = body.profile.mean_free_path;
+  double densest = 0;
+  for (const double length : {lengths.x, lengths.y, lengths.z})
     if (length > 0 && (densest == 0 || length < densest)) densest = length;
-  return volume_diffusion({input.world, body.plan.meshes, body.surface.samples, lights, body.transfers,
-                           isotropic_media(body.profile), kCellMeanFreePaths * densest, input.monitor});
+  return VolumeDiffusion({input.world, body.plan.meshes, body.surface.samples, isotropic_media(body.profile),
+                          kCellMeanFreePaths * densest});
 }
 
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance) {

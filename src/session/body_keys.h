@@ -29,10 +29,12 @@ bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Setti
 /// What a body's results were computed from.
 struct BodyKeys {
   SampleOrigin origin;
-  StageKey samples_key, tree_key, kernel_key, exitance_key, volume_key;
+  StageKey samples_key, tree_key, kernel_key, exitance_key, volume_key, diffusion_key;
   std::vector<std::uint32_t> meshes;        // that the samples name
   std::vector<StageKey> light_keys;         // of the transfers
   std::optional<SurfaceCache> spare_cache;  // of no use for the picture at hand
+
+  std::shared_ptr<const VolumeDiffusion> diffusion;  // the cells, of diffusion_key
 
   bool is_carried() const { return samples_key != origin.key; }
 };

@@ -122,6 +122,12 @@ bool is_light_of(const LightTransfer& transfer, std::size_t samples) {
          std::ranges::all_of(transfer.weights, [](float weight) { return is_amount(weight); });
 }
 
+bool are_values_of(std::span<const RgbF> values, std::size_t samples) {
+  return values.size() == samples && std::ranges::all_of(values, [](const RgbF& value) {
+           return is_amount(value.x) && is_amount(value.y) && is_amount(value.z);
+         });
+}
+
 bool has_flags(std::span<const char> items, std::size_t item_bytes, std::size_t offset) {
   for (std::size_t at = offset; at < items.size(); at += item_bytes)
     if (static_cast<unsigned char>(items[at]) > 1) return false;

@@ -17,6 +17,9 @@ bool are_samples_of(const SurfaceSamples& samples, const SampledSurface& surface
 
 bool is_light_of(const LightTransfer& transfer, std::size_t samples);
 
+/// One a sample, finite and >= 0.
+bool are_values_of(std::span<const RgbF> values, std::size_t samples);
+
 /// Whether the byte at `offset` of every item is 0 or 1, so that it may be read as a bool.
 bool has_flags(std::span<const char> items, std::size_t item_bytes, std::size_t offset);
 

@@ -163,6 +163,17 @@ std::optional<Octree> get_octree(const BlobReader& entry, const SurfaceSamples& 
   return octree;
 }
 
+void put_volume(BlobWriter& file, const VolumeExitance& volume) {
+  file.put("exitance", std::span(volume.exitance));
+  file.put("error", std::span(volume.error));
+}
+
+std::optional<VolumeExitance> get_volume(const BlobReader& entry, std::size_t samples) {
+  auto exitance = entry.get<RgbF>("exitance"), error = entry.get<RgbF>("error");
+  if (!exitance || !error || !are_values_of(*exitance, samples) || !are_values_of(*error, samples)) return {};
+  return VolumeExitance{.exitance = std::move(*exitance), .error = std::move(*error)};
+}
+
 void put_exitance(BlobWriter& file, const SurfaceCache& exitance, std::span<const std::uint32_t> meshes) {
   std::vector<std::uint32_t> triangles;
   std::vector<SurfaceCache::Split> splits;
@@ -222,6 +233,10 @@ std::uint64_t most_bytes_of_samples(const SampledSurface& surface) {
 
 std::uint64_t most_bytes_of_light(std::size_t samples) {
   return samples * sizeof(float) + kAroundSets;
+}
+
+std::uint64_t most_bytes_of_volume(std::size_t samples) {
+  return samples * 2 * sizeof(RgbF) + kAroundSets;
 }
 
 // A node that is no leaf has two children or more.

@@ -21,6 +21,9 @@ std::optional<LightTransfer> get_light(const BlobReader& entry, std::size_t samp
 void put_octree(BlobWriter& file, const Octree& octree);
 std::optional<Octree> get_octree(const BlobReader& entry, const SurfaceSamples& samples);
 
+void put_volume(BlobWriter& file, const VolumeExitance& volume);
+std::optional<VolumeExitance> get_volume(const BlobReader& entry, std::size_t samples);
+
 void put_exitance(BlobWriter& file, const SurfaceCache& exitance, std::span<const std::uint32_t> meshes);
 std::optional<SurfaceCache> get_exitance(const BlobReader& entry, const World& world,
                                          std::span<const std::uint32_t> meshes);
@@ -28,6 +31,7 @@ std::optional<SurfaceCache> get_exitance(const BlobReader& entry, const World& w
 /// The most bytes that such an entry can have.
 std::uint64_t most_bytes_of_samples(const SampledSurface& surface);
 std::uint64_t most_bytes_of_light(std::size_t samples);
+std::uint64_t most_bytes_of_volume(std::size_t samples);
 std::uint64_t most_bytes_of_octree(std::size_t samples);
 
 }  // namespace opaline

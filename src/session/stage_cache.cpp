@@ -32,6 +32,11 @@ std::optional<Octree> StageCache::find_octree(const StageKey& key, const Surface
               [&](const BlobReader& entry) { return get_octree(entry, samples); });
 }
 
+std::optional<VolumeExitance> StageCache::find_volume(const StageKey& key, std::size_t samples) {
+  return find("volume", key, most_bytes_of_volume(samples),
+              [&](const BlobReader& entry) { return get_volume(entry, samples); });
+}
+
 std::optional<SurfaceCache> StageCache::find_exitance(const StageKey& key, const World& world,
                                                       std::span<const std::uint32_t> meshes) {
   return find("exitance", key, std::numeric_limits<std::uint64_t>::max(),
@@ -49,6 +54,10 @@ void StageCache::keep_light(const StageKey& key, const LightTransfer& transfer) 
 
 void StageCache::keep_octree(const StageKey& key, const Octree& octree) {
   blobs_.keep("octree", key, [&](BlobWriter& file) { put_octree(file, octree); });
+}
+
+void StageCache::keep_volume(const StageKey& key, const VolumeExitance& volume) {
+  blobs_.keep("volume", key, [&](BlobWriter& file) { put_volume(file, volume); });
 }
 
 void StageCache::keep_exitance(const StageKey& key, const SurfaceCache& exitance,

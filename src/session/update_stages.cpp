@@ -189,16 +189,32 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
 
 void Session::State::update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                       const std::vector<Light>& lights) {
-  KeyBuilder builder("volume diffusion", 1);
-  builder.add(octree_key(known.samples_key, known.light_keys, lights)).add(body.profile.eta);
-  builder.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
-  for (const std::uint32_t mesh : body.plan.meshes) builder.add(mesh_keys_[mesh].shape);
-  const StageKey key = builder.key();
+  KeyBuilder cells("diffusion cells", 1);
+  cells.add(known.samples_key).add(body.profile.eta);
+  cells.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
+  for (const std::uint32_t mesh : body.plan.meshes) cells.add(mesh_keys_[mesh].shape);
+  KeyBuilder builder("diffusion", 1);
+  const StageKey cells_key = cells.key();
+  const StageKey key =
+      builder.add(cells_key).add(octree_key(known.samples_key, known.light_keys, lights)).key();
   if (key == known.volume_key) return decide(body, "diffusion kept");
   known.volume_key = {};
-  body.volume = diffuse_body(input, body, lights);
+  std::optional<VolumeExitance> found;
+  if (cache_ != nullptr) found = cache_->find_volume(key, body.surface.samples.size());
+  if (found) {
+    body.volume = std::move(found);
+    ++work_.found;
+    decide(body, "diffusion from the cache");
+  } else {
+    const bool at_hand = known.diffusion != nullptr && known.diffusion_key == cells_key;
+    if (!at_hand) known.diffusion = std::make_shared<const VolumeDiffusion>(diffusion_of(input, body));
+    known.diffusion_key = cells_key;
+    body.volume = known.diffusion->exitance(lights, body.transfers, input.monitor);
+    if (cache_ != nullptr) cache_->keep_volume(key, *body.volume);
+    decide(body, at_hand ? "diffusion solved in the cells at hand" : "diffusion solved");
+    if (!edits_) known.diffusion = nullptr;
+  }
   known.volume_key = key;
-  decide(body, "diffusion solved");
 }
 
 void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights) {

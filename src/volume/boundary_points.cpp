@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "opaline/core/parallel.h"
+#include "opaline/geometry/surface_point.h"
 #include "opaline/volume/nearest_sample.h"
 
 namespace opaline {
@@ -26,7 +27,7 @@ void divide(const std::array<Vec3d, 3>& p, int n, const Found& found) {
 }  // namespace
 
 std::vector<BoundaryPoint> boundary_points(const World& world, std::span<const std::uint32_t> meshes,
-                                           std::span<const SurfaceSample> samples, const Lattice& lattice) {
+                                           std::span<const SurfaceSample> samples, double spacing) {
   std::vector<BoundaryPoint> points;
   for (const std::uint32_t m : meshes) {
     const Mesh& mesh = world.meshes[m];
@@ -34,21 +35,27 @@ std::vector<BoundaryPoint> boundary_points(const World& world, std::span<const s
       const std::array<Vec3d, 3> p{mesh.positions[i], mesh.positions[j], mesh.positions[k]};
       const Vec3d across = cross(p[1] - p[0], p[2] - p[0]);
       const double longest = std::max({length(p[1] - p[0]), length(p[2] - p[1]), length(p[0] - p[2])});
-      const int n = int(std::clamp(std::ceil(longest / lattice.cell), 1., double(kMostParts)));
+      const int n = int(std::clamp(std::ceil(longest / spacing), 1., double(kMostParts)));
       const Vec3f normal(normalized(across));
       const auto area = float(.5 * length(across) / (double(n) * n));
       if (!(area > 0)) continue;
-      divide(p, n, [&](const Vec3d& at) { points.push_back({Vec3f(lattice.into(at)), normal, area, 0}); });
+      divide(p, n, [&](const Vec3d& at) { points.push_back({Vec3f(at), normal, area, 0}); });
     }
   }
   const NearestSample nearest(samples);
   parallel_chunks(points.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i)
-      points[i].sample =
-          nearest.at(Vec3f(Vec3d(points[i].position) * lattice.cell + lattice.low), points[i].normal);
+      points[i].sample = nearest.at(points[i].position, points[i].normal);
   });
   std::vector<double> area(samples.size());
   for (const BoundaryPoint& point : points) area[point.sample] += double(point.area);
+  for (std::uint32_t i = 0; i < samples.size(); ++i) {
+    if (area[i] > 0) continue;  // else no point has come to lie in its cell
+    const SurfaceSample& s = samples[i];
+    const Vec3f normal = surface_point(world.meshes[s.mesh], s.triangle, s.u, s.v).geometric;
+    points.push_back({s.position, normal, s.area, i});
+    area[i] = double(s.area);
+  }
   for (BoundaryPoint& point : points)
     point.area = float(double(point.area) * double(samples[point.sample].area) / area[point.sample]);
   return points;

@@ -6,21 +6,21 @@
 #include <span>
 #include <vector>
 
+#include "opaline/geometry/world.h"
 #include "opaline/sampling/sample_surface.h"
-#include "volume/inside_lines.h"
 
 namespace opaline {
 
 struct BoundaryPoint {
-  Vec3f position;        ///< in the lattice
-  Vec3f normal;          ///< geometric, outward
-  float area;            ///< world units^2
+  Vec3f position;  ///< in the lattice
+  Vec3f normal;    ///< geometric, outward
+  float area;
   std::uint32_t sample;  ///< whose cell of the surface it is in
 };
 
-/// Triangles divided until their parts are no longer than a lattice cell. The areas of a sample's points add up to
+/// Triangles divided until their parts are no longer than `spacing`. The areas of a sample's points add up to
 /// the sample's.
 std::vector<BoundaryPoint> boundary_points(const World& world, std::span<const std::uint32_t> meshes,
-                                           std::span<const SurfaceSample> samples, const Lattice& lattice);
+                                           std::span<const SurfaceSample> samples, double spacing);
 
 }  // namespace opaline

@@ -17,10 +17,10 @@ constexpr double kMostAlbedo = 1 - 1e-9;  // beyond, shares are 1 to rounding, w
 }  // namespace
 
 CalibratedMedium::CalibratedMedium(const HomogeneousMedium& medium)
-    : extinction(medium.sigma_t()), absorption(medium.sigma_a), albedo(medium.albedo()) {
+    : eta(medium.eta), extinction(medium.sigma_t()), absorption(medium.sigma_a), albedo(medium.albedo()) {
   if (!(albedo > 0)) return;
   diffusion = 1 / (3 * extinction);
-  const double eta = medium.eta, used = std::min(albedo, kMostAlbedo);
+  const double used = std::min(albedo, kMostAlbedo);
   const double decay = std::sqrt(3 * (1 - used));  // per mean free path
   const HalfSpace exact(used, eta);
   // Mean of 1 / (1 + decay cosine) over light from all directions, by cosines outside.

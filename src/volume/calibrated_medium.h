@@ -18,6 +18,7 @@ struct CalibratedMedium {
   /// What a half space returns of light that entered with this cosine, over what diffusion says.
   double entry_factor(double cos_inside) const;
 
+  double eta = 1;
   double extinction = 0;  ///< sigma_t', per unit of length
   double absorption = 0;  ///< sigma_a
   double albedo = 0;

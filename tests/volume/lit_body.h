@@ -51,14 +51,12 @@ struct LitBody {
   VolumeExitance diffused(const std::array<HomogeneousMedium, 3>& media, const LightSource& source,
                           double cell) const {
     const std::vector<LightTransfer> transfer = transfers(source, media[0].eta);
-    return volume_diffusion({world,
-                             meshes,
-                             surface.samples,
-                             lights_of(source),
-                             transfer,
-                             {in_units(media[0]), in_units(media[1]), in_units(media[2])},
-                             cell / world.unit,
-                             nullptr});
+    const VolumeDiffusion body({world,
+                                meshes,
+                                surface.samples,
+                                {in_units(media[0]), in_units(media[1]), in_units(media[2])},
+                                cell / world.unit});
+    return body.exitance(lights_of(source), transfer);
   }
 
   /// Mean over samples that `counts`, and its standard error as if cells were independent.

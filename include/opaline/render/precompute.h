@@ -16,6 +16,7 @@
 #include "opaline/octree/octree.h"
 #include "opaline/render/plan.h"
 #include "opaline/sampling/sample_surface.h"
+#include "opaline/volume/volume_diffusion.h"
 #include "opaline/volume/volume_exitance.h"
 
 namespace opaline {
@@ -64,8 +65,8 @@ std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 /// coefficients: they are what a scene says of a medium.
 VolumeExitance walk_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights);
 
-/// The diffusion equation inside a body with its samples and transfers; media as for walks.
-VolumeExitance diffuse_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights);
+/// The cells of a body with its samples, for the diffusion equation inside of it; media as for walks.
+VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body);
 
 /// irradiance: one a sample.
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);

@@ -13,6 +13,7 @@
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/octree/octree.h"
 #include "opaline/sampling/sample_surface.h"
+#include "opaline/volume/volume_exitance.h"
 
 namespace opaline {
 
@@ -38,6 +39,8 @@ class StageCache {
   std::optional<LightTransfer> find_light(const StageKey& key, std::size_t samples);
   /// The tree over these samples.
   std::optional<Octree> find_octree(const StageKey& key, const SurfaceSamples& samples);
+  /// What leaves the cells of so many samples.
+  std::optional<VolumeExitance> find_volume(const StageKey& key, std::size_t samples);
   /// meshes: the group's, in its order
   std::optional<SurfaceCache> find_exitance(const StageKey& key, const World& world,
                                             std::span<const std::uint32_t> meshes);
@@ -49,6 +52,8 @@ class StageCache {
   void keep_light(const StageKey& key, const LightTransfer& transfer);
   /// The tree over a body's samples.
   void keep_octree(const StageKey& key, const Octree& octree);
+  /// What leaves the cells of a body's samples.
+  void keep_volume(const StageKey& key, const VolumeExitance& volume);
   /// meshes: the body's, in its order.
   void keep_exitance(const StageKey& key, const SurfaceCache& exitance,
                      std::span<const std::uint32_t> meshes);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 
 #include "opaline/core/monitor.h"
@@ -15,22 +16,36 @@ namespace opaline {
 
 struct VolumeDiffusionInput {
   const World& world;
-  std::span<const std::uint32_t> meshes;     ///< the body's
-  std::span<const SurfaceSample> samples;    ///< of the body
-  std::span<const Light> lights;             ///< recentred
-  std::span<const LightTransfer> transfers;  ///< one a light: what enters at the samples
-  std::array<HomogeneousMedium, 3> media;    ///< R G B, isotropic, in the world's unit of length
-  double cell = 1;                           ///< edge of the cells at the surface, world units
-  Monitor* monitor = nullptr;
+  std::span<const std::uint32_t> meshes;   ///< the body's
+  std::span<const SurfaceSample> samples;  ///< of the body
+  std::array<HomogeneousMedium, 3> media;  ///< R G B, isotropic, in the world's unit of length
+  double cell = 1;                         ///< edge of the cells at the surface, world units
 };
 
-/// The edge, in mean free paths of the densest channel, that keeps bodies of most shapes within 3 % (README.md).
-inline constexpr double kCellMeanFreePaths = 1;
+/// Edge of the cells at the surface, in mean free paths of the densest channel that scatters.
+inline constexpr double kCellMeanFreePaths = 1.5;
 
-/// Light collides for the first time along the refracted rays and spreads by diffusion from there; cells of twice
-/// the size tell the error.
-/// out   exitance and error, one a sample, as of random walks; walks 0
-/// error Error{interrupted}
-VolumeExitance volume_diffusion(const VolumeDiffusionInput& input);
+/// Light collides for the first time along the refracted rays and spreads by diffusion from there, on cells that
+/// grow inwards. Linear in the lights; the cells do not depend on them. Theory and measurements: src/volume/README.md.
+class VolumeDiffusion {
+ public:
+  explicit VolumeDiffusion(const VolumeDiffusionInput& input);
+  VolumeDiffusion(VolumeDiffusion&&) noexcept;
+  ~VolumeDiffusion();
+
+  /// in    lights: recentred; transfers: one a light, what enters at the samples
+  /// out   exitance and error, one a sample, as of random walks. The error is the difference from cells of twice the
+  ///       size, not that of diffusion itself. walks, relative_error, lost: 0. The same bits for any number of threads
+  /// error Error{interrupted}
+  VolumeExitance exitance(std::span<const Light> lights, std::span<const LightTransfer> transfers,
+                          Monitor* monitor = nullptr) const;
+
+  /// Cells of the finer grid.
+  std::size_t cells() const;
+
+ private:
+  struct State;
+  std::unique_ptr<const State> state_;
+};
 
 }  // namespace opaline
