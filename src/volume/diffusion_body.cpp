@@ -114,6 +114,20 @@ std::vector<Channels> DiffusionBody::losses() const {
   return loss;
 }
 
+// The last cell of a way that ends outside.
+std::uint32_t DiffusionBody::last_cell(const Vec3d& from, const Vec3d& way, std::uint32_t first) const {
+  constexpr int kHalvings = 8;
+  std::uint32_t last = first;
+  double inside = 0, outside = 1;
+  for (int step = 0; step < kHalvings; ++step) {
+    const double middle = .5 * (inside + outside);
+    const std::uint32_t cell = grid_.at(Vec3f(from + way * middle));
+    (cell == DiffusionGrid::kNone ? outside : inside) = middle;
+    if (cell != DiffusionGrid::kNone) last = cell;
+  }
+  return last;
+}
+
 // Light of one source that enters at a point: what collides between the point and the centre of its cell leaves in
 // part at once, as between two resistances; of the rest of its way one place stands for all.
 void DiffusionBody::deposit(const EnteringLight& light, std::size_t l, std::size_t i,
@@ -140,9 +154,15 @@ void DiffusionBody::deposit(const EnteringLight& light, std::size_t l, std::size
     leaves[c] += float(enters * at_once);
     const double flux = enters * double(point.area);
     source[attached_[i].cell].c[c] += float(flux * (1 - passed - at_once));
-    const double t = path + free_path * collided;
-    const std::uint32_t cell = grid_.at(Vec3f(in_lattice(point) + inward * (t / lattice_.cell)));
-    if (cell != DiffusionGrid::kNone) source[cell].c[c] += float(flux * passed);
+    const Vec3d from = in_lattice(point), along = inward / lattice_.cell;
+    const std::uint32_t cell = grid_.at(Vec3f(from + along * (path + free_path * collided)));
+    if (cell != DiffusionGrid::kNone) {
+      source[cell].c[c] += float(flux * passed);
+    } else {  // it crosses the body
+      const double crosses = entering[c] * double(point.area) * passed;
+      source[last_cell(from + along * path, along * (free_path * collided), attached_[i].cell)].c[c] +=
+          float(crosses);
+    }
   }
 }
 

@@ -51,6 +51,7 @@ class DiffusionBody {
   Vec3d in_lattice(const BoundaryPoint& point) const { return lattice_.into(Vec3d(point.position)); }
   void attach();
   std::vector<Channels> losses() const;
+  std::uint32_t last_cell(const Vec3d& from, const Vec3d& way, std::uint32_t first) const;
   void deposit(const EnteringLight& light, std::size_t l, std::size_t point, std::vector<Channels>& source,
                RgbF& at_once) const;
 

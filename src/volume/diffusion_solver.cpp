@@ -79,7 +79,21 @@ class ConjugateGradients {
     });
   }
 
-  std::vector<Channels> take() { return std::move(x_); }
+  /// The solution, scaled so that all that comes in is lost.
+  std::vector<Channels> take() {
+    const Sums lost = sum([&](std::size_t i, Sums& sums) {
+      for (std::size_t c = 0; c < 4; ++c) sums[c] += double(problem_.loss[i].c[c]) * double(x_[i].c[c]);
+    });
+    const Sums came = sum([&](std::size_t i, Sums& sums) {
+      for (std::size_t c = 0; c < 4; ++c) sums[c] += double(problem_.source[i].c[c]);
+    });
+    Channels scale;
+    for (std::size_t c = 0; c < 4; ++c) scale.c[c] = lost[c] > 0 ? float(came[c] / lost[c]) : 1;
+    sum([&](std::size_t i, Sums&) {
+      for (std::size_t c = 0; c < 4; ++c) x_[i].c[c] *= scale.c[c];
+    });
+    return std::move(x_);
+  }
 
  private:
   // product = matrix x direction; their dot products.

@@ -31,7 +31,7 @@ struct DiffusionSolution {
 /// Conjugate gradients, preconditioned by the diagonal: on cells that grow inwards a step reaches far.
 /// in    start: a guess, empty or one a cell
 ///       tolerance: of the residual, in the norm of the inverse diagonal, over that of the source
-/// out   the same bits for any number of threads
+/// out   losses and sources balance to rounding; the same bits for any number of threads
 /// error Error{interrupted}
 DiffusionSolution solve_diffusion(const DiffusionProblem& problem, double tolerance,
                                   std::vector<Channels> start = {}, Monitor* monitor = nullptr);
