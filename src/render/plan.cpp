@@ -13,6 +13,7 @@
 #include "opaline/render/render.h"
 #include "opaline/render/surface_caches.h"
 #include "opaline/sampling/sample_surface.h"
+#include "opaline/volume/volume_diffusion.h"
 #include "opaline/volume/volume_exitance.h"
 #include "render/check_reach.h"
 #include "render/light_distance.h"
@@ -84,6 +85,29 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
         group.name, mean_free_path, wanted, group.area));
   group.samples = std::max<std::size_t>(1, std::size_t(std::ceil(count)));
   group.spacing = std::sqrt(group.area / double(group.samples));
+}
+
+// The cells of volume_diffusion: as asked for, but no more than memory should hold, and several across a thin body.
+void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
+  constexpr double kMostCells = 1.2e6, kAcrossThin = 4, kSmallest = .25;
+  constexpr double kTooWide = 3, kTooThin = 3;  // mean free paths
+  const double length = group.smallest_mean_free_path;
+  group.cell = scene.settings.cell_size * length;
+  if (group.thickness > 0)
+    group.cell = std::min(group.cell, std::max(group.thickness / kAcrossThin, kSmallest * group.cell));
+  group.cell = std::max(group.cell, std::sqrt(expected_cells(group.area, 1) / kMostCells));
+  if (group.cell > std::max(kTooWide, scene.settings.cell_size) * length)
+    warnings.push_back(
+        fmt::format("{}: light leaves within {:.3g} mm and cells smaller than {:.3g} mm would be too many; "
+                    "on its scale the "
+                    "surface is flat: --method hierarchical has no such limit",
+                    group.name, length, group.cell));
+  if (group.thickness > 0 && group.thickness < kTooThin * length)
+    warnings.push_back(
+        fmt::format("{}: it is {:.3g} mean free paths thick in the mean; light crosses it almost without "
+                    "scattering, which "
+                    "diffusion cannot tell; --method volume can",
+                    group.name, group.thickness / length));
 }
 
 double mean_thickness(const World& world, const GroupPlan& group) {
@@ -229,7 +253,13 @@ void list_stages(const Scene& scene, Plan& plan) {
     } else {
       plan.stages.push_back(irradiance_stage(scene));
     }
-    if (method == Method::volume_diffusion) plan.stages.push_back("diffusion: cells inside the bodies");
+    for (const GroupPlan& group : plan.groups)
+      if (method == Method::volume_diffusion)
+        plan.stages.push_back(
+            fmt::format("diffusion: about {:.2g} cells in {}, {:.3g} mm at the surface: {:.3g} mean "
+                        "free paths",
+                        expected_cells(group.area, group.cell), group.name, group.cell,
+                        group.cell / group.smallest_mean_free_path));
     if (method == Method::hierarchical) {
       plan.stages.push_back("octree");
       plan.stages.push_back(evaluation_stage(scene.settings));
@@ -281,6 +311,11 @@ Plan make_plan(const Scene& scene, const World& world) {
   for (GroupPlan& group : plan.groups) {
     choose_samples(scene, group, plan.warnings);
     if (scene.settings.method == Method::volume) plan.bytes += group.samples * (191 + kBytesOfWalkedCell);
+    if (scene.settings.method == Method::volume_diffusion) {
+      choose_cells(scene, group, plan.warnings);
+      plan.bytes += group.samples * (191 + 4 * scene.lights.size() + 2 * 24);
+      plan.bytes += std::size_t(kBytesOfCell * expected_cells(group.area, group.cell));
+    }
     if (scene.settings.method != Method::hierarchical) continue;
     warn_of_near_lights(scene, world, group, plan.warnings);
     warn_of_thin_body(group, plan.warnings);

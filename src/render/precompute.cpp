@@ -76,12 +76,8 @@ VolumeExitance walk_body(const PrecomputeInput& input, const Body& body, std::sp
 }
 
 VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body) {
-  const Rgb& lengths = body.profile.mean_free_path;
-  double densest = 0;
-  for (const double length : {lengths.x, lengths.y, lengths.z})
-    if (length > 0 && (densest == 0 || length < densest)) densest = length;
   return VolumeDiffusion({input.world, body.plan.meshes, body.surface.samples, isotropic_media(body.profile),
-                          kCellMeanFreePaths * densest});
+                          body.plan.cell / input.world.unit});
 }
 
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance) {

@@ -171,7 +171,8 @@ std::span<const Member<Settings>> settings_members() {
           "method", choice, "", kFiniteNumber, "",
           "`\"hierarchical\"`: light under the surface; `\"lambert\"`: the same scene as plain paint, fast; "
           "`\"direct\"`: the same light under the surface at random, slow, noisy and without bias: the "
-          "reference; `\"volume\"`: random walks inside the bodies, slow and noisy: the truth"),
+          "reference; `\"volume\"`: random walks inside the bodies, slow and noisy: the truth; "
+          "`\"volume_diffusion\"`: diffusion solved inside the bodies, without a kernel: near the truth"),
       member<&Settings::evaluator>("evaluator", choice, "", kFiniteNumber, "",
                                    "`\"dual_tree\"`: clusters of points against the octree's nodes, to a "
                                    "tolerance; `\"surface_cache\"`: "
@@ -224,6 +225,10 @@ std::span<const Member<Settings>> settings_members() {
           "until_error", number, "", {0, 1, true}, "none",
           "direct, volume: stop when the estimated noise of the pixels or cells (rms "
           "of the standard error, relative) is this small"),
+      member<&Settings::cell_size>(
+          "cell_size", number, "mean free paths", {.05, 100}, "",
+          "volume_diffusion: edge of the cells at the surface; smaller is slower and "
+          "closer to the truth"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
                               "of all random numbers; the same seed gives the same picture"),
       member<&Settings::reference_frame>("reference_frame", whole_number, "", {0, 1e9}, "",

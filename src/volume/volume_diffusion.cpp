@@ -46,6 +46,10 @@ struct VolumeDiffusion::State {
   DiffusionBody coarse, fine;
 };
 
+double expected_cells(double area, double cell) {
+  return 4.5 * area / (cell * cell);  // measured on bunnies and spheres: 4.3 to 4.6
+}
+
 VolumeDiffusion::VolumeDiffusion(const VolumeDiffusionInput& input)
     : state_(std::make_unique<const State>(input)) {}
 VolumeDiffusion::VolumeDiffusion(VolumeDiffusion&&) noexcept = default;

@@ -23,6 +23,7 @@ struct GroupPlan {
   double spacing = 0;                  ///< sqrt(area / samples), mm
   std::size_t samples = 0;
   std::string reason;  ///< why this many
+  double cell = 0;     ///< volume_diffusion: edge of its cells at the surface, mm
 };
 
 struct Plan {

@@ -194,6 +194,7 @@ struct Settings {
   EntryStrategy entry_strategy = EntryStrategy::disc_axes;  ///< direct: how entry points are drawn
   std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
   std::optional<double> until_error;         ///< direct: stop at this estimated relative error of the pixels
+  double cell_size = 1.5;  ///< volume_diffusion: of the cells at the surface, mean free paths
   std::uint64_t seed = 0;
   int reference_frame = 1;  ///< of frame ranges: samples are placed there and go along to all others
   friend bool operator==(const Settings&, const Settings&) = default;

@@ -22,8 +22,10 @@ struct VolumeDiffusionInput {
   double cell = 1;                         ///< edge of the cells at the surface, world units
 };
 
-/// Edge of the cells at the surface, in mean free paths of the densest channel that scatters.
-inline constexpr double kCellMeanFreePaths = 1.5;
+/// About how many cells a body has, and the bytes that they and its surface take: from area and edge of a cell.
+double expected_cells(double area, double cell);
+/// Measured: 400 a cell, with both grids and the solver's vectors.
+inline constexpr double kBytesOfCell = 400;
 
 /// Light collides for the first time along the refracted rays and spreads by diffusion from there, on cells that
 /// grow inwards. Linear in the lights; the cells do not depend on them. Theory and measurements: src/volume/README.md.
