@@ -1,11 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sun: parallel light from infinitely far.
+// A sun: light from infinitely far, parallel or from a small disc.
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "lights/light_of.h"
 #include "opaline/scene/light_reader.h"
 
 namespace opaline {
+namespace {
+
+/// The squared sine of half the disc's angle.
+double half_sine2(const DirectionalLight& light) {
+  const double sine = std::sin(light.angle * std::numbers::pi / 360);
+  return sine * sine;
+}
+
+/// 1 - cosine of half the disc's angle.
+double cap(double sine2) {
+  return sine2 / (1 + std::sqrt(1 - sine2));
+}
+
+}  // namespace
 
 template <>
 std::vector<KeyInfo> LightReader<DirectionalLight>::rows() {
@@ -16,7 +33,13 @@ std::vector<KeyInfo> LightReader<DirectionalLight>::rows() {
            .type = color,
            .unit = "W/mm²",
            .range = kNonNegative,
-           .meaning = "on a surface that faces it"}};
+           .meaning = "on a surface that faces it"},
+          {.key = "angle",
+           .type = number,
+           .unit = "degrees",
+           .range = {0, 90},
+           .default_value = "0",
+           .meaning = "of the disc that it is in the sky; the sun has .53; wider blurs shadows"}};
 }
 
 template <>
@@ -24,7 +47,8 @@ DirectionalLight LightReader<DirectionalLight>::read(const ObjectReader& reader,
   const Value direction = reader.need("direction");
   const Vec3d unit = normalized(direction.triple());
   if (unit == Vec3d{}) direction.fail("has no direction", "not [0, 0, 0]");
-  return {unit, reader.need("irradiance").color()};
+  const auto angle = reader.find("angle");
+  return {unit, reader.need("irradiance").color(), angle ? angle->number() : 0};
 }
 
 template <>
@@ -33,8 +57,8 @@ Rgb LightOf<DirectionalLight>::emission(const DirectionalLight& light) {
 }
 
 template <>
-bool LightOf<DirectionalLight>::is_delta() {
-  return true;
+bool LightOf<DirectionalLight>::is_delta(const DirectionalLight& light) {
+  return light.angle == 0;
 }
 
 template <>
@@ -42,10 +66,19 @@ DirectionalLight LightOf<DirectionalLight>::recentred(DirectionalLight light, co
   return light;
 }
 
+// Uniform over the disc's solid angle; the disc's radiance is irradiance / (pi sin^2 of half its angle).
 template <>
 LightSample LightOf<DirectionalLight>::sample(const DirectionalLight& light, const Vec3f&, const Vec3f&,
-                                              std::array<double, 2>, int) {
-  return {Vec3f(-light.direction), std::numeric_limits<float>::infinity(), 1};
+                                              std::array<double, 2> unit_square, int samples) {
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  if (light.angle == 0) return {Vec3f(-light.direction), kFar, 1};
+  const double sine2 = half_sine2(light), drop = cap(sine2) * unit_square[0];
+  const double cosine = 1 - drop, sine = std::sqrt(std::max(0.0, drop * (2 - drop)));
+  const double phi = 2 * std::numbers::pi * unit_square[1];
+  Vec3d x, y;
+  tangent_frame(-light.direction, x, y);
+  const Vec3d direction = x * (sine * std::cos(phi)) + y * (sine * std::sin(phi)) - light.direction * cosine;
+  return {Vec3f(direction), kFar, float(2 * cap(sine2) / (sine2 * samples))};
 }
 
 template <>
@@ -54,18 +87,22 @@ EmitterHit LightOf<DirectionalLight>::intersect(const DirectionalLight&, const V
 }
 
 template <>
-RgbF LightOf<DirectionalLight>::background(const DirectionalLight&, const Vec3f&) {
-  return {};
+RgbF LightOf<DirectionalLight>::background(const DirectionalLight& light, const Vec3f& direction) {
+  if (light.angle == 0) return {};
+  const double sine2 = half_sine2(light);
+  if (-dot(Vec3d(direction), light.direction) < 1 - cap(sine2)) return {};
+  return RgbF(light.irradiance / (std::numbers::pi * sine2));
 }
 
 template <>
 LightExtent LightOf<DirectionalLight>::extent(const DirectionalLight& light) {
+  if (light.angle > 0) return {};  // no one direction: taken as all around
   return {.towards = -light.direction};
 }
 
 template <>
 std::vector<double> LightOf<DirectionalLight>::geometry(const DirectionalLight& light) {
-  return {light.direction.x, light.direction.y, light.direction.z};
+  return {light.direction.x, light.direction.y, light.direction.z, light.angle};
 }
 
 }  // namespace opaline

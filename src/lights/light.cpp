@@ -20,7 +20,7 @@ Rgb emission(const Light& light) {
 }
 
 bool is_delta(const Light& light) {
-  return by_kind(light, [](const auto&, auto of) { return of.is_delta(); });
+  return by_kind(light, [](const auto& kind, auto of) { return of.is_delta(kind); });
 }
 
 std::uint64_t light_seed(std::uint64_t seed, const Light& light) {

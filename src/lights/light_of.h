@@ -14,7 +14,7 @@ namespace opaline {
 template <class Kind>
 struct LightOf {
   static Rgb emission(const Kind& light);
-  static bool is_delta();
+  static bool is_delta(const Kind& light);
   /// The light in a world's space, as recentred says.
   static Kind recentred(Kind light, const Vec3d& origin, double unit);
   static LightSample sample(const Kind& light, const Vec3f& point, const Vec3f& normal,

@@ -30,7 +30,7 @@ Rgb LightOf<PointLight>::emission(const PointLight& light) {
 }
 
 template <>
-bool LightOf<PointLight>::is_delta() {
+bool LightOf<PointLight>::is_delta(const PointLight&) {
   return true;
 }
 

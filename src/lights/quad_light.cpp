@@ -38,7 +38,7 @@ Rgb LightOf<QuadLight>::emission(const QuadLight& light) {
 }
 
 template <>
-bool LightOf<QuadLight>::is_delta() {
+bool LightOf<QuadLight>::is_delta(const QuadLight&) {
   return false;
 }
 

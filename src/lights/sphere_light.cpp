@@ -34,7 +34,7 @@ Rgb LightOf<SphereLight>::emission(const SphereLight& light) {
 }
 
 template <>
-bool LightOf<SphereLight>::is_delta() {
+bool LightOf<SphereLight>::is_delta(const SphereLight&) {
   return false;
 }
 

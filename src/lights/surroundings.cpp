@@ -26,7 +26,7 @@ Rgb LightOf<Surroundings>::emission(const Surroundings& light) {
 }
 
 template <>
-bool LightOf<Surroundings>::is_delta() {
+bool LightOf<Surroundings>::is_delta(const Surroundings&) {
   return false;
 }
 

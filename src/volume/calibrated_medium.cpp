@@ -5,7 +5,7 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
-#include "opaline/volume/half_space.h"
+#include "opaline/diffusion/half_space.h"
 #include "opaline/volume/smooth_boundary.h"
 
 namespace opaline {
@@ -22,7 +22,7 @@ CalibratedMedium::CalibratedMedium(const HomogeneousMedium& medium)
   diffusion = 1 / (3 * extinction);
   const double used = std::min(albedo, kMostAlbedo);
   const double decay = std::sqrt(3 * (1 - used));  // per mean free path
-  const HalfSpace exact(used, eta);
+  const HalfSpace exact(1 - used, eta);
   // Mean of 1 / (1 + decay cosine) over light from all directions, by cosines outside.
   const auto entering = [&](double outside) { return outside * (1 - fresnel_reflectance(outside, eta)); };
   const auto spread = [&](double outside) {

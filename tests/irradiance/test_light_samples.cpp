@@ -116,5 +116,55 @@ TEST(LightSamples, ColourAndPlace) {
   EXPECT_EQ(std::get<QuadLight>(recentred(quad, {1, 1, 1}).source).corner, Vec3d(0, 1, 2));
 }
 
+// Claim: a spot light is a point light along its middle, fades beyond the inner angle and ends at the rim. Source:
+// KHR_lights_punctual's formula, by hand. Tolerance: 1e-6. Fails if: angles are full ones, or the ramp is in degrees.
+TEST(LightSamples, SpotFadesToItsRim) {
+  SpotLight spot{{0, 2, 0}, {0, -1, 0}, Rgb(1)};
+  spot.inner_angle = 20;
+  spot.outer_angle = 40;
+  const auto weight = [&](double degrees) {  // on the floor, seen at this angle
+    const Vec3f point(float(2 * std::tan(degrees * pi / 180)), 0, 0);
+    return double(sample_light(light_of(spot), point, {0, 1, 0}, {}, 1).weight) *
+           std::pow(2 / std::cos(degrees * pi / 180), 2);
+  };
+  const auto cosine = [](double degrees) { return std::cos(degrees * pi / 180); };
+  EXPECT_NEAR(weight(0), 1, 1e-6);
+  EXPECT_NEAR(weight(19.9), 1, 1e-6);
+  EXPECT_NEAR(weight(30), std::pow((cosine(30) - cosine(40)) / (cosine(20) - cosine(40)), 2), 1e-6);
+  EXPECT_EQ(weight(40.1), 0);
+  EXPECT_EQ(sample_light(light_of(spot), {0, 3, 0}, {0, 1, 0}, {}, 1).weight, 0);
+  EXPECT_TRUE(is_delta(light_of(spot)));
+}
+
+// Claim: a sun with an angle sends the irradiance it says to a surface that faces it, cos times that to others, from
+// directions within its disc, and its disc's radiance is what a camera sees. Source: the integral of the cosine over
+// a disc of half angle a is pi sin^2 a. Tolerance: 1e-4. Fails if: weights are per solid angle without the cosine,
+// or the angle is taken as half.
+TEST(LightSamples, SunWithAnAngle) {
+  DirectionalLight sun{normalized(Vec3d(1, -2, 2)), Rgb(1)};
+  sun.angle = 30;
+  const Light light = light_of(sun);
+  for (const double tilt : {0., 50.}) {
+    Vec3d x, y;
+    tangent_frame(-sun.direction, x, y);
+    const Vec3d normal = -sun.direction * std::cos(tilt * pi / 180) + x * std::sin(tilt * pi / 180);
+    const double sum = sum_over_square(light, {}, Vec3f(normal), 64, [&](const LightSample& s) {
+      EXPECT_GE(-dot(Vec3d(s.direction), sun.direction), std::cos(15.001 * pi / 180));
+      return double(s.weight) * dot(Vec3d(s.direction), normal);
+    });
+    EXPECT_NEAR(sum, std::cos(tilt * pi / 180), 1e-4) << tilt;
+  }
+  const double radiance = 1 / (pi * std::pow(std::sin(15 * pi / 180), 2));
+  EXPECT_NEAR(double(background(light, Vec3f(-sun.direction)).x), radiance, 1e-4 * radiance);
+  Vec3d x, y;
+  tangent_frame(-sun.direction, x, y);
+  const auto aside = [&](double degrees) {
+    return Vec3f(-sun.direction * std::cos(degrees * pi / 180) + x * std::sin(degrees * pi / 180));
+  };
+  EXPECT_GT(background(light, aside(14.9)).x, 0);
+  EXPECT_EQ(background(light, aside(15.1)).x, 0);
+  EXPECT_FALSE(is_delta(light));
+}
+
 }  // namespace
 }  // namespace opaline

@@ -1,53 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The diffusion equation inside meshes, and the half space that calibrates it.
+// The diffusion equation inside meshes.
 #include "opaline/diffusion/fresnel.h"
-#include "opaline/volume/half_space.h"
+#include "opaline/diffusion/half_space.h"
 #include "volume/lit_body.h"
 
 namespace opaline {
 namespace {
 
 using namespace test;
-
-struct HalfSpaceRow {
-  double albedo, normal, diffuse;
-};
-
-// Claim: what a half space returns, for light along the normal and from everywhere. Source: Chandrasekhar's
-// 1 - sqrt(1 - c) H(1) at eta 1 and an independent computation at 1.3, per incident light. Tolerance: the last digit
-// at eta 1; 3e-5 at 1.3, whose source takes fewer ordinates near the critical angle. Fails if: reflection at the
-// boundary is not that of each direction, or a root of the dispersion relation is missed.
-TEST(HalfSpace, ReturnsWhatTransportSays) {
-  constexpr HalfSpaceRow matched[] = {{.2, .035230524, .046264871},  {.5, .115225878, .146544381},
-                                      {.8, .285254503, .341866848},  {.9, .414947479, .478024489},
-                                      {.95, .535540989, .596668780}, {.99, .752720717, .794563653},
-                                      {.999, .912845335, .929713285}};
-  for (const auto& [albedo, normal, diffuse] : matched) {
-    const HalfSpace half(albedo, 1);
-    EXPECT_NEAR(half.share(1), normal, 1e-9) << albedo;
-    EXPECT_NEAR(half.diffuse_share(), diffuse, 1e-9) << albedo;
-  }
-  constexpr HalfSpaceRow glassy[] = {{.2, .0177012, .0185364},  {.5, .0624064, .0648408},
-                                     {.8, .1782415, .1821254},  {.9, .2857857, .2883414},
-                                     {.95, .4008805, .3997895}, {.99, .6453965, .6305632},
-                                     {.999, .8567556, .8248008}};
-  for (const auto& [albedo, normal, diffuse] : glassy) {
-    const HalfSpace half(albedo, 1.3);
-    EXPECT_NEAR(half.share(1) * fresnel_transmittance(1., 1.3), normal, 3e-5) << albedo;
-    EXPECT_NEAR(half.diffuse_share() * (1 - average_reflectance_outside(1.3)), diffuse, 3e-5) << albedo;
-  }
-}
-
-// Claim: nothing is lost where nothing absorbs, whatever the boundary. Source: conservation. Tolerance: 2e-5, what
-// the albedo 1 - 1e-12 that stands for 1 absorbs. Fails if: light that enters and leaves is weighed differently.
-TEST(HalfSpace, WhiteFurnace) {
-  for (const double eta : {.75, 1., 1.5, 3.}) {
-    const HalfSpace half(1, eta);
-    EXPECT_NEAR(half.diffuse_share(), 1, 2e-5 * eta * eta) << eta;
-    EXPECT_NEAR(half.share(1), 1, 4e-5 * eta * eta) << eta;
-  }
-  EXPECT_EQ(HalfSpace(0, 1.5).diffuse_share(), 0);
-}
 
 std::array<HomogeneousMedium, 3> grey(const HomogeneousMedium& medium) {
   return {medium, medium, medium};
@@ -95,7 +55,7 @@ TEST(VolumeDiffusion, FlatFaceIsAHalfSpace) {
       const double outside = -direction.y;
       const double entered = outside * fresnel_transmittance(outside, eta);
       const double inside = std::sqrt(1 - (1 - outside * outside) / (eta * eta));
-      const double expected = entered * HalfSpace(medium.albedo(), eta).share(inside);
+      const double expected = entered * HalfSpace(1 - medium.albedo(), eta).share(inside);
       EXPECT_NEAR(body.mean_where(diffused, middle).value / expected, 1, .01) << eta << " " << direction.x;
     }
 }

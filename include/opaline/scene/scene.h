@@ -123,10 +123,20 @@ struct PointLight {
   Rgb intensity;  ///< W/sr; irradiance at distance d mm is intensity / d^2 in W/mm^2
   friend bool operator==(const PointLight&, const PointLight&) = default;
 };
+struct SpotLight {  ///< a point's light within a cone
+  static constexpr std::string_view kType = "spot";
+  Vec3d position;
+  Vec3d direction;          ///< unit, the way its middle shines
+  Rgb intensity;            ///< along the middle, W/sr
+  double outer_angle = 45;  ///< from the middle to the rim, degrees, (0, 90]
+  double inner_angle = 0;   ///< to where it begins to fade, degrees, below outer_angle
+  friend bool operator==(const SpotLight&, const SpotLight&) = default;
+};
 struct DirectionalLight {
   static constexpr std::string_view kType = "directional";
-  Vec3d direction;  ///< unit, the way the light travels
-  Rgb irradiance;   ///< on a surface that faces it, W/mm^2
+  Vec3d direction;   ///< unit, the way the light travels
+  Rgb irradiance;    ///< on a surface that faces it, W/mm^2
+  double angle = 0;  ///< the disc's full angle, degrees, [0, 90]; 0: parallel light
   friend bool operator==(const DirectionalLight&, const DirectionalLight&) = default;
 };
 struct SphereLight {
@@ -148,7 +158,8 @@ struct Surroundings {  ///< the same radiance from everywhere
   friend bool operator==(const Surroundings&, const Surroundings&) = default;
 };
 
-using LightSource = std::variant<PointLight, DirectionalLight, SphereLight, QuadLight, Surroundings>;
+using LightSource =
+    std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, QuadLight, Surroundings>;
 
 struct Light {
   std::string name;

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The exact albedo of a half space that scatters evenly behind a smooth boundary.
+#pragma once
+
+#include <vector>
+
+namespace opaline {
+
+/// What comes back of light that entered a half space.
+class HalfSpace {
+ public:
+  /// in    absorbed = 1 - albedo in [0, 1]; eta, inside over outside, > 0
+  /// from  Chandrasekhar 1960, Radiative Transfer, sec. 38 (the H function and diffuse reflection), with Fresnel's
+  ///       reflection inside by a linear system over its quadrature points; derived in src/diffusion/README.md
+  HalfSpace(double absorbed, double eta);
+
+  /// The share of diffuse light that comes back of what entered: total diffuse reflectance per entered flux.
+  /// out   [0, 1]; relative error below 1e-9 for eta from .1 to 10; exactly 1 where absorbed is 0
+  double diffuse_share() const { return diffuse_share_; }
+  /// The same of light with one direction.
+  /// in    cos_inside: with the inward normal, behind the boundary, [0, 1]
+  double share(double cos_inside) const;
+
+ private:
+  double absorbed_;
+  double diffuse_share_ = 0;
+  struct Source {
+    double cosine, strength;  // of light that falls back from the boundary or enters, through the H function
+  };
+  std::vector<Source> sources_;
+};
+
+/// HalfSpace::diffuse_share.
+double half_space_albedo(double absorbed, double eta);
+
+}  // namespace opaline
