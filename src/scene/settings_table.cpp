@@ -224,6 +224,10 @@ std::span<const Member<Settings>> settings_members() {
           "until_error", number, "", {0, 1, true}, "none",
           "direct, volume: stop when the estimated noise of the pixels or cells (rms "
           "of the standard error, relative) is this small"),
+      member<&Settings::reenter>("reenter", flag, "", kFiniteNumber, "",
+                                 "volume: light that has left a body, or was mirrored by it, may meet the same "
+                                 "body again and enter, as in hollows and between ears; `false`: it is gone, as "
+                                 "with all other methods"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
                               "of all random numbers; the same seed gives the same picture"),
       member<&Settings::reference_frame>("reference_frame", whole_number, "", {0, 1e9}, "",

@@ -29,9 +29,11 @@ bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Setti
 /// What a body's results were computed from.
 struct BodyKeys {
   SampleOrigin origin;
-  StageKey samples_key, tree_key, kernel_key, exitance_key, walks_key;
+  StageKey samples_key, tree_key, kernel_key, exitance_key;
+  StageKey volume_key;  // of what the walks amount to, but for their number
   std::vector<std::uint32_t> meshes;        // that the samples name
   std::vector<StageKey> light_keys;         // of the transfers
+  std::vector<StageKey> walk_keys;          // of the walks' sources
   std::optional<SurfaceCache> spare_cache;  // of no use for the picture at hand
 
   bool is_carried() const { return samples_key != origin.key; }
