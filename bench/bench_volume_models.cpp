@@ -61,7 +61,7 @@ Patches make_patches(const Session& session) {
   const Body& body = session.bodies()[0];
   const SurfaceSamples seeds =
       sample_surface({.world = session.world(), .meshes = body.plan.meshes, .count = kPatches, .seed = 99});
-  const NearestSample nearest(seeds.samples);
+  const NearestSample nearest(seeds.samples, &session.world());
   Patches patches;
   patches.area.resize(seeds.samples.size());
   for (const SurfaceSample& s : body.surface.samples) {

@@ -86,10 +86,10 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
       ->type_name("NAME,...");
   app.add_option("--samples-ply", render.samples_ply, "also write the surface samples as a PLY point cloud")
       ->type_name("FILE");
-  app.add_option(
-         "--resume", render.resume,
-         "direct: go on from this file's sums if it is there; they are written to it every minute, at the "
-         "end and on Ctrl-C")
+  app.add_option("--resume", render.resume,
+                 "direct, volume: go on from this file's sums if it is there; they are written to it every "
+                 "minute, at "
+                 "the end and on Ctrl-C")
       ->type_name("FILE")
       ->check(CLI::Validator(
           [](std::string& path) {

@@ -58,6 +58,8 @@ std::string stage_text(const ProgressState& state) {
   std::string text;
   if (state.fraction >= 0) text += percent(state.fraction);
   if (state.seconds_left >= 0) text += ", " + left_text(state.seconds_left);
+  if (state.noise >= 0 && std::isfinite(state.noise) && !text.empty())
+    text += fmt::format(", noise {:.2g} %", 100 * state.noise);
   if (text.empty() && state.seconds >= kSecondsBeforeElapsed) text = short_time(state.seconds) + " so far";
   return text;
 }
@@ -77,6 +79,7 @@ void ProgressEstimate::update(const Monitor& monitor, Time now) {
   if (rounds != rounds_) start_ = now;
   rounds_ = rounds;
   const double done = double(monitor.done), total = double(monitor.total);
+  noise_ = monitor.noise;
   seconds_ = duration<double>(now - start_).count();
   fraction_ = seconds_left_ = -1;
   if (total == 0) return;
@@ -137,8 +140,12 @@ void Progress::watch(const std::stop_token& stop) {
 
 ProgressState Progress::state_of(const ProgressEstimate& estimate) const {
   const char* part = monitor_.stage;
-  ProgressState state{
-      part != nullptr ? part : stage_, estimate.fraction(), estimate.seconds_left(), estimate.seconds(), {}};
+  ProgressState state{part != nullptr ? part : stage_,
+                      estimate.fraction(),
+                      estimate.seconds_left(),
+                      estimate.seconds(),
+                      {},
+                      estimate.noise()};
   if (log_.frames != nullptr) state.frames = *log_.frames;
   return state;
 }
@@ -148,6 +155,7 @@ void Progress::show(const ProgressState& state) {
     Json members{{"stage", state.stage}};
     if (state.fraction >= 0) members["fraction"] = state.fraction;
     if (state.seconds_left >= 0) members["seconds_left"] = state.seconds_left;
+    if (state.noise >= 0 && std::isfinite(state.noise)) members["noise"] = state.noise;
     if (state.frames)
       members["frames_finished"] = state.frames->finished, members["frames"] = state.frames->count;
     print_event(log_, "progress", members);

@@ -25,18 +25,20 @@ class ProgressEstimate {
   double fraction() const { return fraction_; }
   double seconds_left() const { return seconds_left_; }  ///< below 0: not known yet
   double seconds() const { return seconds_; }            ///< since the counters were set to 0
+  double noise() const { return noise_; }                ///< Monitor::noise
 
  private:
   unsigned rounds_ = 0;
   Time start_;
-  double fraction_ = -1, seconds_left_ = -1, seconds_ = 0;
+  double fraction_ = -1, seconds_left_ = -1, seconds_ = 0, noise_ = -1;
 };
 
 /// What the line of a terminal tells.
 struct ProgressState {
   std::string stage;
   double fraction = -1, seconds_left = -1, seconds = 0;  ///< of the stage, as ProgressEstimate has them
-  std::optional<FramesSoFar> frames;                     ///< of a range: the line is about the whole of it
+  std::optional<FramesSoFar> frames = {};                ///< of a range: the line is about the whole of it
+  double noise = -1;                                     ///< of the stage
 };
 
 /// The line, shorter than `columns` so that no terminal wraps it: the bar goes first, then the end is cut.

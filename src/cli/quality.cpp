@@ -147,6 +147,9 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
   if (arguments.time_budget && settings.method == Method::lambert)
     throw bad_usage("--time-budget chooses how light under the surface is summed",
                     "--method hierarchical or direct", std::string(name_of(settings.method)));
+  if (arguments.time_budget && settings.method == Method::volume)
+    throw bad_usage("--time-budget does not end random walks", "--until-error, and --resume to go on later",
+                    "volume");
   const bool hierarchical = settings.method == Method::hierarchical;
   if (!hierarchical && (arguments.target_error || arguments.verify))
     throw bad_usage(arguments.target_error ? "--target-error chooses how light under the surface is summed"

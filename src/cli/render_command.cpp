@@ -14,11 +14,13 @@
 #include "cli/render_outputs.h"
 #include "cli/report.h"
 #include "cli/resumable_state.h"
+#include "cli/resumable_walks.h"
 #include "cli/stages.h"
 #include "opaline/core/error.h"
 #include "opaline/core/units.h"
 #include "opaline/render/direct.h"
 #include "opaline/render/picture_warnings.h"
+#include "opaline/render/walk_warnings.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/scene_hash.h"
 #include "opaline/session/session.h"
@@ -40,10 +42,13 @@ struct Shading {
   double cpu_seconds = 0, embree_seconds = 0;
 };
 
+constexpr const char* kNothingKept =
+    "nothing was kept: --resume FILE keeps the sums of direct and of random walks";
+
 /// What Ctrl-C has not lost.
 std::string how_to_go_on(const RenderArguments& arguments, const Session& session,
                          const ResumableState& resumable) {
-  if (arguments.resume.empty()) return "nothing was kept: --resume FILE keeps the sums of a direct rendering";
+  if (arguments.resume.empty()) return kNothingKept;
   if (resumable.state.passes == 0) return "nothing was kept: the first pass over the picture was not done";
   const std::size_t samples = resumable.state.passes * entry_samples_per_pass(session.scene().film);
   return fmt::format("the sums of {} entry samples a pixel are in {}; go on by {}", grouped(samples),
@@ -66,6 +71,27 @@ DirectResult shade_direct(const RenderArguments& arguments, const Session& sessi
     resumable.keep();
     throw Error(ErrorKind::interrupted, {}, 0, 0,
                 "interrupted; " + how_to_go_on(arguments, session, resumable));
+  }
+}
+
+/// Computes what the picture needs. Walks are kept on Ctrl-C.
+void prepare(StageRunner& stages, const RenderArguments& arguments, Session& session) {
+  const auto run = [&] { stages.run_unmeasured("rays", [&] { session.prepare(&stages.monitor()); }); };
+  if (session.scene().settings.method != Method::volume) return run();
+  ResumableWalks walks(arguments.resume, session);
+  try {
+    run();
+    walks.write();
+  } catch (const Error& stopped) {
+    if (stopped.kind != ErrorKind::interrupted) throw;
+    walks.write();
+    const std::string kept =
+        arguments.resume.empty() ? kNothingKept
+        : walks.passes() == 0
+            ? "nothing was kept: the first pass over the samples was not done"
+            : fmt::format("the sums of {} passes of random walks are in {}; go on by {}",
+                          grouped(walks.passes()), arguments.resume, arguments.command_line);
+    throw Error(ErrorKind::interrupted, {}, 0, 0, "interrupted; " + kept);
   }
 }
 
@@ -106,6 +132,10 @@ Summary summarize(const Session& session, const Shading& shading) {
   summary.embree_seconds = shading.embree_seconds;
   for (const Body& group : session.bodies()) {
     summary.samples += group.surface.samples.size();
+    if (session.scene().settings.method == Method::volume && group.volume) {
+      summary.walks = std::max(summary.walks, group.volume->walks);
+      summary.walk_noise = std::max(summary.walk_noise, group.volume->relative_error);
+    }
     for (std::size_t l = 0; l < group.transfers.size(); ++l)
       if (group.transfers[l].relative_error > 0)
         summary.noise.push_back(
@@ -172,8 +202,9 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
     return false;
   }
   const Scene& scene = session.scene();
-  if (!arguments.resume.empty() && scene.settings.method != Method::direct)
-    throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct");
+  if (!arguments.resume.empty() && scene.settings.method != Method::direct &&
+      scene.settings.method != Method::volume)
+    throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct or volume");
   check_layers(arguments.layers, scene.settings.method);
   check_precompute(arguments, scene, session.plan());
   check_memory(scene, session.plan());
@@ -185,11 +216,13 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   if (arguments.write_partial || shared.viewer != nullptr)
     show_first_light(stages, session, partial.emplace(arguments, scene.film, shared.viewer));
   const std::size_t noted = session.costs().size();
-  stages.run_unmeasured("rays", [&] { session.prepare(&stages.monitor()); });
+  prepare(stages, arguments, session);
   for (std::size_t i = noted; i < session.costs().size(); ++i) stages.note(session.costs()[i]);
   if (shared.cache != nullptr || frame)
     print_decisions(arguments.log, session.decisions(),
                     shared.cache != nullptr ? shared.cache->warning() : "");
+  for (const Body& body : session.bodies())
+    for (const std::string& text : walk_warnings(body)) print_warning(arguments.log, text);
   if (partial) show_refinement(stages, session, *partial);
   Shading shading = shade(stages, arguments, session, partial ? &*partial : nullptr);
   partial.reset();

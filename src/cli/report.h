@@ -68,6 +68,8 @@ struct Summary {
   double estimated_error = 0;  ///< of `hierarchical`, see estimated_relative_error; 0: there is none
   KnownErrors errors;
   std::optional<SpentBudget> budget;
+  std::size_t walks = 0;          ///< of `volume`, a sample: VolumeExitance::walks, the largest of all bodies
+  double walk_noise = 0;          ///< their relative_error, the largest
   std::size_t entry_samples = 0;  ///< of `direct`, a pixel
   double direct_error = 0;        ///< its relative_noise
   /// Of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.

@@ -57,6 +57,11 @@ void print_text(const Summary& summary) {
     row("samples",
         fmt::format("{} entry samples a pixel; noise {:.3g} % (standard error, rms over the pixels)",
                     grouped(summary.entry_samples), 100 * summary.direct_error));
+  if (summary.walks > 0)
+    row("walks",
+        fmt::format("{} a sample, channel and light; noise {:.3g} % (standard error of a cell, rms over the "
+                    "surface)",
+                    grouped(summary.walks), 100 * summary.walk_noise));
   if (const std::string error = error_text(summary); !error.empty()) row("error", error);
   for (const LightNoise& noise : summary.noise)
     row("noise", fmt::format("irradiance from {} on {}: {:.2g} % (standard error at a sample)", noise.light,
@@ -94,6 +99,8 @@ Json done_json(const Summary& summary) {
             {"irradiance_noise", noise},
             {"estimated_error", summary.estimated_error},
             {"errors", errors_json(summary.errors)},
+            {"walks", summary.walks},
+            {"walk_noise", summary.walk_noise},
             {"entry_samples", summary.entry_samples},
             {"direct_noise", summary.direct_error},
             {"shading_rays", summary.rays},

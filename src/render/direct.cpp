@@ -170,6 +170,7 @@ DirectResult render_direct(const DirectInput& input, DirectState& state) {
     if (state.passes < kFewestPasses) return;
     const double noise = relative_noise(state), ratio = noise / *settings.until_error;
     good_enough = noise <= *settings.until_error;
+    if (input.monitor != nullptr) input.monitor->noise = noise;
     expect(std::size_t(std::ceil(std::min(double(passes), double(state.passes) * ratio * ratio))));
   };
   if (input.monitor != nullptr) input.monitor->begin("shading", 0);

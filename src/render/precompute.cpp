@@ -64,15 +64,61 @@ std::array<HomogeneousMedium, 3> isotropic_media(const DiffuseProfile& profile) 
   return media;
 }
 
+constexpr double kMostAnisotropy = .95;
+constexpr double kLeastOffsets = 16;  // in a mean free path, of a ray's origin from the surface
+
+/// One minus the reduced albedo, of each channel.
+Rgb reduced_absorption(Medium medium) {
+  if (auto* artist = std::get_if<ArtistMedium>(&medium.coefficients))
+    for (std::size_t c = 0; c < 3; ++c)  // the colour alone decides; no radius would hide it
+      if (!(artist->subsurface_radius[c] > 0)) artist->subsurface_radius[c] = 1;
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  Rgb absorbed{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double decay =
+        profile.mean_free_path[c] / profile.diffuse_mean_free_path[c];  // its square is 3 (1 - alpha')
+    absorbed[c] = std::min(1.0, decay * decay / 3);
+  }
+  return absorbed;
+}
+
+double anisotropy_of(const Medium& medium) {
+  const auto* artist = std::get_if<ArtistMedium>(&medium.coefficients);
+  const double g = artist != nullptr ? artist->anisotropy : medium.scatter_anisotropy;
+  return std::clamp(g, -kMostAnisotropy, kMostAnisotropy);
+}
+
+double diagonal_of(const World& world, std::span<const std::uint32_t> meshes) {
+  Bounds box;
+  for (const std::uint32_t m : meshes) {
+    const Bounds other = bounds(world.meshes[m]);
+    box = {component_min(box.low, other.low), component_max(box.high, other.high)};
+  }
+  return length(box.high - box.low);
+}
+
 }  // namespace
 
-VolumeExitance walk_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights) {
-  VolumeInput walks{
-      input.rays, input.world, body.plan.meshes, body.surface.samples, isotropic_media(body.profile), lights};
-  walks.until_error = input.scene.settings.until_error;
-  walks.seed = hash_bits(input.scene.settings.seed, 3000);
+VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span<const Light> lights) {
+  const Settings& settings = input.scene.settings;
+  const Medium& medium = input.scene.media[body.plan.medium];
+  const Rgb absorbed = reduced_absorption(medium);
+  const double g = anisotropy_of(medium),
+               least = kLeastOffsets * 0x1p-18 * diagonal_of(input.world, body.plan.meshes);
+  VolumeInput walks{input.rays, input.world, body.plan.meshes, body.surface.samples, {}, lights};
+  for (std::size_t c = 0; c < 3; ++c) {
+    walks.media[c].eta = body.profile.eta;
+    if (!(body.profile.total[c] > 0)) continue;
+    // 1/sigma_t of what is walked, over the reduced one.
+    const double shortening = 1 / (absorbed[c] + (1 - absorbed[c]) / (1 - g));
+    const double length = std::max(body.profile.mean_free_path[c], least / shortening);
+    walks.media[c] = {absorbed[c] / length, (1 - absorbed[c]) / (length * (1 - g)), g, body.profile.eta};
+  }
+  walks.until_error = settings.until_error;
+  walks.seed = hash_bits(settings.seed, 3000);
   walks.monitor = input.monitor;
-  return volume_exitance(walks);
+  walks.reenter = settings.reenter;
+  return walks;
 }
 
 VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body) {

@@ -15,8 +15,8 @@ struct Form {
 
 const std::vector<Form>& forms() {
   static const std::vector<Form> table{
-      {"preset", {}},
-      {"sigma_s_prime", {"sigma_a"}},
+      {"preset", {"scatter_anisotropy"}},
+      {"sigma_s_prime", {"sigma_a", "scatter_anisotropy"}},
       {"sigma_s", {"sigma_a", "g"}},
       {"subsurface_color", {"subsurface_radius", "subsurface_radius_scale", "subsurface_scatter_anisotropy"}},
   };
@@ -88,6 +88,8 @@ Medium read_medium(const Value& value) {
   } else {
     medium.coefficients = read_physical(reader);
   }
+  if (const auto g = reader.find(form == "sigma_s" ? "g" : "scatter_anisotropy"))
+    medium.scatter_anisotropy = g->number();
   const auto eta = reader.find("eta"), specular_ior = reader.find("specular_ior");
   if (eta && specular_ior) eta->fail_key("and 'specular_ior' are the same", "one of the two");
   if (eta || specular_ior) medium.eta = (eta ? eta : specular_ior)->number();

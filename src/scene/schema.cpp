@@ -101,6 +101,10 @@ std::vector<KeyInfo> medium_rows() {
           "multiplies `subsurface_radius`, for a tint"),
       row("medium", "subsurface_scatter_anisotropy", number, "", {-1, 1, true, true}, "0",
           "the same as `g`, beside `subsurface_color`"),
+      row("medium", "scatter_anisotropy", number, "", {-.95, .95}, "0",
+          "the same for `volume` alone, beside `preset` or `sigma_s_prime`: sigma_s is sigma_s_prime / (1 - "
+          "g); "
+          "diffusion depends on `sigma_s_prime` only"),
       row("medium", "specular_ior", number, "", {.1, 10},
           "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
       row("medium", "eta", number, "", {.1, 10}, "", "another word for `specular_ior`; use one of the two"),

@@ -229,6 +229,11 @@ std::span<const Member<Settings>> settings_members() {
           "cell_size", number, "mean free paths", {.05, 100}, "",
           "volume_diffusion: edge of the cells at the surface; smaller is slower and "
           "closer to the truth"),
+      member<&Settings::reenter>(
+          "reenter", flag, "", kFiniteNumber, "",
+          "volume: light that has left a body, or was mirrored by it, may meet the same "
+          "body again and enter, as in hollows and between ears; `false`: it is gone, as "
+          "with all other methods"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
                               "of all random numbers; the same seed gives the same picture"),
       member<&Settings::reference_frame>("reference_frame", whole_number, "", {0, 1e9}, "",

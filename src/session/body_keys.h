@@ -29,12 +29,15 @@ bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Setti
 /// What a body's results were computed from.
 struct BodyKeys {
   SampleOrigin origin;
-  StageKey samples_key, tree_key, kernel_key, exitance_key, volume_key, diffusion_key;
+  StageKey samples_key, tree_key, kernel_key, exitance_key;
+  StageKey volume_key;                      // of Body::volume; of walks, but for their number
+  StageKey diffusion_key;                   // of the cells
   std::vector<std::uint32_t> meshes;        // that the samples name
   std::vector<StageKey> light_keys;         // of the transfers
+  std::vector<StageKey> walk_keys;          // of the walks' sources
   std::optional<SurfaceCache> spare_cache;  // of no use for the picture at hand
 
-  std::shared_ptr<const VolumeDiffusion> diffusion;  // the cells, of diffusion_key
+  std::shared_ptr<const VolumeDiffusion> diffusion;  // its cells
 
   bool is_carried() const { return samples_key != origin.key; }
 };

@@ -29,6 +29,9 @@ void Session::ready_light_mix(Monitor* monitor) {
 void Session::expect_edits(bool edits) {
   state_->edits_ = edits;
 }
+void Session::store_walks(WalkStore store) {
+  state_->walk_store_ = std::move(store);
+}
 void Session::prepare_rays() {
   state_->prepare_rays();
 }

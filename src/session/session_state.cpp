@@ -172,7 +172,7 @@ void Session::State::prepare(Monitor* monitor) {
        [&](Body& body, BodyKeys& known, std::size_t g) { update_samples(body, known, input, g); });
   if (scene_.settings.method == Method::volume) {
     each("random walks",
-         [&](Body& body, BodyKeys& known, std::size_t g) { update_walks(body, known, input, g, lights); });
+         [&](Body& body, BodyKeys& known, std::size_t) { update_walks(body, known, input, lights); });
     prepared_ = true;
     return;
   }

@@ -44,7 +44,7 @@ struct Session::State {
   void update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights);
   void update_kernel(Body& body, BodyKeys& known);
   void update_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t most_places);
-  void update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
+  void update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input,
                     const std::vector<Light>& lights);
   void update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
                         const std::vector<Light>& lights);
@@ -72,6 +72,7 @@ struct Session::State {
   StageKey view_key_, view_surfaces_key_;
   std::vector<StageKey> view_light_keys_;
   bool edits_ = true, prepared_ = false, anchored_ = false;
+  WalkStore walk_store_;
   SessionWork work_;
   std::vector<std::string> decisions_;
   std::vector<StageCost> costs_;

@@ -10,7 +10,7 @@ namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
 constexpr std::uint64_t kSamplesVersion = 2, kCarriedVersion = 3, kTransferVersion = 2, kOctreeVersion = 1,
-                        kExitanceVersion = 6;
+                        kExitanceVersion = 6, kWalksVersion = 2;
 
 const char* widest_instructions() {
   if (__builtin_cpu_supports("avx512f")) return "avx512";
@@ -101,6 +101,29 @@ StageKey view_light_key(const Light& light) {
   key.add(std::uint64_t(light.source.index())).add(light_seed(0, light));
   key.add_array(std::span<const double>(geometry(light)));
   return key.key();
+}
+
+std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& samples,
+                                std::span<const MeshKeys> meshes) {
+  KeyBuilder common("random walks", kWalksVersion);
+  common.add(std::string(RTC_VERSION_STRING)).add(std::string(widest_instructions()));
+  common.add(samples).add(walks.seed).add(walks.reenter);
+  for (const HomogeneousMedium& medium : walks.media) common.add(medium);
+  for (const std::uint32_t m : walks.meshes) common.add(m);
+  for (const MeshKeys& mesh : meshes) common.add(mesh.shape);
+  const bool alone = walks_by_light(walks);
+  std::vector<StageKey> keys;
+  for (std::size_t l = 0; l < walks.lights.size() && (alone || l == 0); ++l) {
+    KeyBuilder key("random walks of lights", kWalksVersion);
+    key.add(common.key());
+    for (const Light& light : alone ? walks.lights.subspan(l, 1) : walks.lights) {
+      key.add(std::uint64_t(light.source.index())).add(light.name);
+      key.add_array(std::span<const double>(geometry(light)));
+      if (!alone) key.add(emission(light));
+    }
+    keys.push_back(key.key());
+  }
+  return keys;
 }
 
 StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,

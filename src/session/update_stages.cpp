@@ -2,6 +2,7 @@
 // Each stage's result: kept, from the cache, or computed; under its key only once it is whole.
 #include <fmt/format.h>
 
+#include "opaline/lights/light.h"
 #include "opaline/render/surface_caches.h"
 #include "opaline/sampling/carry_samples.h"
 #include "session/session_state.h"
@@ -24,6 +25,13 @@ void renumber(std::vector<SurfaceSample>& samples, const std::vector<std::uint32
 std::size_t carried_count(const SampleOrigin& origin, const GroupPlan& plan) {
   const double stretched = origin.area > 0 ? std::max(1.0, plan.area / origin.area) : 1;
   return std::size_t(std::min(1e9, double(origin.surface.samples.size()) * stretched));
+}
+
+std::size_t passes_of(const VolumeSums& sums) {
+  std::size_t passes = 0;
+  for (const SourceSums& source : sums.sources)
+    for (const WalkSums& channel : source.channels) passes += channel.passes;
+  return passes;
 }
 
 }  // namespace
@@ -169,22 +177,42 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
   body.transfers = std::move(transfers);
 }
 
+// Sums are of whole passes always: those that an interruption leaves stay.
 void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input,
-                                  std::size_t group, const std::vector<Light>& lights) {
-  std::vector<StageKey> light_keys;
-  for (const Light& light : lights)
-    light_keys.push_back(transfer_key(input, known.samples_key, mesh_keys_, group, light));
-  KeyBuilder builder("random walks", 1);
-  builder.add(octree_key(known.samples_key, light_keys, lights)).add(body.profile.eta);
-  builder.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
-  builder.add(scene_.settings.seed).add(scene_.settings.until_error.value_or(0));
-  for (const MeshKeys& mesh : mesh_keys_) builder.add(mesh.shape);
-  const StageKey key = builder.key();
-  if (key == known.volume_key) return decide(body, "random walks kept");
-  known.volume_key = {};
-  body.volume = walk_body(input, body, lights);
-  known.volume_key = key;
-  decide(body, "walked at random");
+                                  const std::vector<Light>& lights) {
+  const VolumeInput walks = walk_input(input, body, lights);
+  const std::vector<StageKey> keys = walk_keys(walks, known.samples_key, mesh_keys_);
+  VolumeSums sums;
+  for (const StageKey& key : keys) {
+    const auto old = std::ranges::find(known.walk_keys, key);
+    std::optional<SourceSums> found;
+    if (old != known.walk_keys.end())
+      found = std::move(body.walks.sources[std::size_t(old - known.walk_keys.begin())]);
+    else if (walk_store_.find)
+      found = walk_store_.find(key);
+    sums.sources.push_back(found ? std::move(*found) : SourceSums());
+  }
+  body.walks = std::move(sums);
+  known.walk_keys = keys;
+  const std::size_t before = passes_of(body.walks);
+  const auto keep = [&](const VolumeSums& now) {
+    if (walk_store_.keep) walk_store_.keep(keys, now);
+  };
+  keep(body.walks);
+  walk_volume(walks, body.walks, keep);
+  const std::size_t passes = passes_of(body.walks);
+  work_.walk_passes += passes - before;
+  KeyBuilder key("exitance of random walks", 1);
+  key.add_array(std::span(keys)).add(std::uint64_t(passes));
+  for (const Light& light : lights) key.add(emission(light));
+  if (key.key() != known.volume_key || !body.volume) {
+    known.volume_key = {};
+    body.volume = exitance_of(walks, body.walks);
+    body.volume_fit = std::make_shared<const CellFit>(body.surface.samples, *world_, body.volume->exitance,
+                                                      body.volume->error);
+    known.volume_key = key.key();
+  }
+  decide(body, passes > before ? "walked at random" : "random walks kept");
 }
 
 void Session::State::update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
@@ -214,6 +242,8 @@ void Session::State::update_diffusion(Body& body, BodyKeys& known, const Precomp
     decide(body, at_hand ? "diffusion solved in the cells at hand" : "diffusion solved");
     if (!edits_) known.diffusion = nullptr;
   }
+  body.volume_fit = std::make_shared<const CellFit>(body.surface.samples, *world_, body.volume->exitance,
+                                                    body.volume->error);
   known.volume_key = key;
 }
 

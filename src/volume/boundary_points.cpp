@@ -42,7 +42,7 @@ std::vector<BoundaryPoint> boundary_points(const World& world, std::span<const s
       divide(p, n, [&](const Vec3d& at) { points.push_back({Vec3f(at), normal, area, 0}); });
     }
   }
-  const NearestSample nearest(samples);
+  const NearestSample nearest(samples, &world);
   parallel_chunks(points.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i)
       points[i].sample = nearest.at(points[i].position, points[i].normal);

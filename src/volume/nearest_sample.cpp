@@ -1,68 +1,146 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/volume/nearest_sample.h"
 
-#include <boost/geometry.hpp>
-#include <boost/geometry/index/rtree.hpp>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+#include "opaline/geometry/surface_point.h"
 
 namespace opaline {
 namespace {
 
-namespace bg = boost::geometry;
-using Point = bg::model::point<float, 3, bg::cs::cartesian>;
-using Entry = std::pair<Point, std::uint32_t>;
+constexpr int kBits = 21;               // of a cube's coordinate
+constexpr float kWidest = 0x1p20f - 4;  // cubes along an axis
+constexpr std::int32_t kMostRings = 6;  // of cubes around a point that are looked into
+constexpr std::uint32_t kNone = ~0u;
 
-Point point_of(const Vec3f& v) {
-  return {v.x, v.y, v.z};
+Vec3f sheet_normal(const SurfaceSample& sample, const World* world) {
+  if (world == nullptr) return sample.normal;
+  return surface_point(world->meshes[sample.mesh], sample.triangle, sample.u, sample.v).geometric;
 }
 
-std::vector<Entry> entries_of(std::span<const SurfaceSample> samples) {
-  std::vector<Entry> entries;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    entries.emplace_back(point_of(samples[i].position), std::uint32_t(i));
-  return entries;
-}
+// The 26 steps to a cube's neighbours, those that share a face first: the nearest sample is found early.
+constexpr auto kNeighbours = [] {
+  std::array<std::array<std::int8_t, 3>, 26> steps{};
+  std::size_t count = 0;
+  for (int sum = 1; sum <= 3; ++sum)
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x)
+          if (x * x + y * y + z * z == sum) steps[count++] = {std::int8_t(x), std::int8_t(y), std::int8_t(z)};
+  return steps;
+}();
 
 }  // namespace
 
-struct NearestSample::Tree {
-  explicit Tree(std::span<const SurfaceSample> all) : samples(all), index(entries_of(all)) {}
-
-  std::span<const SurfaceSample> samples;
-  bg::index::rtree<Entry, bg::index::linear<16>> index;
-};
-
-NearestSample::NearestSample(std::span<const SurfaceSample> samples)
-    : tree_(std::make_unique<const Tree>(samples)) {}
-NearestSample::~NearestSample() = default;
-
-std::uint32_t NearestSample::at(const Vec3f& position, const Vec3f& normal) const {
-  const auto is_of_sheet = [&](const Entry& entry) {
-    return dot(tree_->samples[entry.second].normal, normal) >= 0;
-  };
-  for (auto it = tree_->index.qbegin(bg::index::nearest(point_of(position), 1) &&
-                                     bg::index::satisfies(is_of_sheet));
-       it != tree_->index.qend(); ++it)
-    return it->second;
-  const auto any = tree_->index.qbegin(bg::index::nearest(point_of(position), 1));
-  return any->second;
+NearestSample::NearestSample(std::span<const SurfaceSample> samples, const World* world) {
+  const auto bits = std::bit_width(2 * samples.size() + 1);
+  slots_.resize(std::size_t(1) << bits);
+  shift_ = 64 - int(bits);
+  if (samples.empty()) return;
+  Vec3f high = low_ = samples[0].position;
+  double area = 0;
+  for (const SurfaceSample& s : samples) {
+    low_ = component_min(low_, s.position);
+    high = component_max(high, s.position);
+    area += double(s.area);
+  }
+  const float widest = max_component(high - low_);
+  edge_ = std::max(float(std::sqrt(area / double(samples.size()))), widest / kWidest);
+  if (!(edge_ > 0)) edge_ = 1;
+  inverse_edge_ = 1 / edge_;
+  std::vector<std::size_t> slots(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::uint64_t key = key_of(place_of(samples[i].position));
+    slots[i] = slot_of(key);
+    slots_[slots[i]].key = key;
+    ++slots_[slots[i]].count;
+  }
+  std::uint32_t first = 0;
+  for (Cube& cube : slots_) {
+    cube.first = first;
+    first += cube.count;
+  }
+  members_.resize(samples.size());
+  std::vector<std::uint32_t> filled(slots_.size());
+  for (std::uint32_t i = 0; i < samples.size(); ++i)
+    members_[slots_[slots[i]].first + filled[slots[i]]++] = {samples[i].position,
+                                                             sheet_normal(samples[i], world), i};
 }
 
-RgbF NearestSample::interpolate(std::span<const RgbF> values, const Vec3f& position, const Vec3f& normal,
-                                float radius) const {
-  const Vec3f reach(radius);
-  const bg::model::box<Point> box(point_of(position - reach), point_of(position + reach));
-  RgbF sum;
-  float weights = 0;
-  for (auto it = tree_->index.qbegin(bg::index::intersects(box)); it != tree_->index.qend(); ++it) {
-    const SurfaceSample& sample = tree_->samples[it->second];
-    const Vec3f apart = sample.position - position;
-    const float t2 = dot(apart, apart) / (radius * radius);
-    if (t2 >= 1 || dot(sample.normal, normal) < 0) continue;
-    const float weight = sample.area * (1 - t2) * (1 - t2);
-    sum += values[it->second] * weight;
-    weights += weight;
+// Cubes far outside stand for all that lies beyond.
+NearestSample::Place NearestSample::place_of(const Vec3f& position) const {
+  const auto coordinate = [this](float c) {
+    return std::int32_t(std::clamp(std::floor(c * inverse_edge_), -2.0f, kWidest + 2)) + 2;
+  };
+  const Vec3f p = position - low_;
+  return {coordinate(p.x), coordinate(p.y), coordinate(p.z)};
+}
+
+std::uint64_t NearestSample::key_of(const Place& p) {
+  return std::uint64_t(p.x) | std::uint64_t(p.y) << kBits | std::uint64_t(p.z) << 2 * kBits;
+}
+
+// Where the cube is, or would be put.
+std::size_t NearestSample::slot_of(std::uint64_t key) const {
+  std::size_t slot = (key * 0x9E3779B97F4A7C15ull) >> shift_;
+  while (slots_[slot].count > 0 && slots_[slot].key != key) slot = (slot + 1) & (slots_.size() - 1);
+  return slot;
+}
+
+std::span<const NearestSample::Member> NearestSample::members_of(const Place& p) const {
+  if (p.x < 0 || p.y < 0 || p.z < 0) return {};
+  const Cube& cube = slots_[slot_of(key_of(p))];
+  return std::span(members_).subspan(cube.first, cube.count);
+}
+
+void NearestSample::look_into(const Place& place, const Vec3f& position, const Vec3f* normal,
+                              Found& best) const {
+  for (const Member& member : members_of(place)) {
+    const Vec3f apart = member.position - position;
+    const float distance2 = dot(apart, apart);
+    if (distance2 > best.distance2 || (distance2 == best.distance2 && member.sample > best.sample)) continue;
+    if (normal == nullptr || same_sheet(member.normal, *normal)) best = {distance2, member.sample};
   }
-  return weights > 0 ? sum / weights : values[at(position, normal)];
+}
+
+NearestSample::Found NearestSample::nearest(const Vec3f& position, const Vec3f* normal) const {
+  Found best{std::numeric_limits<float>::infinity(), kNone};
+  const Place middle = place_of(position);
+  look_into(middle, position, normal, best);
+  const Vec3f within =
+      (position - low_) - Vec3f(float(middle.x - 2), float(middle.y - 2), float(middle.z - 2)) * edge_;
+  const auto gap2 = [this](float at, int step) {  // along one axis, to the cubes on that side
+    const float gap = step < 0 ? at : step > 0 ? edge_ - at : 0;
+    return gap * std::abs(gap);
+  };
+  for (const auto& [x, y, z] : kNeighbours)
+    if (gap2(within.x, x) + gap2(within.y, y) + gap2(within.z, z) <= best.distance2)
+      look_into({middle.x + x, middle.y + y, middle.z + z}, position, normal, best);
+  for (std::int32_t ring = 2; ring <= kMostRings; ++ring) {
+    const float searched = float(ring - 1) * edge_;
+    if (best.distance2 <= searched * searched) break;
+    for (std::int32_t z = -ring; z <= ring; ++z)
+      for (std::int32_t y = -ring; y <= ring; ++y) {
+        const bool shell = std::max(std::abs(z), std::abs(y)) == ring;
+        for (std::int32_t x = -ring; x <= ring; x += shell ? 1 : 2 * ring)
+          look_into({middle.x + x, middle.y + y, middle.z + z}, position, normal, best);
+      }
+  }
+  return best;
+}
+
+std::uint32_t NearestSample::at(const Vec3f& position, const Vec3f& normal) const {
+  Found best = nearest(position, &normal);
+  if (best.sample == kNone) best = nearest(position, nullptr);
+  if (best.sample != kNone) return best.sample;
+  for (const Member& member : members_) {
+    const Vec3f apart = member.position - position;
+    if (dot(apart, apart) <= best.distance2) best = {dot(apart, apart), member.sample};
+  }
+  return best.sample == kNone ? 0 : best.sample;
 }
 
 }  // namespace opaline

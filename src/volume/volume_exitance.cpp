@@ -5,307 +5,351 @@
 #include <cmath>
 
 #include "opaline/core/parallel.h"
-#include "opaline/core/random.h"
 #include "opaline/lights/light.h"
-#include "opaline/volume/nearest_sample.h"
-#include "opaline/volume/random_walk.h"
+#include "volume/body_walks.h"
 
 namespace opaline {
 namespace {
 
-constexpr std::size_t kBatches = 64;      // of a pass: what the standard error comes from
-constexpr std::size_t kWalksOfPass = 16;  // a sample and channel
-constexpr std::size_t kTogether = 8;      // batches whose counts are held at once
-constexpr double kReach = 2;  // mean free paths: a boundary beyond is met by chance, not by expectation
-constexpr std::uint64_t kMostFlights = 1'000'000;
+constexpr std::size_t kWalksOfPass = 4;   // a sample
+constexpr std::size_t kFewestPasses = 8;  // before an estimate of the error is believed
+constexpr std::size_t kMostSeparate = 4, kMostSeparateSums = 8'000'000;  // lights; lights times samples
 
-/// Points spread evenly over the area of the body.
-class SurfacePoints {
- public:
-  explicit SurfacePoints(const VolumeInput& input) : input_(input) {
-    double sum = 0;
-    for (const std::uint32_t m : input.meshes) {
-      const Mesh& mesh = input.world.meshes[m];
-      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        const auto& [i, j, k] = mesh.triangles[t];
-        const Vec3d& a = mesh.positions[i];
-        sum += .5 * length(cross(mesh.positions[j] - a, mesh.positions[k] - a));
-        ends_.push_back(sum);
-        triangles_.push_back({m, t});
-      }
+/// Channels of equal media have the walks of the first of them in common.
+std::size_t walked_channel(const VolumeInput& input, std::size_t channel) {
+  const auto same = [](const HomogeneousMedium& a, const HomogeneousMedium& b) {
+    return a.sigma_a == b.sigma_a && a.sigma_s == b.sigma_s && a.g == b.g && a.eta == b.eta;
+  };
+  for (std::size_t c = 0; c < channel && walks_by_light(input); ++c)
+    if (same(input.media[c], input.media[channel])) return c;
+  return channel;
+}
+
+bool is_walked(const VolumeInput& input, std::size_t channel) {
+  return input.media[channel].sigma_s > 0;
+}
+
+/// One a light, or one for all; none without light.
+std::size_t sources_of(const VolumeInput& input) {
+  return walks_by_light(input) ? input.lights.size() : std::min<std::size_t>(1, input.lights.size());
+}
+
+/// What the sums of a source are multiplied by.
+Rgb weight_of(const VolumeInput& input, std::size_t source) {
+  return walks_by_light(input) ? emission(input.lights[source]) : Rgb(1);
+}
+
+struct Job {
+  std::size_t source, channel;
+};
+
+/// Those whose sums count in the lights' colours.
+std::vector<Job> jobs_of(const VolumeInput& input, const VolumeSums& sums) {
+  std::vector<Job> jobs;
+  for (std::size_t s = 0; s < sums.sources.size(); ++s)
+    for (std::size_t c = 0; c < 3; ++c) {
+      bool is_seen = false;
+      for (std::size_t other = c; other < 3; ++other)
+        is_seen |= walked_channel(input, other) == c && weight_of(input, s)[other] > 0;
+      if (is_seen && walked_channel(input, c) == c && is_walked(input, c)) jobs.push_back({s, c});
     }
+  return jobs;
+}
+
+std::size_t starts_of(const VolumeInput& input) {
+  return input.samples.size() * kWalksOfPass;
+}
+
+std::size_t passes_for(std::size_t walks) {
+  return (walks + kWalksOfPass - 1) / kWalksOfPass;
+}
+
+double surface_area_of(const VolumeInput& input) {
+  double area = 0;
+  for (const SurfaceSample& s : input.samples) area += double(s.area);
+  return area;
+}
+
+/// Mean of the passes, and its variance.
+struct PassMean {
+  double mean = 0, variance = 0;
+};
+
+PassMean pass_mean_of(const WalkSums& sums, std::size_t i) {
+  const double n = double(sums.passes);
+  if (sums.passes < 2) return {};
+  const double mean = double(sums.flux[i]) / n, root = double(sums.roots[i]);
+  return {mean, std::max(0.0, root * root / n - mean * mean) / (n - 1)};
+}
+
+/// The relative error, and what makes it.
+struct Noise {
+  std::array<double, 3> relative{};     ///< of each channel
+  std::array<std::size_t, 3> walked{};  ///< the channel whose walks it has
+  std::vector<double> shares;           ///< one a job: its part in relative^2, the largest of its channels'
+
+  double worst() const { return *std::ranges::max_element(relative); }
+  /// The largest of the channels that have these walks.
+  double of_job(std::size_t channel) const {
+    double largest = 0;
+    for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, walked[c] == channel ? relative[c] : 0);
+    return largest;
+  }
+};
+
+class Evaluation {
+ public:
+  Evaluation(const VolumeInput& input, const VolumeSums& sums)
+      : input_(input), sums_(sums), area_of_start_(surface_area_of(input) / double(starts_of(input))) {
+    for (std::size_t c = 0; c < 3; ++c) walked_[c] = walked_channel(input, c);
+    for (std::size_t s = 0; s < sums.sources.size(); ++s) weights_.push_back(weight_of(input, s));
   }
 
-  double area() const { return ends_.back(); }
+  /// Exitance of a cell from one source, and its variance.
+  PassMean part(std::size_t source, std::size_t channel, std::size_t i) const {
+    const double area = double(input_.samples[i].area);
+    const double scale = area > 0 ? weights_[source][channel] * area_of_start_ / area : 0;
+    const PassMean pass = pass_mean_of(sums_.sources[source].channels[walked_[channel]], i);
+    return {pass.mean * scale, pass.variance * scale * scale};
+  }
 
-  /// share: of the area, [0, 1)
-  SurfacePoint at(double share, double u, double v) const {
-    const auto found = std::ranges::upper_bound(ends_, share * area());
-    const auto [mesh, triangle] =
-        triangles_[std::min(std::size_t(found - ends_.begin()), triangles_.size() - 1)];
-    if (u + v > 1) u = 1 - u, v = 1 - v;
-    return input_.rays.surface_point(mesh, triangle, float(u), float(v));
+  PassMean whole(std::size_t channel, std::size_t i) const {
+    PassMean sum;
+    for (std::size_t s = 0; s < weights_.size(); ++s) {
+      const PassMean one = part(s, channel, i);
+      sum.mean += one.mean;
+      sum.variance += one.variance;
+    }
+    return sum;
+  }
+
+  /// enough: a channel whose error is no larger has no part
+  Noise noise(const std::vector<Job>& jobs, double enough = 0) const {
+    Noise noise;
+    noise.shares.resize(jobs.size());
+    noise.walked = walked_;
+    const double area = surface_area_of(input_);
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::vector<PassMean> cells(input_.samples.size());
+      double largest = 0;
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        cells[i] = whole(c, i);
+        largest = std::max(largest, cells[i].mean);
+      }
+      const auto scale = [&](std::size_t i) {
+        const double square = cells[i].mean * cells[i].mean + 1e-4 * largest * largest;
+        return square > 0 ? double(input_.samples[i].area) / (square * area) : 0;
+      };
+      double sum = 0;
+      for (std::size_t i = 0; i < cells.size(); ++i) sum += cells[i].variance * scale(i);
+      noise.relative[c] = std::sqrt(sum);
+      for (std::size_t j = 0; j < jobs.size(); ++j) {
+        if (walked_[c] != jobs[j].channel || noise.relative[c] <= enough) continue;
+        double share = 0;
+        for (std::size_t i = 0; i < cells.size(); ++i)
+          share += part(jobs[j].source, c, i).variance * scale(i);
+        noise.shares[j] = std::max(noise.shares[j], share);
+      }
+    }
+    return noise;
   }
 
  private:
   const VolumeInput& input_;
-  std::vector<double> ends_;  // running sums of areas
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> triangles_;
+  const VolumeSums& sums_;
+  double area_of_start_;
+  std::array<std::size_t, 3> walked_;
+  std::vector<Rgb> weights_;
 };
 
-/// Light that has just crossed the boundary.
-struct Entered {
-  Vec3d direction;  // inside
-  Rgb irradiance;   // W/mm^2 that enter
-};
-
-// One light, chosen by what it would bring if nothing were in its way.
-Entered light_at(const VolumeInput& input, const SurfacePoint& point, WalkNumbers& numbers) {
-  const float eta = float(input.media[0].eta);
-  struct Choice {
-    LightSample sample;
-    Rgb irradiance;
-    double size;
-  };
-  std::vector<Choice> choices;
-  double sum = 0;
-  for (const Light& light : input.lights) {
-    const std::array<double, 2> square{numbers.next(), numbers.next()};
-    const LightSample sample = sample_light(light, point.position, point.geometric, square, 1);
-    const float cosine = dot(point.geometric, sample.direction);
-    if (!(sample.weight > 0 && cosine > 0)) continue;
-    const Rgb irradiance = emission(light) * (double(sample.weight) * cosine *
-                                              fresnel_transmittance(std::min(1.0f, cosine), eta));
-    choices.push_back({sample, irradiance, max_component(irradiance)});
-    sum += choices.back().size;
+void add_pass(WalkSums& sums, std::span<const WalkCounts> chunks) {
+  const std::size_t cells = chunks[0].flux.size();
+  sums.flux.resize(cells);
+  sums.roots.resize(cells);
+  parallel_chunks(cells, 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double flux = 0;
+      for (const WalkCounts& chunk : chunks) flux += double(chunk.flux[i]);
+      const double root = double(sums.roots[i]);
+      sums.flux[i] = float(double(sums.flux[i]) + flux);
+      sums.roots[i] = float(std::sqrt(root * root + flux * flux));
+    }
+  });
+  for (const WalkCounts& chunk : chunks) {
+    sums.entered += chunk.entered;
+    sums.lost += chunk.lost;
+    sums.stopped += chunk.stopped;
   }
-  if (!(sum > 0)) return {};
-  double u = numbers.next() * sum;
-  std::size_t chosen = 0;
-  while (chosen + 1 < choices.size() && u >= choices[chosen].size) u -= choices[chosen++].size;
-  const Choice& choice = choices[chosen];
-  Ray shadow(point.position + point.geometric * input.rays.offset(point), choice.sample.direction,
-             choice.sample.distance * 0.9999f);
-  input.rays.occluded({&shadow, 1});
-  if (shadow.far < 0 || !(choice.size > 0)) return {};
-  return {refracted_inward(-Vec3d(choice.sample.direction), Vec3d(point.geometric), eta),
-          choice.irradiance * (sum / choice.size)};
+  ++sums.passes;
 }
-
-/// Where a ray from inside the body ends.
-struct Wall {
-  double distance = std::numeric_limits<double>::infinity();
-  SurfacePoint point;
-  bool is_body = false;  // or something that stops light
-};
-
-/// The inside of the body.
-class Inside {
- public:
-  explicit Inside(const VolumeInput& input) : input_(input), is_body_(input.world.meshes.size()) {
-    for (const std::uint32_t m : input.meshes) {
-      is_body_[m] = true;
-      for (const Vec3d& p : input.world.meshes[m].positions)
-        low_ = component_min(low_, p), high_ = component_max(high_, p);
-    }
-  }
-
-  bool contains(const Vec3d& p) const {
-    return p.x > low_.x && p.y > low_.y && p.z > low_.z && p.x < high_.x && p.y < high_.y && p.z < high_.z;
-  }
-
-  // Faces of the body that are met from outside lie within it where sheets cross: light goes through.
-  Wall wall(const Vec3d& from, const Vec3d& direction, double reach) const {
-    Wall wall;
-    double gone = 0;
-    for (int faces = 0; faces < 64; ++faces) {
-      TracedRay traced{Ray(Vec3f(from + direction * gone), Vec3f(direction), float(reach - gone)), {}};
-      input_.rays.intersect_one(traced);
-      const Hit& hit = traced.hit;
-      if (hit.mesh == Hit::kMiss) return wall;
-      wall.point = input_.rays.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
-      wall.is_body = is_body_[hit.mesh];
-      const double distance = gone + double(traced.ray.far);
-      if (!wall.is_body || dot(Vec3d(wall.point.geometric), direction) > 0) {
-        wall.distance = distance;
-        return wall;
-      }
-      gone = distance + double(input_.rays.offset(wall.point));
-    }
-    return wall;
-  }
-
- private:
-  const VolumeInput& input_;
-  std::vector<bool> is_body_;
-  Vec3d low_{1e300, 1e300, 1e300}, high_{-1e300, -1e300, -1e300};
-};
-
-/// One walk of one channel.
-/// out   weight that was lost through holes
-template <class Leave>
-double walk_inside(const HomogeneousMedium& medium, const Inside& inside, const RayScene& rays,
-                   const SurfacePoint& entry, WalkState walk, WalkNumbers& numbers, const Leave& leave) {
-  const double albedo = medium.albedo(), least = .2 * walk.weight;
-  const double reach =
-      medium.sigma_t() > 0 ? kReach / medium.sigma_t() : std::numeric_limits<double>::infinity();
-  const auto inward = [&](const SurfacePoint& point) {
-    return Vec3d(point.position) - Vec3d(point.geometric) * double(rays.offset(point));
-  };
-  walk.position = inward(entry);
-  for (std::uint64_t flights = 0; flights < kMostFlights; ++flights) {
-    const Wall wall = inside.wall(walk.position, walk.direction, reach);
-    Flight flight;
-    if (std::isfinite(wall.distance)) {
-      Crossing crossing = cross(medium, walk, {wall.distance, Vec3d(wall.point.geometric)});
-      if (!wall.is_body) crossing.reflectance = 0;
-      flight = fly(medium, walk.weight, {wall.distance, {}}, crossing, numbers);
-      if (flight.leaving > 0 && wall.is_body) leave(wall.point, flight.leaving);
-      walk.weight = flight.remaining;
-    } else {
-      // Free paths have no memory: without a collision the flight goes on from there.
-      flight.distance = -std::log1p(-numbers.next()) / medium.sigma_t();
-      flight.collides = flight.distance < reach;
-      if (!flight.collides) flight.distance = reach;
-    }
-    const bool is_reflected = std::isfinite(wall.distance) && !flight.collides;
-    if (is_reflected) {
-      walk.position = inward(wall.point);
-      walk.direction = mirrored(walk.direction, Vec3d(wall.point.geometric));
-    } else {
-      walk.position += walk.direction * flight.distance;
-      if (!inside.contains(walk.position)) return walk.weight;
-    }
-    if (flight.collides) {
-      walk.weight *= albedo;
-      if (!survives_long(walk.weight, ++walk.collisions, numbers)) return 0;
-      walk.direction = scattered(walk.direction, medium.g, numbers);
-    }
-    if (!survives(walk.weight, least, numbers)) return 0;
-  }
-  return walk.weight;
-}
-
-struct Counts {
-  std::vector<Rgb> flux;  // one a sample
-  Rgb lost{};
-  double entered = 0;
-};
-
-/// Sums over batches, and over their squares.
-struct Sums {
-  std::vector<Rgb> flux, squares;
-  Rgb lost{};
-  double entered = 0;
-  std::size_t batches = 0;
-
-  void add(const Counts& counts) {
-    for (std::size_t i = 0; i < flux.size(); ++i) {
-      flux[i] += counts.flux[i];
-      squares[i] += counts.flux[i] * counts.flux[i];
-    }
-    lost += counts.lost;
-    entered += counts.entered;
-    ++batches;
-  }
-};
 
 class Walks {
  public:
-  explicit Walks(const VolumeInput& input)
-      : input_(input),
-        points_(input),
-        inside_(input),
-        cells_(input.samples),
-        starts_(std::max<std::size_t>(1, input.samples.size() * kWalksOfPass / kBatches)) {}
+  Walks(const VolumeInput& input, VolumeSums& sums)
+      : input_(input), sums_(sums), walks_(input, starts_of(input)), jobs_(jobs_of(input, sums)) {}
 
-  Counts batch(std::size_t index) const {
-    Counts counts;
-    counts.flux.resize(input_.samples.size());
-    for (std::size_t k = 0; k < starts_; ++k) {
-      WalkNumbers numbers(input_.seed, index * starts_ + k);
-      const double share = (double(k) + numbers.next()) / double(starts_);
-      const double u = numbers.next(), v = numbers.next();
-      const SurfacePoint entry = points_.at(share, u, v);
-      const Entered entered = light_at(input_, entry, numbers);
-      counts.entered += max_component(entered.irradiance);
-      for (std::size_t c = 0; c < 3; ++c) {
-        if (!(entered.irradiance[c] > 0) || !(input_.media[c].sigma_s > 0)) continue;
-        const auto leave = [&](const SurfacePoint& point, double weight) {
-          counts.flux[cells_.at(point.position, point.geometric)][c] += weight;
-        };
-        WalkState walk{{}, entered.direction, entered.irradiance[c], 0};
-        counts.lost[c] += walk_inside(input_.media[c], inside_, input_.rays, entry, walk, numbers, leave);
-      }
-    }
-    return counts;
+  const std::vector<Job>& jobs() const { return jobs_; }
+  WalkSums& sums(const Job& job) const { return sums_.sources[job.source].channels[job.channel]; }
+
+  /// One pass of each of these jobs; together, for the last chunks of a pass leave threads idle.
+  void add_passes(std::span<const Job> jobs) const {
+    const std::size_t together =
+        std::clamp<std::size_t>(kMostCounts / (BodyWalks::kChunks * input_.samples.size()), 1, 8);
+    for (std::size_t first = 0; first < jobs.size(); first += together)
+      add_together(jobs.subspan(first, std::min(together, jobs.size() - first)));
   }
-
-  /// What a walk's weight of 1 stands for, mm^2, in the mean over a batch.
-  double area_of_walk() const { return points_.area() / double(starts_); }
 
  private:
+  static constexpr std::size_t kMostCounts = std::size_t(1) << 26;  // held at once
+
+  void add_together(std::span<const Job> jobs) const {
+    constexpr std::size_t kChunks = BodyWalks::kChunks;
+    std::vector<WalkCounts> counts(jobs.size() * kChunks);
+    parallel_chunks(counts.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      const Job& job = jobs[i / kChunks];
+      counts[i] = walks_.walk(of(job), sums(job).passes, i % kChunks);
+      advance(input_.monitor, 1);
+    });
+    for (std::size_t j = 0; j < jobs.size(); ++j)
+      add_pass(sums(jobs[j]), std::span(counts).subspan(j * kChunks, kChunks));
+  }
+
+  WalkJob of(const Job& job) const {
+    const bool alone = walks_by_light(input_);
+    return {alone ? input_.lights.subspan(job.source, 1) : input_.lights, alone, job.channel,
+            alone ? light_seed(input_.seed, input_.lights[job.source]) : input_.seed};
+  }
+
   const VolumeInput& input_;
-  SurfacePoints points_;
-  Inside inside_;
-  NearestSample cells_;
-  std::size_t starts_;  // of a batch
+  VolumeSums& sums_;
+  BodyWalks walks_;
+  std::vector<Job> jobs_;
 };
 
-VolumeExitance result_of(const VolumeInput& input, const Sums& sums, double area_of_walk) {
-  VolumeExitance result;
-  const double n = double(sums.batches);
-  Rgb largest{};
-  for (std::size_t i = 0; i < input.samples.size(); ++i) {
-    const double scale = area_of_walk / double(input.samples[i].area);
-    const Rgb mean = sums.flux[i] / n;
-    Rgb error;
-    for (std::size_t c = 0; c < 3; ++c) {
-      error[c] = std::sqrt(std::max(0.0, sums.squares[i][c] / n - mean[c] * mean[c]) / (n - 1)) * scale;
-      largest[c] = std::max(largest[c], mean[c] * scale);
-    }
-    result.exitance.push_back(RgbF(mean * scale));
-    result.error.push_back(RgbF(error));
-  }
-  Rgb squares{};
-  for (std::size_t i = 0; i < input.samples.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double mean = double(result.exitance[i][c]), error = double(result.error[i][c]);
-      const double scale = mean * mean + 1e-4 * largest[c] * largest[c];
-      if (scale > 0) squares[c] += error * error / scale;
-    }
-  result.relative_error = std::sqrt(max_component(squares) / double(input.samples.size()));
-  result.walks = sums.batches / kBatches * kWalksOfPass;
-  if (sums.entered > 0) result.lost = sums.lost / sums.entered;
-  return result;
+/// Jobs that lack passes for the number that everyone gets.
+std::vector<Job> jobs_behind(const Walks& walks, std::size_t passes) {
+  std::vector<Job> behind;
+  for (const Job& job : walks.jobs())
+    if (walks.sums(job).passes < passes) behind.push_back(job);
+  return behind;
 }
+
+/// Jobs that have the largest parts in an error that is too large: another pass of them brings most.
+std::vector<Job> jobs_wanted(const Walks& walks, const Noise& noise, std::size_t most) {
+  double largest = 0;
+  const auto brings = [&](std::size_t j) {
+    const std::size_t passes = walks.sums(walks.jobs()[j]).passes;
+    return passes < most ? noise.shares[j] / double(passes) : 0;
+  };
+  for (std::size_t j = 0; j < walks.jobs().size(); ++j) largest = std::max(largest, brings(j));
+  std::vector<Job> wanted;
+  for (std::size_t j = 0; j < walks.jobs().size(); ++j)
+    if (brings(j) > 0 && brings(j) >= .5 * largest) wanted.push_back(walks.jobs()[j]);
+  return wanted;
+}
+
+/// Tells how much is done of what is expected.
+class Progress {
+ public:
+  Progress(Monitor* monitor, const Walks& walks) : monitor_(monitor), walks_(walks), before_(passes()) {
+    if (monitor != nullptr) monitor->begin("random walks", 0);
+  }
+
+  /// That each job has so many passes.
+  void expect(std::size_t passes_each) const {
+    std::size_t all = 0;
+    for (const Job& job : walks_.jobs()) all += std::max(passes_each, walks_.sums(job).passes);
+    expect_all(all);
+  }
+  /// Noise falls with the root of the passes.
+  void expect(const Noise& noise, double until_error, std::size_t most) const {
+    if (monitor_ != nullptr) monitor_->noise = noise.worst();
+    double all = 0;
+    for (const Job& job : walks_.jobs()) {
+      const double ratio = std::max(1.0, noise.of_job(job.channel) / until_error);
+      all += std::min(double(most), double(walks_.sums(job).passes) * ratio * ratio);
+    }
+    expect_all(std::size_t(std::ceil(all)));
+  }
+
+ private:
+  std::size_t passes() const {
+    std::size_t sum = 0;
+    for (const Job& job : walks_.jobs()) sum += walks_.sums(job).passes;
+    return sum;
+  }
+  void expect_all(std::size_t all) const {
+    if (monitor_ != nullptr) monitor_->total = (std::max(all, passes()) - before_) * BodyWalks::kChunks;
+  }
+
+  Monitor* monitor_;
+  const Walks& walks_;
+  std::size_t before_;
+};
 
 }  // namespace
 
-VolumeExitance volume_exitance(const VolumeInput& input) {
+bool walks_by_light(const VolumeInput& input) {
+  return input.lights.size() <= kMostSeparate &&
+         input.lights.size() * input.samples.size() <= kMostSeparateSums;
+}
+
+void walk_volume(const VolumeInput& input, VolumeSums& sums,
+                 const std::function<void(const VolumeSums&)>& after_pass) {
   for (const HomogeneousMedium& medium : input.media) check_medium(medium);
-  if (input.samples.empty()) return {};
-  const Walks walks(input);
-  Sums sums;
-  sums.flux.resize(input.samples.size());
-  sums.squares.resize(input.samples.size());
-  VolumeExitance result;
-  const std::size_t most = input.until_error ? kMostWalks : kDefaultWalks;
-  while (result.walks < most &&
-         !(input.until_error && result.walks > 0 && result.relative_error <= *input.until_error)) {
-    for (std::size_t first = 0; first < kBatches; first += kTogether) {
-      std::vector<Counts> counts(kTogether);
-      parallel_chunks(kTogether, 1, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t b = begin; b < end; ++b) {
-          counts[b] = walks.batch(sums.batches + b);
-          advance(input.monitor, 1);
-        }
-      });
-      for (const Counts& part : counts) sums.add(part);
+  sums.sources.resize(sources_of(input));
+  if (input.samples.empty()) return;
+  const Walks walks(input, sums);
+  Progress progress(input.monitor, walks);
+  const std::size_t most = passes_for(input.until_error ? kMostWalks : kDefaultWalks);
+  for (;;) {
+    std::vector<Job> jobs = jobs_behind(walks, input.until_error ? kFewestPasses : most);
+    if (jobs.empty() && input.until_error) {
+      const Noise noise = Evaluation(input, sums).noise(walks.jobs(), *input.until_error);
+      progress.expect(noise, *input.until_error, most);
+      if (noise.worst() <= *input.until_error) break;
+      jobs = jobs_wanted(walks, noise, most);
+    } else {
+      progress.expect(input.until_error ? kFewestPasses : most);
+      if (input.monitor != nullptr) input.monitor->noise = Evaluation(input, sums).noise({}).worst();
     }
-    result = result_of(input, sums, walks.area_of_walk());
+    if (jobs.empty()) break;
+    walks.add_passes(jobs);
+    if (after_pass) after_pass(sums);
+  }
+}
+
+VolumeExitance exitance_of(const VolumeInput& input, const VolumeSums& sums) {
+  VolumeExitance result;
+  result.has_inner_sheets = BodyInside(input.rays, input.world, input.meshes).overlaps();
+  const Evaluation evaluation(input, sums);
+  for (std::size_t i = 0; i < input.samples.size(); ++i) {
+    Rgb mean{}, error{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const PassMean cell = evaluation.whole(c, i);
+      mean[c] = cell.mean;
+      error[c] = std::sqrt(cell.variance);
+    }
+    result.exitance.push_back(RgbF(mean));
+    result.error.push_back(RgbF(error));
+  }
+  const std::vector<Job> jobs = jobs_of(input, sums);
+  const Noise noise = evaluation.noise(jobs);
+  result.relative_error = noise.worst();
+  for (const Job& job : jobs) {
+    const WalkSums& walks = sums.sources[job.source].channels[job.channel];
+    result.walks = std::max(result.walks, walks.passes * kWalksOfPass);
+    if (!(walks.entered > 0)) continue;
+    result.lost[job.channel] = std::max(result.lost[job.channel], walks.lost / walks.entered);
+    result.stopped[job.channel] = std::max(result.stopped[job.channel], walks.stopped / walks.entered);
   }
   return result;
+}
+
+VolumeExitance volume_exitance(const VolumeInput& input) {
+  VolumeSums sums;
+  walk_volume(input, sums);
+  return exitance_of(input, sums);
 }
 
 }  // namespace opaline

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body with samples and a light, for what computes the light that leaves it.
+// A body of one medium, sampled, and walked in some light.
 #pragma once
 
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "opaline/diffusion/fresnel.h"
 #include "opaline/lights/light.h"
-#include "opaline/volume/volume_diffusion.h"
 #include "opaline/volume/volume_exitance.h"
 #include "support/surfaces.h"
 #include "volume/volume_test.h"
@@ -15,48 +21,35 @@ struct LitBody {
   RayScene rays;
   std::vector<std::uint32_t> meshes;
   SurfaceSamples surface;
+  std::vector<Light> lights;
+  HomogeneousMedium medium;  ///< per mm
+  bool reenter = true;
+  std::size_t others = 0;  ///< meshes behind the body's that stop light
 
+  LitBody(World w, std::size_t samples, std::size_t other_meshes = 0)
+      : world(std::move(w)),
+        rays(world),
+        meshes(world.meshes.size() - other_meshes),
+        surface((std::iota(meshes.begin(), meshes.end(), 0u), sample_surface({world, meshes, samples}))),
+        others(other_meshes) {}
   LitBody(const ShapeSource& shape, std::size_t samples, NormalMode normals = NormalMode::smooth)
-      : LitBody(std::vector{shape}, samples, normals) {}
-  /// Shapes that are one body.
-  LitBody(const std::vector<ShapeSource>& shapes, std::size_t samples,
-          NormalMode normals = NormalMode::smooth)
-      : world(world_of(shapes, normals)), rays(world) {
-    for (std::uint32_t m = 0; m < world.meshes.size(); ++m) meshes.push_back(m);
-    surface = sample_surface({world, meshes, samples});
+      : LitBody(world_of({shape}, normals), samples) {}
+
+  void light(const std::vector<LightSource>& sources) {
+    for (const LightSource& source : sources)
+      lights.push_back(
+          recentred({"light " + std::to_string(lights.size()), source}, world.origin, world.unit));
   }
 
-  HomogeneousMedium in_units(HomogeneousMedium medium) const {
-    medium.sigma_a *= world.unit;
-    medium.sigma_s *= world.unit;
-    return medium;
+  VolumeInput input(std::uint64_t seed = 7, std::optional<double> until_error = {}) const {
+    HomogeneousMedium own = medium;
+    own.sigma_a *= world.unit;
+    own.sigma_s *= world.unit;
+    return {rays,   world,       meshes, surface.samples, {own, own, own},
+            lights, until_error, seed,   nullptr,         reenter};
   }
-  std::vector<Light> lights_of(const LightSource& source) const {
-    return {recentred({"light", source}, world.origin, world.unit)};
-  }
-
-  /// medium: lengths in mm
-  VolumeExitance walked(const HomogeneousMedium& medium, const LightSource& source,
-                        std::optional<double> until_error = {}) const {
-    const HomogeneousMedium own = in_units(medium);
-    return volume_exitance(
-        {rays, world, meshes, surface.samples, {own, own, own}, lights_of(source), until_error, 7, nullptr});
-  }
-
-  /// Entered irradiance at the samples, per light.
-  std::vector<LightTransfer> transfers(const LightSource& source, double eta) const {
-    return compute_irradiance({rays, surface.samples, lights_of(source), eta, 256, 5, nullptr});
-  }
-  /// cell: mm
-  VolumeExitance diffused(const std::array<HomogeneousMedium, 3>& media, const LightSource& source,
-                          double cell) const {
-    const std::vector<LightTransfer> transfer = transfers(source, media[0].eta);
-    const VolumeDiffusion body({world,
-                                meshes,
-                                surface.samples,
-                                {in_units(media[0]), in_units(media[1]), in_units(media[2])},
-                                cell / world.unit});
-    return body.exitance(lights_of(source), transfer);
+  VolumeExitance walked(std::uint64_t seed = 7, std::optional<double> until_error = {}) const {
+    return volume_exitance(input(seed, until_error));
   }
 
   /// Mean over samples that `counts`, and its standard error as if cells were independent.
@@ -74,6 +67,13 @@ struct LitBody {
   }
 };
 
-inline const auto everywhere = [](const SurfaceSample&) { return true; };
+inline bool everywhere(const SurfaceSample&) {
+  return true;
+}
+
+/// Mean exitance of a body without absorption in the radiance 1 from everywhere.
+inline double furnace_exitance(double eta) {
+  return std::numbers::pi * (1 - average_reflectance_outside(eta));
+}
 
 }  // namespace opaline::test

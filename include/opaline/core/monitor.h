@@ -13,6 +13,7 @@ struct Monitor {
   std::atomic<std::size_t> done{0};
   std::atomic<std::size_t> total{
       0};                           ///< 0: not known; may change while work goes on, where it is an estimate
+  std::atomic<double> noise{-1};    ///< relative standard error so far, of work at random; below 0: not known
   std::atomic<unsigned> rounds{0};  ///< of counting: `done` starts at 0 in each
   std::atomic<bool> cancelled{false};
 
@@ -21,6 +22,7 @@ struct Monitor {
     stage = name;
     done = 0;
     total = work;
+    noise = -1;
     ++rounds;
   }
 };

@@ -3,6 +3,7 @@
 // camera.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "opaline/octree/octree.h"
 #include "opaline/render/plan.h"
 #include "opaline/sampling/sample_surface.h"
+#include "opaline/volume/cell_fit.h"
 #include "opaline/volume/volume_diffusion.h"
 #include "opaline/volume/volume_exitance.h"
 
@@ -33,7 +35,9 @@ struct Body {
   CloudError cloud = {};                           ///< of the samples with this irradiance and kernel
   std::optional<SurfaceCache> surface_cache = {};  ///< the exitance everywhere, where that is cheaper than at
                                                    ///< the points of the picture
-  std::optional<VolumeExitance> volume = {};       ///< of Method::volume and volume_diffusion
+  VolumeSums walks = {};                           ///< of Method::volume
+  std::optional<VolumeExitance> volume = {};       ///< what they amount to, or volume_diffusion
+  std::shared_ptr<const CellFit> volume_fit = {};  ///< the same at any point
 };
 
 struct PrecomputeInput {
@@ -61,9 +65,12 @@ std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size
 /// The scene's lights in the world's space and unit.
 std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 
-/// Random walks inside a body with its samples. Media are walked with isotropic scattering and the reduced
-/// coefficients: they are what a scene says of a medium.
-VolumeExitance walk_body(const PrecomputeInput& input, const Body& body, std::span<const Light> lights);
+/// For random walks inside a body with its samples. Media are walked with their mean cosine g (at most .95: to what is
+/// nearer to 1 walks of the same reduced coefficients come close) and sigma_s = sigma_s' / (1 - g). Mean free paths
+/// that rays cannot resolve, below about 1e-4 of the body, are taken longer: on such a body's scale light leaves where
+/// it enters either way.
+/// in    lights: recentred; they and the body outlive the result
+VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span<const Light> lights);
 
 /// The cells of a body with its samples, for the diffusion equation inside of it; media as for walks.
 VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body);

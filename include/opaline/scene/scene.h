@@ -53,6 +53,9 @@ struct Medium {
   double eta = 1.3;
   ProfileKind profile = ProfileKind::dipole;
   SourcePlace place{};
+  /// Mean cosine g of the scattering angle, (-1, 1), where the coefficients are reduced ones. Random walks alone
+  /// follow it; diffusion knows no more than (1 - g) sigma_s.
+  double scatter_anisotropy = 0;
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
@@ -204,7 +207,9 @@ struct Settings {
   int light_samples = 64;                ///< shadow rays per sample (opaque: pixel) and light with an area
   EntryStrategy entry_strategy = EntryStrategy::disc_axes;  ///< direct: how entry points are drawn
   std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
-  std::optional<double> until_error;         ///< direct: stop at this estimated relative error of the pixels
+  std::optional<double>
+      until_error;         ///< direct, volume: stop at this estimated relative error of the pixels, cells
+  bool reenter = true;     ///< volume: light that has left a body may enter it again elsewhere
   double cell_size = 1.5;  ///< volume_diffusion: of the cells at the surface, mean free paths
   std::uint64_t seed = 0;
   int reference_frame = 1;  ///< of frame ranges: samples are placed there and go along to all others

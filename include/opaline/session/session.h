@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +32,16 @@ struct SessionWork {
   std::size_t found = 0;             ///< results taken from the cache
   std::size_t places_evaluated = 0;  ///< of surface caches
   std::size_t queries = 0;           ///< points of the picture at which exitance was looked up or evaluated
+  std::size_t walk_passes =
+      0;  ///< of random walks, over the samples of a body for a channel and source of light
+};
+
+/// Where the sums of random walks come from and go to, beside the session itself.
+struct WalkStore {
+  /// What is there of a source of light (stage_keys.h); none: nothing.
+  std::function<std::optional<SourceSums>(const StageKey& key)> find;
+  /// Called before the walks in a body, with what was found, and after each pass.
+  std::function<void(std::span<const StageKey> keys, const VolumeSums& sums)> keep;
 };
 
 /// Keeps the last scene's stage results, each with the key of what it was computed from; the next scene takes
@@ -56,8 +68,12 @@ struct SessionWork {
 ///                                       number was set or limited by max_samples, less than a sixteenth of it
 ///   anything else                       what depends on it
 ///
-/// A picture has the same bits as that of a new session, with two exceptions: mixed pictures (equal within the
-/// tolerance), and scenes whose samples were carried along or stayed denser than needed. Such samples were
+/// Random walks (Method::volume) are kept by light, where lights are few: neither the camera nor colours walk again,
+/// and other edits walk for the lights they concern.
+///
+/// A picture has the same bits as that of a new session, with three exceptions: mixed pictures (equal within the
+/// tolerance), random walks that were made for a smaller error (walks are not taken back), and scenes whose samples
+/// were carried along or stayed denser than needed. Such samples were
 /// placed on the last surface that was sampled anew. The picture depends on that surface and on the scene as
 /// it is now, not on the edits in between.
 class Session {
@@ -97,6 +113,9 @@ class Session {
   /// If no further edits follow, the session drops the data that only edits reuse. Default: true. No picture
   /// depends on it.
   void expect_edits(bool edits);
+
+  /// Sums of random walks to go on from, and where to keep them.
+  void store_walks(WalkStore store);
 
   /// The ray structure alone, which prepare has made otherwise.
   void prepare_rays();

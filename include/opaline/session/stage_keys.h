@@ -54,6 +54,11 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
 /// in    light: recentred
 StageKey view_light_key(const Light& light);
 
+/// Of the sums of random walks, one for each of their sources (VolumeSums): the samples, the media's coefficients, all
+/// meshes, where the source's light is and how large; its colour only where sources have several lights.
+std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& samples,
+                                std::span<const MeshKeys> meshes);
+
 /// Whether a mesh could be in the way between a light and a group's meshes, to judge by the balls around them
 /// all; at most too cautious.
 /// in    light: recentred; unit: World::unit

@@ -3,32 +3,63 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "opaline/sampling/sample_surface.h"
 
 namespace opaline {
 
-/// Samples whose normals face away from the point's are of another sheet and never found.
+/// Finds the samples of a point's sheet: those whose normals do not face away from the point's (same_sheet).
 class NearestSample {
  public:
-  explicit NearestSample(std::span<const SurfaceSample> samples);
-  ~NearestSample();
+  struct Member {
+    Vec3f position, normal;
+    std::uint32_t sample;
+  };
 
-  /// Index of the nearest sample; the cell that the point lies in is that sample's.
+  /// world: where the samples lie. With it sheets are told by the triangles' normals, as by the areas of the
+  /// samples, and the nearest sample's cell holds the point. Without it the samples' own normals are taken.
+  explicit NearestSample(std::span<const SurfaceSample> samples, const World* world = nullptr);
+
+  /// Index of the nearest sample of the sheet; of any sheet where none of the point's is near.
   std::uint32_t at(const Vec3f& position, const Vec3f& normal) const;
 
-  /// A mean of values, one a sample: weights (1 - t^2)^2, t = distance / radius below 1; the nearest one's where
-  /// there is none.
-  RgbF interpolate(std::span<const RgbF> values, const Vec3f& position, const Vec3f& normal,
-                   float radius) const;
+  /// Calls visit(member) for all samples, of any sheet, in the cubes that the ball around a position meets.
+  template <class Visit>
+  void for_near(const Vec3f& position, float radius, const Visit& visit) const {
+    const Place low = place_of(position - Vec3f(radius)), high = place_of(position + Vec3f(radius));
+    for (std::int32_t z = low.z; z <= high.z; ++z)
+      for (std::int32_t y = low.y; y <= high.y; ++y)
+        for (std::int32_t x = low.x; x <= high.x; ++x)
+          for (const Member& member : members_of({x, y, z})) visit(member);
+  }
 
  private:
-  struct Tree;
-  std::unique_ptr<const Tree> tree_;
+  struct Place {
+    std::int32_t x, y, z;  ///< of a cube
+  };
+  struct Cube {
+    std::uint64_t key = 0;
+    std::uint32_t first = 0, count = 0;  ///< of its members; none: the slot is free
+  };
+  struct Found {
+    float distance2;
+    std::uint32_t sample;
+  };
+
+  Place place_of(const Vec3f& position) const;
+  static std::uint64_t key_of(const Place& place);
+  std::size_t slot_of(std::uint64_t key) const;
+  std::span<const Member> members_of(const Place& place) const;
+  void look_into(const Place& place, const Vec3f& position, const Vec3f* normal, Found& best) const;
+  Found nearest(const Vec3f& position, const Vec3f* normal) const;
+
+  Vec3f low_;
+  float inverse_edge_ = 1, edge_ = 1;
+  std::vector<Member> members_;  ///< cube by cube
+  std::vector<Cube> slots_;      ///< a hash table, a power of two of them
+  int shift_ = 0;                ///< 64 - log2(their number)
 };
 
 }  // namespace opaline

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,22 +27,60 @@ struct VolumeInput {
   std::optional<double> until_error = {};  ///< of VolumeExitance::relative_error; none: kDefaultWalks
   std::uint64_t seed = 0;
   Monitor* monitor = nullptr;
+  bool reenter = true;  ///< light that has left may meet the body again and enter
 };
 
-/// Walks a sample and channel where no error is asked for, and at the most.
+/// Walks a sample, channel and light where no error is asked for, and at the most.
 inline constexpr std::size_t kDefaultWalks = 64, kMostWalks = 65536;
+
+/// Sums over the walks of one channel, pass by pass.
+struct WalkSums {
+  std::size_t passes = 0;
+  std::vector<float> flux;   ///< one a sample: flux that left its cell, in areas of a start
+  std::vector<float> roots;  ///< roots of the sums over passes of its square
+  double entered = 0;        ///< flux that entered from the lights
+  double lost = 0;           ///< of it, what got out through holes of the mesh
+  double stopped = 0;        ///< of it, what ended at other meshes inside the body
+};
+
+/// Walks of light from one lamp, as if its emission were 1 in each channel; or from all lamps together.
+struct SourceSums {
+  std::array<WalkSums, 3> channels;
+};
+
+/// All that going on later takes, and all that other colours of the lights take.
+struct VolumeSums {
+  std::vector<SourceSums> sources;
+};
 
 struct VolumeExitance {
   std::vector<RgbF> exitance;  ///< one a sample: radiant exitance, W/mm^2, the mean over its cell
   std::vector<RgbF> error;     ///< one a sample: standard error of the exitance
-  std::size_t walks = 0;       ///< a sample and channel
-  double relative_error = 0;   ///< rms over samples of error over sqrt(exitance^2 + (1 % of the largest)^2)
-  Rgb lost{};                  ///< share of the entered light that got out through holes of the mesh
+  std::size_t walks = 0;       ///< a sample, of the channel and light that has most
+  double relative_error =
+      0;                  ///< rms over the surface of error over sqrt(exitance^2 + (1 % of the largest)^2)
+  Rgb lost{}, stopped{};  ///< shares of the light that entered: see WalkSums
+  bool has_inner_sheets = false;  ///< parts of the body overlap or touch, or its surface crosses itself
 };
+
+/// Whether each light is walked alone, so that its colour takes no part: where there are few.
+bool walks_by_light(const VolumeInput& input);
+
+/// Goes on from `sums` (empty: from nothing) until there are kDefaultWalks or the error is small enough; `sums`
+/// are those of the last whole passes, also when the monitor's cancellation throws. They depend on the input and
+/// the numbers of passes alone: not on where they were stopped, nor on threads; with by-light sums (above) not on
+/// the lights' emission either. An error asked for decides how many passes each light and channel gets.
+/// in    after_pass: called between passes
+/// error Error{interrupted}
+void walk_volume(const VolumeInput& input, VolumeSums& sums,
+                 const std::function<void(const VolumeSums&)>& after_pass = {});
+
+/// What the sums amount to in the lights' colours.
+VolumeExitance exitance_of(const VolumeInput& input, const VolumeSums& sums);
 
 /// Light enters where it falls on the body, refracted by the geometric normal, walks until it is absorbed or
 /// leaves, and what leaves is counted on the cell of the nearest sample of its sheet. Unbiased for the mean
-/// over each cell; light that has left does not enter again. The same bits for any number of threads.
+/// over each cell. The same bits for any number of threads.
 /// error Error{interrupted}
 VolumeExitance volume_exitance(const VolumeInput& input);
 

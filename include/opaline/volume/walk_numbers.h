@@ -17,6 +17,12 @@ class WalkNumbers {
   /// Uniform in [0, 1).
   double next() { return unit_double(hash_bits(key_, count_++)); }
 
+  /// Two, uniform in [-1, 1), 32 bits each.
+  std::array<double, 2> next_pair() {
+    const std::uint64_t bits = hash_bits(key_, count_++);
+    return {double(std::int32_t(bits >> 32)) * 0x1p-31, double(std::int32_t(bits)) * 0x1p-31};
+  }
+
   /// Cosine and sine of a uniform angle: a point of the unit disc, its angle doubled.
   std::array<double, 2> next_angle() {
     for (;;) {

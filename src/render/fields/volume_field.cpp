@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/fields/volume_field.h"
 
+#include <cmath>
+
 namespace opaline {
-namespace {
-
-constexpr double kSpacings = 1.3;  // of the samples: over which cells are interpolated
-
-}  // namespace
-
-VolumeField::VolumeField(const Body& body)
-    : body_(body), samples_(body.surface.samples), radius_(float(kSpacings * body.surface.spacing())) {}
 
 LeavingLight VolumeField::at(const SurfaceHits& hits, PointIrradianceInput, const Pass&,
                              HeldView::Surface*) const {
   LeavingLight light;
   for (const SurfacePoint& point : hits.points) {
-    light.exitance.push_back(
-        samples_.interpolate(body_.volume->exitance, point.position, point.geometric, radius_));
-    light.error.push_back(
-        samples_.interpolate(body_.volume->error, point.position, point.geometric, radius_));
+    const CellFit::Value found = body_.volume_fit->at(point.position, point.normal);
+    light.exitance.push_back(found.value);
+    RgbF error;
+    for (std::size_t c = 0; c < 3; ++c) error[c] = std::hypot(found.noise[c], found.shape[c]);
+    light.error.push_back(error);
   }
   return light;
 }

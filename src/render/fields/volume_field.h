@@ -3,7 +3,6 @@
 #pragma once
 
 #include "opaline/render/precompute.h"
-#include "opaline/volume/nearest_sample.h"
 #include "render/fields/field.h"
 
 namespace opaline {
@@ -11,17 +10,15 @@ namespace opaline {
 class VolumeField : public Field {
  public:
   /// body: with its walks; must outlive the field
-  explicit VolumeField(const Body& body);
+  explicit VolumeField(const Body& body) : body_(body) {}
 
-  /// The error is the walks' noise; what interpolation between cells blurs is not in it.
+  /// The error is the walks' noise and what interpolation between cells is off by.
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
   float eta() const override { return float(body_.profile.eta); }
 
  private:
   const Body& body_;
-  NearestSample samples_;
-  float radius_;
 };
 
 }  // namespace opaline

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What random walks found wrong with a body's meshes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "opaline/render/precompute.h"
+
+namespace opaline {
+
+/// Light that was lost through holes or stopped by other shapes inside the body; sheets inside of it. One line each;
+/// none without walks.
+std::vector<std::string> walk_warnings(const Body& body);
+
+}  // namespace opaline

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/body_inside.h"
+
+#include <cmath>
+
+namespace opaline {
+namespace {
+
+constexpr int kMostSheets = 64;  // that a ray goes through
+
+TracedRay traced_ray(const Vec3d& from, const Vec3d& direction, double far) {
+  return {Ray(Vec3f(from), Vec3f(direction), float(far)), {}};
+}
+
+/// Goes on behind what the ray has met; how far it goes stays.
+void go_on(TracedRay& traced, double far) {
+  traced.ray.near = std::nextafter(traced.ray.far, std::numeric_limits<float>::infinity());
+  traced.ray.far = float(far);
+  traced.hit = {};
+}
+
+bool leaves(const TracedRay& traced) {
+  return dot(traced.hit.edges_cross, traced.ray.direction) > 0;
+}
+
+}  // namespace
+
+BodyInside::BodyInside(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes)
+    : rays_(rays), is_body_(world.meshes.size()) {
+  for (const std::uint32_t m : meshes) {
+    is_body_[m] = true;
+    const Bounds box = bounds(world.meshes[m]);
+    box_.low = component_min(box_.low, box.low);
+    box_.high = component_max(box_.high, box.high);
+  }
+  overlaps_ = find_overlaps(world, meshes);
+}
+
+// From some thousand triangles straight into the body: a sheet that is met from outside lies within.
+bool BodyInside::find_overlaps(const World& world, std::span<const std::uint32_t> meshes) const {
+  constexpr std::size_t kTriangles = 4096;  // of a mesh
+  if (meshes.size() > 1) return true;
+  for (const std::uint32_t m : meshes) {
+    const std::size_t count = world.meshes[m].triangles.size();
+    for (std::size_t t = 0; t < count; t += std::max<std::size_t>(1, count / kTriangles)) {
+      const SurfacePoint point = rays_.surface_point(m, std::uint32_t(t), 1 / 3.0f, 1 / 3.0f);
+      TracedRay traced =
+          traced_ray(moved_off(point, -1), -Vec3d(point.geometric), std::numeric_limits<double>::infinity());
+      rays_.intersect_one(traced);
+      if (traced.hit.mesh == m && !leaves(traced)) return true;
+    }
+  }
+  return false;
+}
+
+Wall BodyInside::wall(const Vec3d& from, const Vec3d& direction, double reach) const {
+  TracedRay traced = traced_ray(from, direction, reach);
+  for (int sheets = 0; sheets < kMostSheets; ++sheets) {
+    rays_.intersect_one(traced);
+    if (traced.hit.mesh == Hit::kMiss) return {};
+    const Wall wall{double(traced.ray.far), traced.hit, normalized(Vec3d(traced.hit.edges_cross)),
+                    is_body_[traced.hit.mesh]};
+    if (!wall.is_body) return boundary_behind(traced, wall);
+    if (leaves(traced) && !overlaps_) return wall;
+    if (leaves(traced)) {
+      const double beyond = wall.distance + 2 * double(rays_.offset(point(traced.hit)));
+      if (!contains(from + direction * beyond, direction)) return wall;
+    }
+    go_on(traced, reach);
+  }
+  return {};
+}
+
+// Something that touches the body lies at its boundary, and rays may meet either first.
+Wall BodyInside::boundary_behind(TracedRay traced, const Wall& other) const {
+  const double far = other.distance + 2 * double(rays_.offset(point(other.hit)));
+  for (int sheets = 0; sheets < 2; ++sheets) {
+    go_on(traced, far);
+    rays_.intersect_one(traced);
+    if (traced.hit.mesh == Hit::kMiss) break;
+    if (is_body_[traced.hit.mesh] && leaves(traced))
+      return {double(traced.ray.far), traced.hit, normalized(Vec3d(traced.hit.edges_cross)), true};
+  }
+  return other;
+}
+
+// More sheets are left than entered on the way out.
+bool BodyInside::contains(const Vec3d& point, const Vec3d& direction) const {
+  TracedRay traced = traced_ray(point, direction, std::numeric_limits<double>::infinity());
+  int inside = 0;
+  for (int sheets = 0; sheets < kMostSheets; ++sheets) {
+    rays_.intersect_one(traced);
+    if (traced.hit.mesh == Hit::kMiss) break;
+    if (is_body_[traced.hit.mesh]) inside += leaves(traced) ? 1 : -1;
+    if (inside > 0) return true;
+    go_on(traced, std::numeric_limits<double>::infinity());
+  }
+  return false;
+}
+
+std::optional<SurfacePoint> BodyInside::entry(const Vec3d& from, const Vec3d& direction) const {
+  TracedRay traced = traced_ray(from, direction, std::numeric_limits<double>::infinity());
+  rays_.intersect_one(traced);
+  if (traced.hit.mesh == Hit::kMiss || !is_body_[traced.hit.mesh] || leaves(traced)) return {};
+  return point(traced.hit);
+}
+
+}  // namespace opaline

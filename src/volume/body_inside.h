@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The boundary of a body as rays from within it, and from outside, meet it.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "opaline/geometry/ray_scene.h"
+
+namespace opaline {
+
+/// Where a ray from inside the body ends.
+struct Wall {
+  double distance = std::numeric_limits<double>::infinity();
+  Hit hit;
+  Vec3d normal;          ///< geometric, unit, out of the body
+  bool is_body = false;  ///< or something that stops light
+};
+
+/// The body is the union of what its closed meshes enclose. Sheets that lie inside, where parts overlap or touch,
+/// are no boundary: light goes through.
+class BodyInside {
+ public:
+  BodyInside(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes);
+
+  const Bounds& box() const { return box_; }
+  /// Whether some of the body's sheets lie inside of it.
+  bool overlaps() const { return overlaps_; }
+
+  /// The first boundary within `reach` along a ray from inside.
+  Wall wall(const Vec3d& from, const Vec3d& direction, double reach) const;
+
+  /// Where a ray from outside meets the body, unless something else stops it or it misses.
+  std::optional<SurfacePoint> entry(const Vec3d& from, const Vec3d& direction) const;
+
+  SurfacePoint point(const Hit& hit) const {
+    return rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
+  }
+  /// Where rays start that leave a point of the surface along its normal (side 1) or against it (-1).
+  Vec3d moved_off(const SurfacePoint& point, double side) const {
+    return Vec3d(point.position) + Vec3d(point.geometric) * (side * double(rays_.offset(point)));
+  }
+
+ private:
+  Wall boundary_behind(TracedRay traced, const Wall& other) const;
+  bool contains(const Vec3d& point, const Vec3d& direction) const;
+  bool find_overlaps(const World& world, std::span<const std::uint32_t> meshes) const;
+
+  const RayScene& rays_;
+  std::vector<bool> is_body_;
+  Bounds box_;
+  bool overlaps_ = false;
+};
+
+}  // namespace opaline

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Random walks inside a body of meshes, counted on the cells of its samples.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "opaline/volume/nearest_sample.h"
+#include "opaline/volume/random_walk.h"
+#include "opaline/volume/volume_exitance.h"
+#include "volume/body_inside.h"
+#include "volume/light_entry.h"
+#include "volume/safe_distance.h"
+
+namespace opaline {
+
+/// Walks of one channel and of the light from some lamps.
+struct WalkJob {
+  std::span<const Light> lights;
+  bool unit_emission = true;
+  std::size_t channel = 0;
+  std::uint64_t seed = 0;
+};
+
+/// What walks brought.
+struct WalkCounts {
+  std::vector<float> flux;  ///< one a sample; times area_of_start() it is W
+  double entered = 0, lost = 0, stopped = 0;
+};
+
+class BodyWalks {
+ public:
+  /// starts: of a pass
+  BodyWalks(const VolumeInput& input, std::size_t starts);
+
+  /// A pass spreads its starts evenly over the surface. Of them, those of one of kChunks stretches.
+  WalkCounts walk(const WalkJob& job, std::size_t pass, std::size_t chunk) const;
+  static constexpr std::size_t kChunks = 16;
+
+ private:
+  struct Walker;
+
+  const VolumeInput& input_;
+  EvenPoints points_;
+  BodyInside inside_;
+  SafeDistance safe_;
+  NearestSample cells_;
+  std::size_t starts_;
+};
+
+}  // namespace opaline

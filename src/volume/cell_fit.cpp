@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/volume/cell_fit.h"
+
+#include <cmath>
+
+#include "opaline/core/parallel.h"
+
+namespace opaline {
+namespace {
+
+// Measured on smooth fields without noise and with (src/volume/README.md).
+constexpr float kFitRadius = 2.6f, kBlendRadius = 1.2f, kSurpriseRadius = 5;  // spacings
+constexpr double kShapePerSurprise = 1.4;
+constexpr float kBlendedNoise = .9f;  ///< over that of one fit
+constexpr double kLeastCosine = .4;   // between normals that have to do with each other
+/// Mean square, along any axis, of a cell's points about its middle, over its area: of a hexagon .0802, of a
+/// square .0833.
+constexpr double kCellMoment = .0815;
+
+constexpr std::size_t kTerms = 6;
+using Terms = std::array<double, kTerms>;
+
+/// 1 where normals agree; 0 where the surface has turned too far.
+double alike(const Vec3f& a, const Vec3f& b) {
+  return std::max(0.0, (double(dot(a, b)) - kLeastCosine) / (1 - kLeastCosine));
+}
+
+/// Falls from 1 to 0 at the radius.
+double bump(const Vec3f& apart, double radius) {
+  const double t2 = double(dot(apart, apart)) / (radius * radius);
+  return t2 < 1 ? (1 - t2) * (1 - t2) : 0;
+}
+
+/// Symmetric and positive.
+class NormalEquations {
+ public:
+  void add(const Terms& terms, double weight) {
+    for (std::size_t i = 0; i < kTerms; ++i)
+      for (std::size_t j = 0; j <= i; ++j) rows_[i][j] += weight * terms[i] * terms[j];
+  }
+
+  /// Cholesky, in place. What few neighbours, or neighbours in a row, leave open becomes 0.
+  void factor() {
+    constexpr double kLeastSlope = 1e-4, kLeastCurvature = 1e-3;
+    for (std::size_t i = 1; i < kTerms; ++i) rows_[i][i] += i < 3 ? kLeastSlope : kLeastCurvature;
+    for (std::size_t i = 0; i < kTerms; ++i)
+      for (std::size_t j = 0; j <= i; ++j) {
+        double sum = rows_[i][j];
+        for (std::size_t k = 0; k < j; ++k) sum -= rows_[i][k] * rows_[j][k];
+        rows_[i][j] = i == j ? std::sqrt(std::max(sum, 1e-30)) : sum / rows_[j][j];
+      }
+  }
+
+  Terms solve(Terms b) const {
+    for (std::size_t i = 0; i < kTerms; ++i) {
+      for (std::size_t k = 0; k < i; ++k) b[i] -= rows_[i][k] * b[k];
+      b[i] /= rows_[i][i];
+    }
+    for (std::size_t i = kTerms; i-- > 0;) {
+      for (std::size_t k = i + 1; k < kTerms; ++k) b[i] -= rows_[k][i] * b[k];
+      b[i] /= rows_[i][i];
+    }
+    return b;
+  }
+
+ private:
+  std::array<Terms, kTerms> rows_{};
+};
+
+struct Neighbour {
+  std::uint32_t sample;
+  double weight;
+  Terms terms;  ///< means over its cell
+};
+
+double product(const Terms& a, const Terms& b) {
+  double sum = 0;
+  for (std::size_t t = 0; t < kTerms; ++t) sum += a[t] * b[t];
+  return sum;
+}
+
+}  // namespace
+
+/// Calls use(cell, weight) for the cells within so many spacings whose normals are alike.
+template <class Use>
+void CellFit::for_alike(const Vec3f& position, const Vec3f& normal, float spacings, const Use& use) const {
+  const float radius = spacings * spacing_;
+  cells_.for_near(position, radius, [&](const NearestSample::Member& member) {
+    const double near = bump(centers_[member.sample] - position, double(radius));
+    if (!(near > 0)) return;
+    const double weight = near * alike(normals_[member.sample], normal);
+    if (weight > 0) use(member.sample, weight);
+  });
+}
+
+CellFit::CellFit(std::span<const SurfaceSample> samples, const World& world, std::span<const RgbF> means,
+                 std::span<const RgbF> errors)
+    : cells_(samples, &world), fits_(samples.size()) {
+  double area = 0;
+  for (const SurfaceSample& s : samples) area += double(s.area);
+  if (area > 0) spacing_ = float(std::sqrt(area / double(samples.size())));
+  for (const SurfaceSample& s : samples) {
+    centers_.push_back(s.centroid);
+    normals_.push_back(s.normal);
+  }
+  std::vector<Rgb> surprises(samples.size());
+  parallel_chunks(samples.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) fits_[i] = fitted(i, samples, means, errors, surprises[i]);
+  });
+  // That of one cell is mostly chance.
+  parallel_chunks(samples.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Rgb sum{};
+      double weights = 0;
+      for_alike(samples[i].centroid, samples[i].normal, kSurpriseRadius,
+                [&](std::uint32_t other, double weight) {
+                  sum += surprises[other] * weight;
+                  weights += weight;
+                });
+      for (std::size_t c = 0; c < 3 && weights > 0; ++c)
+        fits_[i].shape[c] = float(kShapePerSurprise * std::sqrt(std::max(0.0, sum[c] / weights)));
+    }
+  });
+}
+
+// Least squares, neighbours weighted by area. The surprise is the square of what the fit's mean over the cell misses of
+// the cell's mean, less what the means' errors make of it on average.
+CellFit::Fit CellFit::fitted(std::size_t i, std::span<const SurfaceSample> samples,
+                             std::span<const RgbF> means, std::span<const RgbF> errors, Rgb& surprise) const {
+  const SurfaceSample& own = samples[i];
+  const double scale = 1 / double(spacing_);
+  Fit fit{own.centroid, own.normal, {}, errors[i], {}};
+  Vec3f along_u, along_v;
+  tangent_frame(own.normal, along_u, along_v);
+  const auto moment_of = [&](const SurfaceSample& s) { return kCellMoment * double(s.area) * scale * scale; };
+  std::vector<Neighbour> near;
+  NormalEquations equations;
+  double weights = 0;
+  for_alike(own.centroid, own.normal, kFitRadius, [&](std::uint32_t other, double weight) {
+    const SurfaceSample& s = samples[other];
+    weight *= double(s.area);
+    const Vec3f apart = s.centroid - own.centroid;
+    const double u = double(dot(apart, along_u)) * scale, v = double(dot(apart, along_v)) * scale;
+    near.push_back({other, weight, {1, u, v, u * u + moment_of(s), u * v, v * v + moment_of(s)}});
+    weights += weight;
+  });
+  if (!(weights > 0)) {
+    fit.terms[0] = means[i];
+    return fit;
+  }
+  for (Neighbour& n : near) equations.add(n.terms, n.weight /= weights);
+  equations.factor();
+  const Terms at_center = equations.solve({1}),
+              over_cell = equations.solve({1, 0, 0, moment_of(own), 0, moment_of(own)});
+  std::array<Terms, 3> sums{};
+  Rgb noise2{}, missed{}, missed_noise2{};
+  for (const Neighbour& n : near) {
+    const Rgb mean(means[n.sample]), error2 = Rgb(errors[n.sample]) * Rgb(errors[n.sample]);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t t = 0; t < kTerms; ++t) sums[c][t] += n.weight * mean[c] * n.terms[t];
+    const double share = n.weight * product(at_center, n.terms),
+                 miss = (n.sample == i ? 1 : 0) - n.weight * product(over_cell, n.terms);
+    noise2 += error2 * (share * share);
+    missed += mean * miss;
+    missed_noise2 += error2 * (miss * miss);
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Terms solved = equations.solve(sums[c]);
+    for (std::size_t t = 0; t < kTerms; ++t) fit.terms[t][c] = float(solved[t]);
+    fit.noise[c] = float(std::sqrt(noise2[c]));
+  }
+  surprise = missed * missed - missed_noise2;
+  return fit;
+}
+
+RgbF CellFit::value_of(const Fit& fit, const Vec3f& position) const {
+  Vec3f along_u, along_v;
+  tangent_frame(fit.normal, along_u, along_v);
+  const Vec3f apart = (position - fit.center) * (1 / spacing_);
+  const float u = dot(apart, along_u), v = dot(apart, along_v);
+  const auto& t = fit.terms;
+  return t[0] + t[1] * u + t[2] * v + t[3] * (u * u) + t[4] * (u * v) + t[5] * (v * v);
+}
+
+CellFit::Value CellFit::at(const Vec3f& position, const Vec3f& normal) const {
+  Value value;
+  float weights = 0;
+  for_alike(position, normal, kBlendRadius, [&](std::uint32_t sample, double w) {
+    const Fit& fit = fits_[sample];
+    const auto weight = float(w);
+    value.value += value_of(fit, position) * weight;
+    value.noise += fit.noise * weight;
+    value.shape += fit.shape * weight;
+    weights += weight;
+  });
+  if (weights > 0) {
+    value = {value.value / weights, value.noise * (kBlendedNoise / weights), value.shape / weights};
+  } else if (!fits_.empty()) {
+    const Fit& fit = fits_[cells_.at(position, normal)];
+    value = {fit.terms[0], fit.noise, fit.shape};
+  }
+  value.value = component_max(value.value, RgbF{});
+  return value;
+}
+
+}  // namespace opaline

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where and how light from outside arrives at a body: what walks start from.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "opaline/geometry/ray_scene.h"
+#include "opaline/scene/scene.h"
+#include "opaline/volume/walk_numbers.h"
+
+namespace opaline {
+
+/// Points spread evenly over the area of some meshes, along a curve that stays near itself: points at regular
+/// shares of the area are regularly spread in space, too.
+class EvenPoints {
+ public:
+  /// apart: no piece of a triangle that the curve goes through at once is larger than this area
+  EvenPoints(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes, double apart);
+
+  double area() const { return ends_.empty() ? 0 : ends_.back(); }
+
+  /// share: of the area, [0, 1); u, v: within a piece, [0, 1)
+  /// hint: place of the last point, for shares that ascend; 0 will do
+  SurfacePoint at(double share, double u, double v, std::size_t& hint) const;
+
+ private:
+  /// One of the pieces^2 equal pieces of a triangle.
+  struct Piece {
+    std::uint32_t mesh, triangle, pieces, index;
+  };
+
+  const RayScene& rays_;
+  std::vector<Piece> pieces_;
+  std::vector<double> ends_;  ///< running sums of areas
+};
+
+/// Light at a point of the surface, before its boundary.
+struct ArrivedLight {
+  Vec3d direction;  ///< unit, the way it travels
+  Rgb irradiance;   ///< W/mm^2; nothing where it is dark
+};
+
+/// Light from one of `lights`, drawn by what it would bring if nothing were in its way; a shadow ray tells
+/// whether it does. Its mean is the irradiance of all.
+/// in    unit_emission: as if each light's emission were 1 in all channels
+ArrivedLight light_at(const RayScene& rays, std::span<const Light> lights, bool unit_emission,
+                      const SurfacePoint& point, WalkNumbers& numbers);
+
+}  // namespace opaline

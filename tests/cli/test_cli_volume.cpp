@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `opaline render --method volume`: stopped and gone on with, and ended by its noise.
+#include "opaline/session/walk_file.h"
+#include "run_program.h"
+
+namespace opaline {
+namespace {
+
+std::vector<std::string> volume(const SceneFolder& folder, const std::string& out,
+                                const std::vector<std::string>& more) {
+  std::vector<std::string> line{"render", folder.scene,          "-o",       folder.file(out),
+                                "--set",  "settings.samples=60", "--method", "volume"};
+  line.insert(line.end(), more.begin(), more.end());
+  return line;
+}
+
+std::size_t passes_in(const std::string& path) {
+  std::size_t passes = 0;
+  for (const auto& [key, source] : read_walks(path))
+    for (const WalkSums& channel : source.channels) passes += channel.passes;
+  return passes;
+}
+
+// Claim: stopped by Ctrl-C, random walks keep their sums, say where and by which command to go on, leave the old
+// picture, and go on to the bytes of walks in one go; finished ones go on to a smaller error, and to another camera
+// and other colours without a walk. Source: the help. Tolerance: none. Fails if: sums are not written on the way out,
+// are kept with fewer digits than they have, or passes begin again at 0.
+TEST(CliVolume, InterruptedAndResumedIsTheSameAsInOneGo) {
+  const SceneFolder folder;
+  const std::string sums = folder.file("sums.exr");
+  put_bytes(folder.file("a.exr"), "old");
+  Child child(volume(folder, "a.exr", {"--until-error", ".01%", "--resume", sums, "--log", "json"}));
+  ASSERT_TRUE(child.prints(R"({"event":"progress","stage":"random walks")"));
+  ASSERT_TRUE(child.prints(R"("noise":)"));
+  child.send(SIGINT);
+  const Outcome stopped = child.wait(60);
+  EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
+  const std::string said = event_of(events_of(stopped.out), "error")["message"];
+  EXPECT_TRUE(contains(said, "passes of random walks are in " + sums + "; go on by ")) << said;
+  EXPECT_TRUE(said.ends_with("--until-error .01% --resume " + sums + " --log json")) << said;
+  EXPECT_EQ(bytes_of(folder.file("a.exr")), "old");
+  const std::size_t passes = passes_in(sums);
+  ASSERT_GT(passes, 0u);
+
+  const std::string part = folder.file("part.exr");
+  const auto run = [&](const std::string& out, std::vector<std::string> more) {
+    more.push_back("--quiet");
+    const Outcome outcome = run_program(volume(folder, out, more));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  };
+  run("part.png", {"--until-error", "20%", "--resume", part});
+  const std::size_t before = passes_in(part);
+  run("a.exr", {"--until-error", "9%", "--resume", part});
+  EXPECT_GT(passes_in(part), before);
+  run("b.exr", {"--until-error", "9%"});
+  EXPECT_TRUE(bytes_of(folder.file("a.exr")) == bytes_of(folder.file("b.exr")));
+  const std::size_t all = passes_in(part);
+  run("c.exr",
+      {"--until-error", "9%", "--resume", part, "--resolution", "16x16", "--set", "lights.key.intensity=3"});
+  EXPECT_EQ(passes_in(part), all);
+}
+
+// Claim: sums of another scene, and files that are none, are exit 2 naming the file, which stays. Source: the help. Fails
+// if: the walks' keys leave out the seed or the medium.
+TEST(CliVolume, SumsOfAnotherSceneAreAnError) {
+  const SceneFolder folder;
+  const std::string sums = folder.file("sums.exr");
+  const auto run = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--resume", sums, "--quiet", "--until-error", "50%"});
+    return run_program(volume(folder, "a.exr", more));
+  };
+  ASSERT_EQ(run({}).exit_code, 0);
+  const std::string before = bytes_of(sums);
+  for (const std::vector<std::string>& other : {std::vector<std::string>{"--seed", "3"},
+                                                {"--set", "media.marble.eta=1.2"},
+                                                {"--set", "settings.reenter=false"}}) {
+    const Outcome outcome = run(other);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_TRUE(contains(outcome.err, sums + ": the sums are of another scene")) << outcome.err;
+  }
+  EXPECT_TRUE(bytes_of(sums) == before);
+  put_bytes(sums, before.substr(0, before.size() / 2));
+  EXPECT_EQ(run({}).exit_code, 2);
+  ASSERT_EQ(run_program({"render", folder.scene, "-o", sums, "--quiet"}).exit_code, 0);  // a picture
+  const Outcome picture = run({});
+  EXPECT_EQ(picture.exit_code, 2);
+  EXPECT_TRUE(contains(picture.err, sums + ": not the sums of random walks")) << picture.err;
+}
+
+// Claim: --until-error ends at that noise, and the bill says what was reached, how many walks it took, and the
+// picture's estimated error; walks end at no time budget. Source: the help. Fails if: the noise is another figure than
+// the one that ends the walks.
+TEST(CliVolume, UntilError) {
+  const SceneFolder folder;
+  const Outcome outcome = run_program(volume(folder, "a.exr", {"--until-error", "10%", "--log", "json"}));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json done = event_of(events_of(outcome.out), "done");
+  EXPECT_LE(done["walk_noise"], .1) << done;
+  EXPECT_GT(done["walk_noise"], .07) << done;
+  EXPECT_GT(done["walks"], 32) << done;
+  EXPECT_GT(done["estimated_error"], .01) << done;
+  const Outcome text = run_program(volume(folder, "a.exr", {"--until-error", "30%"}));
+  EXPECT_TRUE(contains(text.out, "noise ") && contains(text.out, "estimated ")) << text.out;
+  const Outcome budget = run_program(
+      {"render", folder.scene, "-o", folder.file("a.exr"), "--method", "volume", "--time-budget", "2s"});
+  EXPECT_EQ(budget.exit_code, 2);
+  EXPECT_TRUE(contains(budget.err, "--until-error")) << budget.err;
+}
+
+// Claim: what walks find wrong with a body's meshes is said: holes, parts that overlap, shapes that reach into it.
+// Source: walk_warnings.h. Fails if: a warning goes.
+TEST(CliVolume, WarnsOfBadBodies) {
+  const SceneFolder folder;
+  const auto said = [&](const std::string& shapes) {
+    const Outcome outcome = run_program(volume(folder, "a.exr", {"--set", "shapes=" + shapes}));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  const std::string ball = R"({"name":"ball","sphere":{"radius":10},"medium":"marble","group":"g"})";
+  EXPECT_FALSE(contains(said("[" + ball + "]"), "walk"));
+  EXPECT_TRUE(contains(said(R"([{"quad":{"corner":[-5,-5,0],"u":[10,0,0],"v":[0,10,0]},"medium":"marble"}])"),
+                       "got out through holes"));
+  EXPECT_TRUE(contains(
+      said("[" + ball + R"(,{"sphere":{"radius":4,"center":[9,0,0]},"medium":"marble","group":"g"}])"),
+      "parts of its surface lie inside"));
+  EXPECT_TRUE(contains(said("[" + ball + R"(,{"sphere":{"radius":6,"center":[9,0,0]}}])"),
+                       "ended at other shapes inside"));
+}
+
+}  // namespace
+}  // namespace opaline
