@@ -114,6 +114,7 @@ int main(int argc, char** argv) {
   Truth truth;
   scene.settings.method = Method::volume;
   scene.settings.until_error = kUntilError;
+  scene.settings.reenter = false;  // as with all models
   if (!read_truth(argv[2], truth)) {
     session.edit(scene);
     session.prepare();
