@@ -2,6 +2,7 @@
 #include "opaline/volume/cell_fit.h"
 
 #include <cmath>
+#include <utility>
 
 #include "opaline/core/parallel.h"
 
@@ -9,7 +10,8 @@ namespace opaline {
 namespace {
 
 // Measured on smooth fields without noise and with (src/volume/README.md).
-constexpr float kFitRadius = 2.6f, kBlendRadius = 1.2f, kSurpriseRadius = 5;  // spacings
+constexpr float kFitRadius = 2.6f, kBlendRadius = 1.2f, kSurpriseRadius = 2.4f;  // spacings
+constexpr int kSurpriseRounds = 3;
 constexpr double kShapePerSurprise = 1.4;
 constexpr float kBlendedNoise = .9f;  ///< over that of one fit
 constexpr double kLeastCosine = .4;   // between normals that have to do with each other
@@ -107,20 +109,25 @@ CellFit::CellFit(std::span<const SurfaceSample> samples, const World& world, std
   parallel_chunks(samples.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) fits_[i] = fitted(i, samples, means, errors, surprises[i]);
   });
-  // That of one cell is mostly chance.
-  parallel_chunks(samples.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      Rgb sum{};
-      double weights = 0;
-      for_alike(samples[i].centroid, samples[i].normal, kSurpriseRadius,
-                [&](std::uint32_t other, double weight) {
-                  sum += surprises[other] * weight;
-                  weights += weight;
-                });
-      for (std::size_t c = 0; c < 3 && weights > 0; ++c)
-        fits_[i].shape[c] = float(kShapePerSurprise * std::sqrt(std::max(0.0, sum[c] / weights)));
-    }
-  });
+  // That of one cell is mostly chance. Means of means reach as far as a wide one, past fewer empty cubes.
+  for (int round = 0; round < kSurpriseRounds; ++round) {
+    std::vector<Rgb> smoothed(surprises.size());
+    parallel_chunks(samples.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i) {
+        double weights = 0;
+        for_alike(samples[i].centroid, samples[i].normal, kSurpriseRadius,
+                  [&](std::uint32_t other, double weight) {
+                    smoothed[i] += surprises[other] * weight;
+                    weights += weight;
+                  });
+        if (weights > 0) smoothed[i] = smoothed[i] / weights;
+      }
+    });
+    surprises = std::move(smoothed);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      fits_[i].shape[c] = float(kShapePerSurprise * std::sqrt(std::max(0.0, surprises[i][c])));
 }
 
 // Least squares, neighbours weighted by area. The surprise is the square of what the fit's mean over the cell misses of
