@@ -91,6 +91,7 @@ double invert_albedo(ProfileKind kind, double total, double eta) {
   double low = -80, high = 0;
   for (int i = 0; i < 200; ++i) {
     const double middle = 0.5 * (low + high);
+    if (middle == low || middle == high) break;
     if (total_diffuse_reflectance(make_channel_profile(kind, {1, std::exp2(middle), eta})) > total)
       low = middle;
     else

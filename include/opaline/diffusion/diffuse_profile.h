@@ -8,6 +8,7 @@
 #include "opaline/diffusion/better_dipole.h"
 #include "opaline/diffusion/dipole.h"
 #include "opaline/diffusion/normalized_diffusion.h"
+#include "opaline/diffusion/tabulated.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {
@@ -15,7 +16,9 @@ namespace opaline {
 /// One channel; monostate: nothing scatters there (sigma_s' = 0) and the diffuse part is exactly 0.
 /// A kind of profile is a file that defines all of the functions below, and `Kind make_profile(const
 /// ReducedMedium&, std::type_identity<Kind>)`; without one it does not compile. In the order of ProfileKind.
-using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion, BetterDipole>;
+using ChannelProfile =
+    std::variant<std::monostate, Dipole, NormalizedDiffusion, BetterDipole, NormalizedDiffusionSearchlight,
+                 NormalizedDiffusionDmfp, NormalizedDiffusionRefit, TabulatedProfile>;
 
 /// The profile of a kind; monostate where the medium does not scatter.
 ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& medium);
