@@ -56,7 +56,7 @@ double RadialTable::knot(std::size_t i) {
 RadialTable::RadialTable(const RadialReference& reference, std::vector<double> logarithms)
     : reference_(reference), logarithms_(std::move(logarithms)) {
   require(logarithms_.size() == kKnots && reference.width > 0, "a table with a value at each knot");
-  constexpr double kLeastFall = .1;  // of ln density over ln r, between knots
+  constexpr double kLeastFall = .01;  // of ln density over ln r, between knots
   for (std::size_t i = 1; i < kKnots; ++i) {
     const double steepest = -slope(reference_, knot(i - 1)) - kLeastFall;
     logarithms_[i] = std::min(logarithms_[i], logarithms_[i - 1] + kStep * steepest);

@@ -229,6 +229,7 @@ void Session::State::update_kernel(Body& body, BodyKeys& known) {
   KeyBuilder key("kernel", 3);
   std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
   key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(medium.profile);
+  if (medium.profile == ProfileKind::multipole) key.add(medium.thickness);
   key.add(body.surface.spacing()).add(world_->diagonal).add(world_->unit);
   key.add(scene_.settings.near_field).add(scene_.settings.near_irradiance);
   if (key.key() == known.kernel_key) return;

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -53,6 +54,8 @@ struct Medium {
   double eta = 1.3;
   ProfileKind profile = ProfileKind::dipole;
   SourcePlace place{};
+  /// Of the plates and bodies made of it, mm, > 0; infinite: thick. ProfileKind::multipole alone asks.
+  double thickness = std::numeric_limits<double>::infinity();
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
