@@ -9,9 +9,9 @@
 
 #include "opaline/core/random.h"
 #include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/diffusion/fresnel.h"
 #include "opaline/diffusion/kernel_table.h"
 #include "opaline/geometry/ray_scene.h"
+#include "opaline/transport/fresnel.h"
 
 namespace {
 

@@ -19,7 +19,7 @@ enum class PlotStyle { curve, dots, hollow_dots };
 struct PlotSeries {
   std::string name;
   std::size_t colour =
-      0;  ///< --c0 to --c7 of page.css; curves of different colours differ in their dashes, too
+      0;  ///< --c0 to --c9 of page.css; curves of different colours differ in their dashes, too
   PlotStyle style = PlotStyle::curve;
   std::vector<PlotPoint> points;
 };

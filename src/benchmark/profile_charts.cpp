@@ -9,9 +9,9 @@
 #include <span>
 #include <utility>
 
-#include "opaline/diffusion/fresnel.h"
 #include "opaline/scene/enumerations.h"
-#include "opaline/volume/point_source.h"
+#include "opaline/transport/fresnel.h"
+#include "opaline/transport/point_source.h"
 
 namespace opaline {
 namespace {

@@ -26,12 +26,13 @@ bool are_alike(const PhysicalMedium& medium) {
   return grey(medium.sigma_a) && grey(medium.sigma_s_prime);
 }
 
-std::vector<ChannelProfile> models_of(const HomogeneousMedium& medium) {
+std::vector<ChannelProfile> models_of(const HomogeneousMedium& medium, double thickness) {
   const double length = medium.reduced_mean_free_path();
   std::vector<ChannelProfile> models;
   for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind) {
     const bool is_empty = !std::isfinite(length);
-    const ReducedMedium reduced{is_empty ? 0 : length, is_empty ? 1 : medium.sigma_a * length, medium.eta};
+    const ReducedMedium reduced{is_empty ? 0 : length, is_empty ? 1 : medium.sigma_a * length, medium.eta,
+                                thickness};
     models.push_back(make_channel_profile(ProfileKind(kind), reduced));
   }
   return models;
@@ -58,7 +59,8 @@ ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor) 
   std::uint64_t run = 0;
   for (std::size_t c = 0; c < count; ++c) {
     const HomogeneousMedium medium = channel_medium(request, c);
-    ProfiledChannel channel{count == 1 ? "all" : names[c], medium, models_of(medium), {}, {}};
+    ProfiledChannel channel{
+        count == 1 ? "all" : names[c], medium, models_of(medium, request.thickness), {}, {}};
     LaboratorySettings settings;
     settings.walks = walks_for(request, medium, 2 * count);
     settings.monitor = &monitor;
@@ -74,16 +76,17 @@ ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor) 
 }
 
 double ModelFace::within(double r) const {
-  return diffuse_reflectance_within(*profile, std::hypot(r, height)) -
-         diffuse_reflectance_within(*profile, height);
+  return height > 0 ? diffuse_transmittance_within(*profile, r, height)
+                    : diffuse_reflectance_within(*profile, r);
 }
 
 double ModelFace::profile_at(double r) const {
-  return diffuse_reflectance_profile(*profile, std::hypot(r, height));
+  return height > 0 ? far_side_profile(*profile, std::hypot(r, height))
+                    : diffuse_reflectance_profile(*profile, r);
 }
 
 double ModelFace::total() const {
-  return total_diffuse_reflectance(*profile) - diffuse_reflectance_within(*profile, height);
+  return height > 0 ? total_diffuse_transmittance(*profile, height) : total_diffuse_reflectance(*profile);
 }
 
 double shape_difference(const ModelFace& model, const WalkedFace& walked) {

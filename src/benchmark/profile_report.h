@@ -12,7 +12,7 @@
 
 #include "opaline/core/monitor.h"
 #include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/volume/laboratory.h"
+#include "opaline/transport/laboratory.h"
 
 namespace opaline {
 
@@ -47,7 +47,8 @@ struct ProfileReport {
 /// error as walk_slab
 ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor);
 
-/// What a model says of the light on one face of the slab: a point of the far face is lit through it.
+/// What a model says of the light on one face of the slab: a point of the far face is lit through it, in a model
+/// without two faces (has_far_side) as a point at that distance.
 struct ModelFace {
   const ChannelProfile* profile;
   double height = 0;  ///< thickness for the far face, mm

@@ -96,7 +96,8 @@ void write_report(const std::string& folder, const ProfileReport& report) {
 }
 
 void print_row(const std::string& label, const std::vector<std::string>& cells) {
-  std::string line = fmt::format("{:<22}", label);
+  static const std::size_t width = 2 + std::ranges::max(kProfileNames, {}, &std::string_view::size).size();
+  std::string line = fmt::format("{:<{}}", label, width);
   for (const std::string& cell : cells) line += fmt::format("{:<30}", cell);
   write_line(stdout, line.substr(0, line.find_last_not_of(' ') + 1));
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/diffusion/diffuse_profile.h"
 
+#include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <type_traits>
 #include <utility>
 
-#include "opaline/diffusion/fresnel.h"
+#include "opaline/transport/fresnel.h"
 
 namespace opaline {
 namespace {
@@ -75,6 +76,30 @@ double slowest_decay(const ChannelProfile& profile) {
   return apply_to(profile, [](const auto& p) { return slowest_decay(p); });
 }
 
+bool has_far_side(const ChannelProfile& profile) {
+  const auto* plate = std::get_if<Multipole>(&profile);
+  return plate != nullptr && std::isfinite(plate->thickness);
+}
+
+double far_side_profile(const ChannelProfile& profile, double distance) {
+  if (!has_far_side(profile)) return diffuse_reflectance_profile(profile, distance);
+  const auto& plate = std::get<Multipole>(profile);
+  const double thickness = plate.thickness * plate.mean_free_path;
+  return diffuse_transmittance_profile(
+      plate, std::sqrt(std::max(0.0, (distance - thickness) * (distance + thickness))));
+}
+
+double diffuse_transmittance_within(const ChannelProfile& profile, double r, double thickness) {
+  if (has_far_side(profile)) return diffuse_transmittance_within(std::get<Multipole>(profile), r);
+  return diffuse_reflectance_within(profile, std::hypot(r, thickness)) -
+         diffuse_reflectance_within(profile, thickness);
+}
+
+double total_diffuse_transmittance(const ChannelProfile& profile, double thickness) {
+  if (has_far_side(profile)) return total_diffuse_transmittance(std::get<Multipole>(profile));
+  return total_diffuse_reflectance(profile) - diffuse_reflectance_within(profile, thickness);
+}
+
 ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& medium) {
   static_assert(kProfileNames.size() + 1 == std::variant_size_v<ChannelProfile> &&
                     kProfileSources.size() == kProfileNames.size(),
@@ -91,6 +116,7 @@ double invert_albedo(ProfileKind kind, double total, double eta) {
   double low = -80, high = 0;
   for (int i = 0; i < 200; ++i) {
     const double middle = 0.5 * (low + high);
+    if (middle == low || middle == high) break;
     if (total_diffuse_reflectance(make_channel_profile(kind, {1, std::exp2(middle), eta})) > total)
       low = middle;
     else
@@ -108,10 +134,12 @@ DiffuseProfile make_diffuse_profile(const Medium& medium, double unit) {
         [&](const auto& coefficients) { return reduce(coefficients, c, medium.profile, medium.eta); },
         medium.coefficients);
     reduced.mean_free_path /= unit;
+    reduced.thickness = medium.thickness / unit;
     profile.channels[c] = make_channel_profile(medium.profile, reduced);
     profile.mean_free_path[c] = reduced.mean_free_path;
     profile.diffuse_mean_free_path[c] = reduced.mean_free_path / std::sqrt(3 * reduced.absorbed);
     profile.total[c] = total_diffuse_reflectance(profile.channels[c]);
+    profile.has_far_side = profile.has_far_side || has_far_side(profile.channels[c]);
     profile.translucent = profile.translucent || profile.total[c] > 0;
   }
   return profile;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "opaline/diffusion/fresnel.h"
+#include "opaline/transport/fresnel.h"
 
 namespace opaline {
 namespace {

@@ -8,12 +8,20 @@
 #include "opaline/diffusion/interpolating_cubic.h"
 
 namespace opaline {
-KernelTable::KernelTable(const DiffuseProfile& profile, double r_min, double r_max) {
+
+KernelTable::KernelTable(const DiffuseProfile& profile, double r_min, double r_max)
+    : KernelTable(profile, diffuse_reflectance_profile, r_min, r_max) {}
+
+KernelTable KernelTable::of_far_side(const DiffuseProfile& profile, double r_min, double r_max) {
+  return {profile, far_side_profile, r_min, r_max};
+}
+
+KernelTable::KernelTable(const DiffuseProfile& profile, Kernel kernel, double r_min, double r_max) {
   // One length scale, so that s does not change when everything is scaled by a power of two.
   const double scale = r_max;
   inverse_scale2_ = float(1 / (scale * scale));
   const auto reflectance = [&](std::size_t channel, double s) {
-    return diffuse_reflectance_profile(profile.channels[channel], std::sqrt(s) * scale);
+    return kernel(profile.channels[channel], std::sqrt(s) * scale);
   };
   // End where even the last channel has fallen under 1e-30 of the entered flux per squared scale.
   const auto negligible = [&](double s) {

@@ -1,12 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/diffusion/normalized_diffusion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "opaline/diffusion/dipole.h"
+#include "opaline/transport/half_space.h"
 
 namespace opaline {
+namespace {
+
+// Mean free paths over d, by eta and by the fourth root of 1 - alpha': printed by bench_normalized_diffusion.
+constexpr double kRefit[NormalizedDiffusionRefit::kEta.size()][NormalizedDiffusionRefit::kAbsorptions] = {
+    {0.775, 0.794, 0.873, 1.036, 1.253, 1.565, 1.893, 2.366, 2.972, 3.685, 4.515},    // eta 0.75
+    {0.860, 0.880, 0.943, 1.107, 1.322, 1.618, 1.975, 2.407, 2.954, 3.589, 4.376},    // eta 1
+    {0.568, 0.594, 0.678, 0.829, 1.074, 1.366, 1.758, 2.358, 3.151, 4.292, 5.812},    // eta 1.15
+    {0.420, 0.457, 0.540, 0.724, 0.924, 1.206, 1.632, 2.283, 3.318, 4.863, 6.989},    // eta 1.3
+    {0.317, 0.342, 0.445, 0.620, 0.830, 1.158, 1.583, 2.230, 3.458, 5.505, 8.312},    // eta 1.5
+    {0.180, 0.214, 0.326, 0.478, 0.710, 1.018, 1.494, 2.200, 4.019, 7.225, 10.653},   // eta 2
+    {0.082, 0.113, 0.226, 0.398, 0.634, 0.914, 1.414, 2.176, 4.473, 10.307, 16.369},  // eta 3
+};
+
+// Between the table's places by straight lines of its logarithm, over that of eta.
+double refitted_rate(double absorbed, double eta) {
+  using Refit = NormalizedDiffusionRefit;
+  const double place = std::sqrt(std::sqrt(absorbed)) * double(Refit::kAbsorptions - 1);
+  const std::size_t column = std::min(std::size_t(place), Refit::kAbsorptions - 2);
+  eta = std::clamp(eta, Refit::kEta.front(), Refit::kEta.back());
+  std::size_t row = 0;
+  while (row + 2 < Refit::kEta.size() && eta > Refit::kEta[row + 1]) ++row;
+  const double t = std::log(eta / Refit::kEta[row]) / std::log(Refit::kEta[row + 1] / Refit::kEta[row]);
+  const auto at = [&](std::size_t i) {
+    return std::lerp(std::log(kRefit[i][column]), std::log(kRefit[i][column + 1]), place - double(column));
+  };
+  return std::exp(std::lerp(at(row), at(row + 1), t));
+}
+
+}  // namespace
 
 NormalizedDiffusion make_normalized_diffusion(double mean_free_path, double total) {
   return {total, mean_free_path / (1.9 - total + 3.5 * (total - 0.8) * (total - 0.8))};
@@ -50,9 +80,29 @@ double slowest_decay(const NormalizedDiffusion& profile) {
 }
 
 NormalizedDiffusion make_profile(const ReducedMedium& medium, std::type_identity<NormalizedDiffusion>) {
-  // Until a fit of its own exists, A(alpha', eta) is the dipole's total.
-  return make_normalized_diffusion(
-      medium.mean_free_path, total_diffuse_reflectance(make_profile(medium, std::type_identity<Dipole>())));
+  return make_normalized_diffusion(medium.mean_free_path, half_space_albedo(medium.absorbed, medium.eta));
+}
+
+NormalizedDiffusionSearchlight make_profile(const ReducedMedium& medium,
+                                            std::type_identity<NormalizedDiffusionSearchlight>) {
+  const double total = half_space_albedo(medium.absorbed, medium.eta);
+  const double s = 1.85 - total + 7 * std::pow(std::abs(total - 0.8), 3);
+  return {{total, medium.mean_free_path / s}};
+}
+
+NormalizedDiffusionDmfp make_profile(const ReducedMedium& medium,
+                                     std::type_identity<NormalizedDiffusionDmfp>) {
+  constexpr double kLeastAbsorbed = 1e-8;
+  const double total = half_space_albedo(medium.absorbed, medium.eta);
+  const double absorbed = std::max(medium.absorbed, kLeastAbsorbed);
+  const double diffuse_mean_free_path = medium.mean_free_path * std::sqrt((1 + absorbed) / (3 * absorbed));
+  return {{total, diffuse_mean_free_path / (3.5 + 100 * std::pow(total - 0.33, 4))}};
+}
+
+NormalizedDiffusionRefit make_profile(const ReducedMedium& medium,
+                                      std::type_identity<NormalizedDiffusionRefit>) {
+  return {{half_space_albedo(medium.absorbed, medium.eta),
+           medium.mean_free_path / refitted_rate(medium.absorbed, medium.eta)}};
 }
 
 }  // namespace opaline

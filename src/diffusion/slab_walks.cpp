@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "opaline/core/random.h"
-#include "opaline/diffusion/fresnel.h"
+#include "opaline/transport/fresnel.h"
 
 namespace opaline {
 namespace {
@@ -61,8 +61,7 @@ SlabLight slab_by_walks(double reduced_albedo, double optical_thickness, double 
 }
 
 SlabLight slab_by_profile(const ChannelProfile& profile, double thickness) {
-  const double total = total_diffuse_reflectance(profile);
-  return {total, total - diffuse_reflectance_within(profile, thickness)};
+  return {total_diffuse_reflectance(profile), total_diffuse_transmittance(profile, thickness)};
 }
 
 }  // namespace opaline

@@ -6,6 +6,7 @@
 
 #include "exitance/border_share.h"
 #include "exitance/dual_tree.h"
+#include "exitance/far_side.h"
 #include "exitance/gather.h"
 #include "exitance/simd/lane_table.h"
 #include "opaline/core/parallel.h"
@@ -84,10 +85,18 @@ SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, dou
                               NearIrradiance near_irradiance) {
   // Closer than a quarter of the spacing, R_d w is negligible; without the split R_d is held there.
   const double r_min = spacing / 4, radius = 2.5 * spacing;
-  SplitKernel kernel{
-      KernelTable(profile, r_min, std::max(extent, 2 * radius)), split, float(radius), {}, {}, {}, {}, {}};
+  SplitKernel kernel{KernelTable(profile, r_min, std::max(extent, 2 * radius)),
+                     split,
+                     float(radius),
+                     {},
+                     {},
+                     {},
+                     {},
+                     {},
+                     {}};
   kernel.lanes = std::make_shared<const LaneTable>(
       make_lane_table(profile, radius, std::max(extent, 2 * radius), split));
+  if (profile.has_far_side) kernel.far_side = make_far_side(profile, r_min, std::max(extent, 2 * radius));
   if (split) kernel.border = border_shares(profile, radius);
   for (std::size_t c = 0; c < 3; ++c) kernel.total[c] = float(profile.total[c]);
   for (std::size_t c = 0; split && c < 3; ++c) {
@@ -104,12 +113,13 @@ std::vector<Exitance> evaluate(const EvaluateInput& input) {
   if (input.octree.nodes.empty()) return result;
   if (input.evaluator != EvaluatorKind::classic && input.evaluator != EvaluatorKind::brute_force) {
     evaluate_dual_tree(input, result);
-    return result;
+  } else {
+    parallel_chunks(input.queries.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t q = begin; q < end; ++q) result[q] = evaluate_one(input, q);
+      advance(input.monitor, end - begin);
+    });
   }
-  parallel_chunks(input.queries.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t q = begin; q < end; ++q) result[q] = evaluate_one(input, q);
-    advance(input.monitor, end - begin);
-  });
+  if (input.kernel.far_side != nullptr) add_far_side(input, result);
   return result;
 }
 

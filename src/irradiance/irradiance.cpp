@@ -155,6 +155,20 @@ PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light
   return transfers;
 }
 
+void for_each_ray(const PointIrradianceInput& input, std::size_t light, const UseOfRay& use) {
+  const std::size_t n = input.points.size(), batch_size = batch_points(input.light_samples);
+  ShadowBatch batch(input.rays, input.lights[light], input.eta, input.light_samples,
+                    light_seed(input.seed, input.lights[light]));
+  batch.keep_directions();
+  for (std::size_t begin = 0; begin < n; begin += batch_size) {
+    for (std::size_t i = begin; i < std::min(n, begin + batch_size); ++i)
+      batch.add(input.points[i], input.keys[i]);
+    batch.trace([&](std::size_t p, int s, float e, float) {
+      if (e > 0) use(begin + p, batch.direction(p, s), e);
+    });
+  }
+}
+
 std::vector<PointTransfers> transfers_at(const PointIrradianceInput& input) {
   std::vector<PointTransfers> transfers;
   for (std::size_t l = 0; l < input.lights.size(); ++l) transfers.push_back(transfers_at(input, l));

@@ -9,9 +9,9 @@
 
 #include "opaline/core/morton.h"
 #include "opaline/core/random.h"
-#include "opaline/diffusion/fresnel.h"
 #include "opaline/geometry/ray_scene.h"
 #include "opaline/lights/light.h"
+#include "opaline/transport/fresnel.h"
 
 namespace opaline {
 
@@ -29,6 +29,9 @@ class ShadowBatch {
 
   /// To be told where points that follow each other do not lie together.
   void scatter() { scattered_ = samples_ == 1; }
+
+  /// To be told where `trace` is to be asked for directions.
+  void keep_directions() { keeps_directions_ = true; }
 
   int samples() const { return samples_; }
 
@@ -53,6 +56,7 @@ class ShadowBatch {
             sample.weight * cosine * (eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f);
       }
       carried_.push_back(carried);
+      if (keeps_directions_) directions_.push_back(sample.direction);
       if (carried > 0) {
         const Vec3f origin = point.position + point.geometric * rays_.offset(point);
         shadow_.push_back({origin, sample.direction, sample.distance * 0.9999f});
@@ -75,6 +79,12 @@ class ShadowBatch {
     }
     carried_.clear();
     shadow_.clear();
+    directions_.clear();
+  }
+
+  /// Towards the light, of a point's sample: while `trace` calls `use`.
+  const Vec3f& direction(std::size_t point, int sample) const {
+    return directions_[point * std::size_t(samples_) + std::size_t(sample)];
   }
 
  private:
@@ -106,8 +116,9 @@ class ShadowBatch {
   float eta_;
   int samples_;
   std::uint64_t seed_;
-  bool scattered_ = false;
+  bool scattered_ = false, keeps_directions_ = false;
   std::vector<float> carried_;
+  std::vector<Vec3f> directions_;
   std::vector<Ray> shadow_, sorted_;
   std::vector<std::uint64_t> order_;
 };

@@ -265,6 +265,24 @@ void list_children(Octree& tree) {
   tree.first_child.push_back(std::uint32_t(tree.children.size()));
 }
 
+void bound_normals(Octree& tree) {
+  tree.normal_cones.resize(tree.nodes.size());
+  parallel_chunks(tree.nodes.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    constexpr float kRounding = 1e-3f;
+    for (std::size_t i = begin; i < end; ++i) {
+      const OctreeNode& node = tree.nodes[i];
+      const std::span<const Vec3f> normals(tree.normals.data() + node.first, node.count);
+      Vec3f sum;
+      for (const Vec3f& n : normals) sum += n;
+      const Vec3f axis = normalized(sum);
+      float cosine = 1 - kRounding;
+      for (const Vec3f& n : normals) cosine = std::min(cosine, dot(n, axis) - kRounding);
+      tree.normal_cones[i] =
+          cosine > 0 ? NormalCone{axis, cosine, std::sqrt(1 - cosine * cosine)} : NormalCone{};
+    }
+  });
+}
+
 Octree build_octree(std::vector<FluxSample> samples) {
   Octree tree;
   if (samples.empty()) return tree;

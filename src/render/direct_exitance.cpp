@@ -2,6 +2,8 @@
 #include "render/direct_exitance.h"
 
 #include "opaline/core/random.h"
+#include "opaline/irradiance/irradiance.h"
+#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {
@@ -16,7 +18,25 @@ bool survives(Entry& entry, float usual, double random) {
   if (chance >= 1) return true;
   if (random >= double(chance)) return false;
   entry.weight *= 1 / chance;
+  entry.inverse_density *= 1 / chance;
   return true;
+}
+
+/// Where the profile asks for the light's direction: ray by ray.
+void add_directed_light(const DirectExitanceInput& input, const PointIrradianceInput& at,
+                        std::span<const Entry> entries, std::span<const std::size_t> exits,
+                        std::vector<RgbF>& exitance) {
+  for (std::size_t l = 0; l < at.lights.size(); ++l) {
+    const RgbF colour(emission(at.lights[l]));
+    for_each_ray(at, l, [&](std::size_t e, const Vec3f& towards_light, float irradiance) {
+      const Entry& entry = entries[e];
+      const RgbF weight = entry.inverse_density > 0 ? input.sampler.directional(input.exits.points[exits[e]],
+                                                                                entry.point, towards_light) *
+                                                          entry.inverse_density
+                                                    : entry.weight;
+      exitance[exits[e]] += weight * colour * irradiance;
+    });
+  }
 }
 
 }  // namespace
@@ -25,11 +45,10 @@ std::vector<RgbF> direct_exitance(const DirectExitanceInput& input) {
   const std::size_t points = input.exits.points.size();
   std::vector<RgbF> exitance(points);
   std::vector<Hit> crossings;
-  std::vector<Entry> entries;
+  std::vector<Entry> entries, taken;
   std::vector<SurfacePoint> entry_points;
   std::vector<std::uint64_t> keys;
-  std::vector<RgbF> weights;
-  std::vector<std::size_t> first(points + 1, 0);
+  std::vector<std::size_t> exits;  // of the entries taken
   const float usual = input.sampler.usual_weight();
   for (std::size_t p = 0; p < points; ++p) {
     const std::uint64_t key = hash_bits(input.exits.seed, input.exits.keys[p]);
@@ -44,21 +63,24 @@ std::vector<RgbF> direct_exitance(const DirectExitanceInput& input) {
         const std::uint64_t entry_key = hash_bits(sample_key, 2 + e);
         if (!survives(entries[e], usual, unit_double(entry_key))) continue;
         entry_points.push_back(entries[e].point);
-        weights.push_back(entries[e].weight);
+        taken.push_back(entries[e]);
         keys.push_back(entry_key);
+        exits.push_back(p);
       }
     }
-    first[p + 1] = entry_points.size();
   }
   PointIrradianceInput at = input.exits;
   at.points = entry_points;
   at.keys = keys;
   at.light_samples = 1;
-  const std::vector<RgbF> entered = irradiance_at(at);
-  for (std::size_t p = 0; p < points; ++p) {
-    for (std::size_t e = first[p]; e < first[p + 1]; ++e) exitance[p] += weights[e] * entered[e];
-    if (input.entry_samples > 0) exitance[p] *= 1 / float(input.entry_samples);
+  if (input.sampler.is_directional()) {
+    add_directed_light(input, at, taken, exits, exitance);
+  } else {
+    const std::vector<RgbF> entered = irradiance_at(at);
+    for (std::size_t e = 0; e < taken.size(); ++e) exitance[exits[e]] += taken[e].weight * entered[e];
   }
+  if (input.entry_samples > 0)
+    for (RgbF& m : exitance) m *= 1 / float(input.entry_samples);
   return exitance;
 }
 

@@ -6,6 +6,7 @@
 
 #include "opaline/core/random.h"
 #include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/sampling/sample_surface.h"
 
 namespace opaline {
 namespace {
@@ -64,6 +65,21 @@ EntrySampler::EntrySampler(const GroupPlan& plan, const DiffuseProfile& profile,
   for (const std::size_t c : channels_)
     inverse_total_[c] = float(1 / (double(channels_.size()) * profile_.total[c]));
   usual_weight_ = float(max_component(profile.total));
+  if (profile.has_far_side)
+    far_table_ = KernelTable::of_far_side(profile_, smallest_distance(profile_, diagonal), diagonal);
+  for (const ChannelProfile& channel : profile_.channels)
+    is_directional_ = is_directional_ || std::holds_alternative<DirectionalDipole>(channel);
+}
+
+RgbF EntrySampler::directional(const SurfacePoint& exit, const SurfacePoint& entry,
+                               const Vec3f& towards_light) const {
+  RgbF result;
+  const DirectedPlace in{{}, Vec3d(entry.normal)},
+      out{Vec3d(exit.position) - Vec3d(entry.position), Vec3d(exit.normal)};
+  for (std::size_t c = 0; c < 3; ++c)
+    if (const auto* profile = std::get_if<DirectionalDipole>(&profile_.channels[c]))
+      result[c] = float(directional_reflectance(*profile, in, Vec3d(towards_light), out));
+  return result;
 }
 
 void EntrySampler::sample(const SurfacePoint& exit, const EntryRandom& random, std::vector<Hit>& crossings,
@@ -79,9 +95,10 @@ void EntrySampler::sample(const SurfacePoint& exit, const EntryRandom& random, s
     const Vec3f offset = point.position - exit.position;
     const float p = density(exit, offset, point.geometric);
     if (!(p > 0)) continue;  // as far as that the profile is 0 too
+    const bool crosses = far_table_ && !same_sheet(point.geometric, exit.geometric);
     alignas(16) float kernel[4];
-    _mm_store_ps(kernel, table_(dot(offset, offset)));
-    entries.push_back({point, RgbF{kernel[0], kernel[1], kernel[2]} * (1 / p)});
+    _mm_store_ps(kernel, (crosses ? *far_table_ : table_)(dot(offset, offset)));
+    entries.push_back({point, RgbF{kernel[0], kernel[1], kernel[2]} * (1 / p), 1 / p});
   }
 }
 

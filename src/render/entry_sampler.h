@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct EntryRandom {
 /// An entry point of one sample: M_o is the expected sum of weight x E(point) over the entries of a sample.
 struct Entry {
   SurfacePoint point;
-  RgbF weight;  ///< R_d / density per area, per channel
+  RgbF weight;                ///< R_d / density per area, per channel
+  float inverse_density = 0;  ///< per area; 0: the weight is of light that leaves where it entered
 };
 
 /// Draws entry points on the surfaces of one group of translucent meshes with a density near R_d of their
@@ -46,6 +48,11 @@ class EntrySampler {
   /// About the largest channel's weight of an entry on a flat surface.
   float usual_weight() const { return usual_weight_; }
 
+  /// Whether R_d depends on the direction of the light; the weights then have its mean.
+  bool is_directional() const { return is_directional_; }
+  /// R_d, 1/mm^2, for light from a direction, per channel; 0 of channels whose light leaves where it enters.
+  RgbF directional(const SurfacePoint& exit, const SurfacePoint& entry, const Vec3f& towards_light) const;
+
   /// Adds the entries of one sample to `entries`; crossings: scratch.
   void sample(const SurfacePoint& exit, const EntryRandom& random, std::vector<Hit>& crossings,
               std::vector<Entry>& entries) const;
@@ -66,6 +73,8 @@ class EntrySampler {
   const RayScene& rays_;
   LineQuery lines_;
   KernelTable table_;
+  std::optional<KernelTable> far_table_;  // between sheets, of profiles that have a far side
+  bool is_directional_ = false;
   double reach_;  // no two points of the group are farther apart, mm
   EntryStrategy strategy_;
   RgbF local_;                         // total of the channels whose light leaves where it enters

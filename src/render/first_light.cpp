@@ -106,6 +106,7 @@ std::vector<Body> draft_groups(const PrecomputeInput& input) {
     std::vector<LightTransfer> transfers = light_samples(input, g, surface.samples, lights);
     std::vector<RgbF> irradiance = combine_lights(transfers, lights);
     Octree octree = gather_flux(surface.samples, irradiance);
+    if (kernel.far_side != nullptr) bound_normals(octree);
     groups.push_back({plan, profile, std::move(surface), std::move(transfers), std::move(irradiance),
                       std::move(octree), std::move(kernel)});
   }

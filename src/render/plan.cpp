@@ -144,12 +144,25 @@ void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan
   }
 }
 
+/// error where a method cannot use a medium's profile
+void check_profile(const Scene& scene, const Medium& medium) {
+  if (medium.profile != ProfileKind::directional_dipole || scene.settings.method != Method::hierarchical)
+    return;
+  throw Error(
+      ErrorKind::bad_input, medium.place.file, medium.place.line, medium.place.column,
+      fmt::format("{}: the profile directional_dipole asks from where light comes, and the samples of the "
+                  "method hierarchical hold the sum over all directions",
+                  medium.name),
+      "--method direct, or another profile, such as better_dipole");
+}
+
 std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
                                    std::vector<std::string>& warnings) {
   std::vector<GroupPlan> groups;
   for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
     const Shape& shape = scene.shapes[i];
     if (!shape.medium) continue;
+    check_profile(scene, scene.media[*shape.medium]);
     const DiffuseProfile profile = make_diffuse_profile(scene.media[*shape.medium]);
     if (!profile.translucent) {
       const Medium& medium = scene.media[*shape.medium];

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/scene/load_scene.h"
 
+#include <fmt/format.h>
+
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -81,6 +84,27 @@ void share_triangles(std::vector<Shape>& shapes) {
   for_each_curved([&](int& of_shape) { of_shape = fineness; });
 }
 
+/// A multipole medium without a thickness of its own has that of the built-in plates made of it.
+/// error if they differ
+void take_thickness_of_plates(Scene& scene) {
+  std::vector<bool> is_declared;
+  for (const Medium& medium : scene.media) is_declared.push_back(std::isfinite(medium.thickness));
+  for (const Shape& shape : scene.shapes) {
+    const auto* plate = std::get_if<SlabShape>(&shape.source);
+    if (plate == nullptr || !shape.medium || is_declared[*shape.medium]) continue;
+    Medium& medium = scene.media[*shape.medium];
+    if (medium.profile != ProfileKind::multipole) continue;
+    const double thickness = plate->thickness * length(shape.to_world.y);
+    if (std::isfinite(medium.thickness) && std::abs(thickness / medium.thickness - 1) > 1e-6)
+      throw Error(ErrorKind::bad_input, shape.place.file, shape.place.line, shape.place.column,
+                  fmt::format("{}: the plates of the multipole medium {} differ in thickness", shape.name,
+                              medium.name),
+                  "a medium for each thickness, or medium.thickness",
+                  fmt::format("{:g} and {:g} mm", medium.thickness, thickness));
+    medium.thickness = thickness;
+  }
+}
+
 Scene read_scene(const Document& document) {
   static const KeyInfo root{"", "scene"};
   const ObjectReader reader(Value(document, document.root, "", root), "scene");
@@ -89,7 +113,7 @@ Scene read_scene(const Document& document) {
   const auto unit = reader.find("mm_per_unit");
   const double mm_per_unit = scene.mm_per_unit = unit ? unit->number() : 1;
   if (const auto media = reader.find("media"))
-    for (const Value& medium : media->members()) scene.media.push_back(read_medium(medium));
+    for (const Value& medium : media->members()) scene.media.push_back(read_medium(medium, mm_per_unit));
   ShapeContext context{std::filesystem::path(document.file).parent_path().string(),
                        document.frame,
                        mm_per_unit,
@@ -99,6 +123,7 @@ Scene read_scene(const Document& document) {
       reader.find("shapes"), "shape",
       [&](const Value& value, const std::string& name) { return read_shape(value, name, context); });
   share_triangles(scene.shapes);
+  take_thickness_of_plates(scene);
   scene.lights = read_named<Light>(
       reader.find("lights"), "light",
       [&](const Value& value, const std::string& name) { return read_light(value, name, mm_per_unit); });
@@ -146,7 +171,7 @@ Medium parse_medium(std::string_view text, const std::string& file) {
   Document document{file, text, {}, {}, 1, line_starts_of(text)};
   document.root = parse_tree(document, text);
   document.root.key = "medium";
-  return read_medium(Value(document, document.root, document.root.key, key_info("scene", "media")));
+  return read_medium(Value(document, document.root, document.root.key, key_info("scene", "media")), 1);
 }
 
 }  // namespace opaline

@@ -72,7 +72,7 @@ ArtistMedium read_artist(const ObjectReader& medium) {
 
 }  // namespace
 
-Medium read_medium(const Value& value) {
+Medium read_medium(const Value& value, double mm_per_unit) {
   const ObjectReader reader(value, "medium");
   Medium medium;
   medium.name = value.node().key;
@@ -95,6 +95,7 @@ Medium read_medium(const Value& value) {
   if (eta || specular_ior) medium.eta = (eta ? eta : specular_ior)->number();
   if (const auto profile = reader.find("profile"))
     medium.profile = static_cast<ProfileKind>(profile->choice());
+  if (const auto thickness = reader.find("thickness")) medium.thickness = thickness->length(mm_per_unit);
   return medium;
 }
 

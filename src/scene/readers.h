@@ -21,7 +21,7 @@ struct ShapeContext {
   std::map<std::string, std::size_t> group_media;  ///< filled while reading
 };
 
-Medium read_medium(const Value& value);
+Medium read_medium(const Value& value, double mm_per_unit);
 /// `name` is what the shape is called without one of its own.
 Shape read_shape(const Value& value, const std::string& name, ShapeContext& context);
 Light read_light(const Value& value, const std::string& name, double mm_per_unit);

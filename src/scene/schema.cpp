@@ -108,6 +108,10 @@ std::vector<KeyInfo> medium_rows() {
       row("medium", "specular_ior", number, "", {.1, 10},
           "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
       row("medium", "eta", number, "", {.1, 10}, "", "another word for `specular_ior`; use one of the two"),
+      row("medium", "thickness", length, "", kFiniteNumber, "that of the built-in plates, else thick",
+          "for `\"multipole\"`: how thick the things made of it are; light that enters on the far side "
+          "leaves on "
+          "this one"),
       row("medium", "profile", choice, "", kFiniteNumber, "`\"dipole\"`", profile_meaning(), kProfileNames),
   };
 }

@@ -152,6 +152,12 @@ bool is_tree_of(const Octree& tree, const SurfaceSamples& samples) {
                 [&](std::size_t i) { return are_values(tree.samples[i]) && are_numbers(tree.normals[i]); });
 }
 
+bool is_walked_profile(std::span<const double> logarithms, double decay, double width) {
+  constexpr double kSteepest = 50;  // a table's values are some units apart
+  return logarithms.size() == RadialTable::kKnots && decay >= 0 && decay <= 1 && width >= 1 && width <= 200 &&
+         std::ranges::all_of(logarithms, [](double f) { return std::abs(f) < kSteepest; });
+}
+
 bool is_exitance_of(const SurfaceCache& cache, const World& world, std::span<const std::uint32_t> meshes) {
   const auto is_split = [&](const SurfaceCache::Split& split) {
     const std::uint64_t cells = std::max<std::uint64_t>(1, split.segments);

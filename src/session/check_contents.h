@@ -28,6 +28,9 @@ bool has_flags(std::span<const char> items, std::size_t item_bytes, std::size_t 
 /// in    tree: without its children's list
 bool is_tree_of(const Octree& tree, const SurfaceSamples& samples);
 
+/// The numbers of a RadialTable of random walks.
+bool is_walked_profile(std::span<const double> logarithms, double decay, double width);
+
 bool is_exitance_of(const SurfaceCache& exitance, const World& world, std::span<const std::uint32_t> meshes);
 
 }  // namespace opaline

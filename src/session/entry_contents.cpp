@@ -142,6 +142,19 @@ std::optional<LightTransfer> get_light(const BlobReader& entry, std::size_t samp
   return transfer;
 }
 
+void put_walked_profile(BlobWriter& file, const RadialTable& table) {
+  file.put("logarithms", std::span(table.logarithms()));
+  file.put("decay", table.reference().decay);
+  file.put("width", table.reference().width);
+}
+
+std::optional<RadialTable> get_walked_profile(const BlobReader& entry) {
+  auto logarithms = entry.get<double>("logarithms");
+  const std::optional<double> decay = entry.number("decay"), width = entry.number("width");
+  if (!logarithms || !decay || !width || !is_walked_profile(*logarithms, *decay, *width)) return {};
+  return RadialTable({*decay, *width}, std::move(*logarithms));
+}
+
 void put_octree(BlobWriter& file, const Octree& octree) {
   file.put("nodes", std::span(octree.nodes));
   file.put("samples", std::span(octree.samples));

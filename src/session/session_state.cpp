@@ -187,6 +187,7 @@ void Session::State::prepare(Monitor* monitor) {
   each("octree", [&](Body& body, BodyKeys& known, std::size_t) {
     update_tree(body, known, lights);
     update_kernel(body, known);
+    if (body.kernel.far_side != nullptr && body.octree.normal_cones.empty()) bound_normals(body.octree);
     body.cloud = cloud_error(body, *world_, scene_);
   });
   const std::vector<std::size_t> most = most_cache_places(input, bodies_, pictures_);
@@ -243,6 +244,7 @@ Image Session::State::recoloured(const Scene& scene, HeldView& view, Monitor* mo
                       gather_flux(group.surface.samples, irradiance),
                       group.kernel});
     groups.back().cloud = group.cloud;
+    if (group.kernel.far_side != nullptr) bound_normals(groups.back().octree);
     work_.nodes_built += groups.back().octree.nodes.size();
   }
   RenderResult part = opaline::render({scene, *world_, *rays_, groups, monitor, {}, &view});

@@ -43,6 +43,11 @@ std::optional<SurfaceCache> StageCache::find_exitance(const StageKey& key, const
               [&](const BlobReader& entry) { return get_exitance(entry, world, meshes); });
 }
 
+std::optional<RadialTable> StageCache::find_walked_profile(const StageKey& key) {
+  return find("profile", key, kMostBytesOfWalkedProfile,
+              [](const BlobReader& entry) { return get_walked_profile(entry); });
+}
+
 void StageCache::keep_samples(const StageKey& key, const SurfaceSamples& samples,
                               std::span<const std::uint32_t> meshes) {
   blobs_.keep("samples", key, [&](BlobWriter& file) { put_samples(file, samples, meshes); });
@@ -63,6 +68,10 @@ void StageCache::keep_volume(const StageKey& key, const VolumeExitance& volume) 
 void StageCache::keep_exitance(const StageKey& key, const SurfaceCache& exitance,
                                std::span<const std::uint32_t> meshes) {
   blobs_.keep("exitance", key, [&](BlobWriter& file) { put_exitance(file, exitance, meshes); });
+}
+
+void StageCache::keep_walked_profile(const StageKey& key, const RadialTable& table) {
+  blobs_.keep("profile", key, [&](BlobWriter& file) { put_walked_profile(file, table); });
 }
 
 }  // namespace opaline

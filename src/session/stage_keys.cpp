@@ -10,7 +10,7 @@ namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
 constexpr std::uint64_t kSamplesVersion = 2, kCarriedVersion = 3, kTransferVersion = 2, kOctreeVersion = 1,
-                        kExitanceVersion = 6, kWalksVersion = 2;
+                        kExitanceVersion = 6, kWalksVersion = 2, kWalkedProfileVersion = 1;
 
 const char* widest_instructions() {
   if (__builtin_cpu_supports("avx512f")) return "avx512";
@@ -132,6 +132,10 @@ StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers
   key.add(samples);
   for (std::size_t l = 0; l < lights.size(); ++l) key.add(transfers[l]).add(emission(lights[l]));
   return key.key();
+}
+
+StageKey walked_profile_key(double absorbed, double eta) {
+  return KeyBuilder("walked profile", kWalkedProfileVersion).add(absorbed).add(eta).key();
 }
 
 StageKey exitance_key(const StageKey& tree, const StageKey& kernel, std::span<const MeshKeys> meshes,

@@ -266,15 +266,35 @@ void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<
   decide(body, found ? "tree from the cache" : "tree built");
 }
 
+/// The shapes of tabulated profiles: those in the cache need not be walked, and what is walked is kept there.
+void Session::State::find_walked_profiles(const Body& body) {
+  if (cache_ == nullptr) return;
+  for (const ChannelProfile& channel : body.profile.channels) {
+    const auto* profile = std::get_if<TabulatedProfile>(&channel);
+    if (profile == nullptr || profile->mean_free_path == 0) continue;
+    const double absorbed = profile->shape->absorbed(), eta = profile->shape->eta();
+    if (WalkedShape::find(absorbed, eta) != nullptr) continue;
+    const StageKey key = walked_profile_key(absorbed, eta);
+    if (std::optional<RadialTable> found = cache_->find_walked_profile(key)) {
+      WalkedShape::hand_over(absorbed, eta, std::move(*found));
+      ++work_.found;
+    } else {
+      cache_->keep_walked_profile(key, profile->shape->table());
+    }
+  }
+}
+
 void Session::State::update_kernel(Body& body, BodyKeys& known) {
   const Medium& medium = scene_.media[body.plan.medium];
-  KeyBuilder key("kernel", 2);
+  KeyBuilder key("kernel", 3);
   std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
   key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(medium.profile);
+  if (medium.profile == ProfileKind::multipole) key.add(medium.thickness);
   key.add(body.surface.spacing()).add(world_->diagonal).add(world_->unit);
   key.add(scene_.settings.near_field).add(scene_.settings.near_irradiance);
   if (key.key() == known.kernel_key) return;
   known.kernel_key = {};
+  find_walked_profiles(body);
   body.kernel = group_kernel(body.profile, body.surface, *world_, scene_.settings);
   known.kernel_key = key.key();
 }

@@ -2,19 +2,13 @@
 #include "volume/body_walks.h"
 
 #include <cmath>
-#include <cstdlib>
 
 namespace opaline {
 namespace {
 
-double env(const char* name, double otherwise) {
-  const char* text = std::getenv(name);
-  return text ? std::atof(text) : otherwise;
-}
-const double kReach =
-    env("REACH", 2);  // mean free paths: farther boundaries are met by chance, not by expectation
-const double kDeep = env("DEEP", 1);     // mean free paths: deeper than that flights go without a ray
-const double kVoxel = env("VOXEL", .5);  // mean free paths: edge of the safe distance's grid
+constexpr double kReach = 2;   // mean free paths: farther boundaries are met by chance, not by expectation
+constexpr double kDeep = 1;    // mean free paths: deeper than that flights go without a ray
+constexpr double kVoxel = .5;  // mean free paths: edge of the safe distance's grid
 constexpr std::uint64_t kMostFlights = 1'000'000;
 constexpr int kMostBounces = 16;      // outside, from one place of the body to another
 constexpr double kOutsideShare = .5;  // of a walk's first weight: what light outside is rounded to

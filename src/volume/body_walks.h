@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "opaline/transport/random_walk.h"
 #include "opaline/volume/nearest_sample.h"
-#include "opaline/volume/random_walk.h"
 #include "opaline/volume/volume_exitance.h"
 #include "volume/body_inside.h"
 #include "volume/light_entry.h"

@@ -5,8 +5,8 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
-#include "opaline/diffusion/half_space.h"
-#include "opaline/volume/smooth_boundary.h"
+#include "opaline/transport/half_space.h"
+#include "opaline/transport/smooth_boundary.h"
 
 namespace opaline {
 namespace {

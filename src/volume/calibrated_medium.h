@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "opaline/volume/medium.h"
+#include "opaline/transport/medium.h"
 
 namespace opaline {
 

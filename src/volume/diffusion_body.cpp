@@ -7,7 +7,7 @@
 #include "opaline/core/parallel.h"
 #include "opaline/core/random.h"
 #include "opaline/lights/light.h"
-#include "opaline/volume/smooth_boundary.h"
+#include "opaline/transport/smooth_boundary.h"
 
 namespace opaline {
 namespace {

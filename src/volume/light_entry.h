@@ -8,7 +8,7 @@
 
 #include "opaline/geometry/ray_scene.h"
 #include "opaline/scene/scene.h"
-#include "opaline/volume/walk_numbers.h"
+#include "opaline/transport/walk_numbers.h"
 
 namespace opaline {
 

@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/diffusion/fresnel.h"
+#include "opaline/transport/fresnel.h"
 #include "support/quadrature.h"
 
 namespace opaline::test {

@@ -24,6 +24,8 @@ const std::vector<Named>& profiles() {
       {"normalized diffusion", make_normalized_diffusion(.38, .8)},
       {"better dipole", make_channel_profile(ProfileKind::better_dipole, {.38, .05, 1.3})},
       {"better dipole without absorption", make_channel_profile(ProfileKind::better_dipole, {.38, 0, 1.5})},
+      {"tabulated", make_channel_profile(ProfileKind::tabulated, {.38, .05, 1.3})},
+      {"tabulated without absorption", make_channel_profile(ProfileKind::tabulated, {.38, 0, 1.5})},
   };
   return table;
 }
@@ -84,6 +86,8 @@ long double share_beyond(const ChannelProfile& profile, double beyond, double r)
     };
     return beyond_radius(Real(r) / Real(better->mean_free_path)) / beyond_radius(0);
   }
+  if (const auto* tabulated = std::get_if<TabulatedProfile>(&profile))
+    return tabulated->shape->table().beyond(r / tabulated->mean_free_path);
   const Dipole& dipole = std::get<Dipole>(profile);
   const Real ratio = std::exp(Real(dipole.s_real) - Real(dipole.s_virtual));
   const Real of_virtual = ratio / (1 + ratio), of_real = 1 / (1 + ratio);

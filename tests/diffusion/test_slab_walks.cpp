@@ -2,8 +2,8 @@
 // Plates in diffuse light.
 #include <gtest/gtest.h>
 
-#include "opaline/diffusion/fresnel.h"
 #include "opaline/diffusion/slab_walks.h"
+#include "opaline/transport/fresnel.h"
 
 namespace opaline {
 namespace {

@@ -2,7 +2,7 @@
 // Constant surroundings.
 #include <gtest/gtest.h>
 
-#include "opaline/diffusion/fresnel.h"
+#include "opaline/transport/fresnel.h"
 #include "support/lighting.h"
 
 namespace opaline {

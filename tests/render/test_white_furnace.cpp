@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "opaline/diffusion/fresnel.h"
 #include "opaline/session/session.h"
+#include "opaline/transport/fresnel.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -221,5 +221,30 @@ TEST(SceneValues, TheRest) {
   EXPECT_EQ(scene.settings.seed, 9u);
 }
 
+// Claim: a thickness is a length of the scene; a multipole medium without one has that of the built-in plates made of
+// it, scaled with them, and a declared one stays; plates that differ are refused with both. Source: scenes/README.md.
+// Fails if: the plate's thickness is along another axis, or other profiles take it.
+TEST(SceneValues, Thickness) {
+  const auto scene_of = [](const std::string& medium, const std::string& more = "") {
+    return parse_scene(R"({"mm_per_unit": 10, "media": {"m": {"preset": "marble", )" + medium + R"(}},
+      "shapes": [{"medium": "m", "slab": {"width": 4, "depth": 5, "thickness": 0.2},
+                  "transform": [{"scale": 3}, {"rotate": {"axis": [1, 2, 3], "degrees": 40}}]})" +
+                           more + "]}",
+                       "x.json");
+  };
+  EXPECT_EQ(scene_of(R"("profile": "dipole", "thickness": 2)").media[0].thickness, 20);
+  EXPECT_EQ(scene_of(R"("profile": "dipole")").media[0].thickness, INFINITY);
+  EXPECT_EQ(scene_of(R"("profile": "multipole", "thickness": 2)").media[0].thickness, 20);
+  EXPECT_NEAR(scene_of(R"("profile": "multipole")").media[0].thickness, 6, 1e-9);
+  const std::string other = R"(, {"medium": "m", "slab": {"width": 4, "depth": 5, "thickness": 0.3}})";
+  try {
+    scene_of(R"("profile": "multipole")", other);
+    ADD_FAILURE() << "two thicknesses";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("6 and 3 mm"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(scene_of(R"("profile": "multipole", "thickness": 2)", other).media[0].thickness, 20);
+}
+
 }  // namespace
 }  // namespace opaline

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "opaline/diffusion/fresnel.h"
 #include "opaline/render/direct.h"
+#include "opaline/transport/fresnel.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "opaline/geometry/ray_scene.h"
-#include "opaline/volume/henyey_greenstein.h"
-#include "opaline/volume/medium.h"
+#include "opaline/transport/henyey_greenstein.h"
+#include "opaline/transport/medium.h"
 
 namespace opaline::test {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/diffusion/fresnel.h"
 #include "opaline/lights/light.h"
+#include "opaline/transport/fresnel.h"
 #include "opaline/volume/volume_exitance.h"
 #include "support/surfaces.h"
 #include "volume/volume_test.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "opaline/core/error.h"
-#include "opaline/volume/point_source.h"
+#include "opaline/transport/point_source.h"
 #include "volume_test.h"
 
 namespace opaline {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The fluence around a point source.
 #include "diffusion/diffusion_test.h"
-#include "opaline/volume/point_source.h"
+#include "opaline/transport/point_source.h"
 #include "volume_test.h"
 
 namespace opaline {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The diffusion equation inside meshes.
-#include "opaline/diffusion/fresnel.h"
-#include "opaline/diffusion/half_space.h"
 #include "opaline/irradiance/irradiance.h"
+#include "opaline/transport/fresnel.h"
+#include "opaline/transport/half_space.h"
 #include "opaline/volume/volume_diffusion.h"
 #include "volume/lit_body.h"
 

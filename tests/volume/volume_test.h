@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "opaline/volume/laboratory.h"
+#include "opaline/transport/laboratory.h"
 
 namespace opaline::test {
 

@@ -7,7 +7,10 @@
 
 #include "opaline/diffusion/better_dipole.h"
 #include "opaline/diffusion/dipole.h"
+#include "opaline/diffusion/directional_dipole.h"
+#include "opaline/diffusion/multipole.h"
 #include "opaline/diffusion/normalized_diffusion.h"
+#include "opaline/diffusion/tabulated.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {
@@ -15,7 +18,9 @@ namespace opaline {
 /// One channel; monostate: nothing scatters there (sigma_s' = 0) and the diffuse part is exactly 0.
 /// A kind of profile is a file that defines all of the functions below, and `Kind make_profile(const
 /// ReducedMedium&, std::type_identity<Kind>)`; without one it does not compile. In the order of ProfileKind.
-using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion, BetterDipole>;
+using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion, BetterDipole,
+                                    NormalizedDiffusionSearchlight, NormalizedDiffusionDmfp,
+                                    NormalizedDiffusionRefit, TabulatedProfile, Multipole, DirectionalDipole>;
 
 /// The profile of a kind; monostate where the medium does not scatter.
 ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& medium);
@@ -46,8 +51,19 @@ double sample_chord_sphere_radius(const ChannelProfile& profile, double u, doubl
 /// The rate, 1/mm, at which the profile decays at its far end.
 double slowest_decay(const ChannelProfile& profile);
 
+/// Whether the profile knows the other face of a plate (Multipole). To the others a point of the far face is one
+/// at its straight distance.
+bool has_far_side(const ChannelProfile& profile);
+/// What leaves on the other face of the medium's thickness, 1/mm^2, per flux that entered on the one; by the straight
+/// distance s, mm: T(r) at s^2 = thickness^2 + r^2, and T(0) nearer than the thickness. Without a far side R_d(s).
+double far_side_profile(const ChannelProfile& profile, double distance);
+/// The share of the entered flux that leaves by the other face, `thickness` away in mm, within r along the plate.
+double diffuse_transmittance_within(const ChannelProfile& profile, double r, double thickness);
+/// To any distance.
+double total_diffuse_transmittance(const ChannelProfile& profile, double thickness);
+
 /// 1 - alpha' of the medium whose profile has this total: by bisection (relative error in 1 - alpha' below
-/// 1e-12). total in [0, 1].
+/// 1e-12). total in [0, 1], of a half space: what a thick piece of the medium sends back.
 double invert_albedo(ProfileKind kind, double total, double eta);
 
 /// Everything about a medium that rendering needs, computed once.
@@ -60,6 +76,7 @@ struct DiffuseProfile {
   double eta = 1;
   double average_reflectance = 0;  ///< F_bar, from outside
   bool translucent = false;        ///< some channel scatters
+  bool has_far_side = false;       ///< of some channel
 };
 
 /// unit: of all its lengths, mm.

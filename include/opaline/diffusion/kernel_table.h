@@ -22,6 +22,8 @@ class KernelTable {
   KernelTable() = default;
   /// r_min, r_max in mm: the distances that will be asked for; the table ends earlier where R_d underflows.
   KernelTable(const DiffuseProfile& profile, double r_min, double r_max);
+  /// The same of far_side_profile.
+  static KernelTable of_far_side(const DiffuseProfile& profile, double r_min, double r_max);
 
   /// (R, G, B, 0) at one squared distance, mm^2.
   __m128 operator()(float r2) const {
@@ -48,6 +50,9 @@ class KernelTable {
   };
   static constexpr int kSegmentBits = 5;
   static constexpr std::uint32_t kFractionBits = 23 - kSegmentBits;
+
+  using Kernel = double (*)(const ChannelProfile&, double);
+  KernelTable(const DiffuseProfile& profile, Kernel kernel, double r_min, double r_max);
 
   float clamped(float r2) const {
     const float s = r2 * inverse_scale2_;

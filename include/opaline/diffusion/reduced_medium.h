@@ -2,6 +2,8 @@
 // What a radial profile is made from.
 #pragma once
 
+#include <limits>
+
 namespace opaline {
 
 /// One channel of a medium by similarity: scattering without direction. 1 - alpha' is carried by itself,
@@ -10,6 +12,8 @@ struct ReducedMedium {
   double mean_free_path = 0;  ///< 1/sigma_t', >= 0
   double absorbed = 1;        ///< 1 - alpha' = sigma_a/sigma_t', [0, 1]
   double eta = 1;             ///< index of refraction, inside / outside
+  /// Of the plate or body, in the unit of mean_free_path, > 0; infinite: a half space. Multipole alone asks.
+  double thickness = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace opaline

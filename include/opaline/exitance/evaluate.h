@@ -18,6 +18,13 @@ namespace opaline {
 
 struct LaneTable;
 
+/// The kernel between the two sides of a plate or body: between samples and points that belong to other sheets
+/// (same_sheet). Nothing else parts a node of the tree by sides, so that it comes as a correction (far_side.h).
+struct FarSide {
+  KernelTable table;  ///< far_side_profile
+  float reach = 0;    ///< mm; farther away what leaves is alike on both sides
+};
+
 /// The kernel split near the shading point: R_d = R_near + R_far with R_far = R_d w(r/h). The far part is
 /// summed over the samples; the near part, too steep for them, is an integral times the irradiance around the
 /// point.
@@ -39,6 +46,7 @@ struct SplitKernel {
   /// about .45 (dipole) or .65 (normalized diffusion) where the mean free path equals the sample spacing. It
   /// is 0 where less than 2 % of the light depends on it.
   std::array<float, 3> own_irradiance{};
+  std::shared_ptr<const FarSide> far_side = {};  ///< of profiles that have one (has_far_side)
   /// Whether the exitance at a point depends on the irradiance at the point itself.
   bool needs_irradiance() const { return own_irradiance[0] + own_irradiance[1] + own_irradiance[2] > 0; }
 };

@@ -2,6 +2,7 @@
 // Entered irradiance at surface samples, kept per light.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -73,6 +74,13 @@ std::vector<PointTransfers> transfers_at(const PointIrradianceInput& input);
 /// in    transfers: one a light
 std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers,
                                  const PointIrradianceInput& input);
+
+/// Light that reaches a point by one shadow ray: index of the point, unit direction towards the light, irradiance per
+/// unit emission.
+using UseOfRay = std::function<void(std::size_t point, const Vec3f& towards_light, float irradiance)>;
+
+/// The shadow rays of transfers_at that reach the light, one by one: their sum at a point is its weight.
+void for_each_ray(const PointIrradianceInput& input, std::size_t light, const UseOfRay& use);
 
 /// Irradiance at arbitrary points, all lights together: for shading where samples are not wanted or too
 /// coarse.

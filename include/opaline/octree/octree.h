@@ -38,6 +38,12 @@ struct alignas(32) TreeSample {
   std::array<float, 4> flux;  ///< area x irradiance / Octree::flux_unit; last lane 0
 };
 
+/// Holds directions: none farther from the axis than an angle below 90 degrees; or any direction.
+struct NormalCone {
+  Vec3f axis{};
+  float cosine = 0, sine = 1;  ///< of the angle; cosine 0: any
+};
+
 struct Octree {
   std::vector<OctreeNode> nodes;  ///< empty without samples
   std::vector<TreeSample> samples;
@@ -47,6 +53,7 @@ struct Octree {
   float flux_unit = 1;
   /// By list_children: of node i, children[first_child[i]] to below first_child[i + 1].
   std::vector<std::uint32_t> first_child{}, children{};
+  std::vector<NormalCone> normal_cones{};  ///< by bound_normals, one a node
 };
 
 /// Leaves hold at most this many samples, unless more coincide to 2^-21 of the box.
@@ -58,5 +65,8 @@ Octree build_octree(std::vector<FluxSample> samples);
 
 /// Lists each node's children, so that to find one need not wait for its sibling's `skip` from memory.
 void list_children(Octree& tree);
+
+/// Bounds the normals of each node's samples: asked for by kernels of two sides (exitance/evaluate.h).
+void bound_normals(Octree& tree);
 
 }  // namespace opaline

@@ -14,11 +14,36 @@ using NameList = std::span<const std::string_view>;
 
 /// Which radial diffuse reflectance profile R_d(r) stands for the medium; in the order of ChannelProfile
 /// (diffuse_profile.h).
-enum class ProfileKind { dipole, normalized_diffusion, better_dipole };
-inline constexpr std::array<std::string_view, 3> kProfileNames{"dipole", "normalized_diffusion",
-                                                               "better_dipole"};
-inline constexpr std::array<std::string_view, 3> kProfileSources{"Jensen et al. 2001",
-                                                                 "Christensen & Burley 2015", "d'Eon 2012"};
+enum class ProfileKind {
+  dipole,
+  normalized_diffusion,  ///< the fit for diffuse entry
+  better_dipole,
+  normalized_diffusion_searchlight,
+  normalized_diffusion_dmfp,   ///< by the diffuse mean free path
+  normalized_diffusion_refit,  ///< fitted anew, to walks behind a boundary
+  tabulated,                   ///< random walks through the medium itself
+  multipole,                   ///< a plate of the medium's thickness
+  directional_dipole,          ///< knows from where light comes; method `direct` only
+};
+inline constexpr std::array<std::string_view, 9> kProfileNames{"dipole",
+                                                               "normalized_diffusion",
+                                                               "better_dipole",
+                                                               "normalized_diffusion_searchlight",
+                                                               "normalized_diffusion_dmfp",
+                                                               "normalized_diffusion_refit",
+                                                               "tabulated",
+                                                               "multipole",
+                                                               "directional_dipole"};
+inline constexpr std::array<std::string_view, 9> kProfileSources{
+    "Jensen et al. 2001",
+    "Christensen & Burley 2015, for diffuse entry",
+    "d'Eon 2012",
+    "Christensen & Burley 2015, for a beam",
+    "Christensen & Burley 2015, by diffuse mean free path",
+    "its form, fitted to walks behind a boundary",
+    "random walks of the medium",
+    "Donner & Jensen 2005",
+    "Frisvad et al. 2014"};
 /// The words for its values, in their order.
 constexpr NameList names_of(ProfileKind) {
   return kProfileNames;

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -56,6 +57,8 @@ struct Medium {
   /// Mean cosine g of the scattering angle, (-1, 1), where the coefficients are reduced ones. Random walks alone
   /// follow it; diffusion knows no more than (1 - g) sigma_s.
   double scatter_anisotropy = 0;
+  /// Of the plates and bodies made of it, mm, > 0; infinite: thick. ProfileKind::multipole alone asks.
+  double thickness = std::numeric_limits<double>::infinity();
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 

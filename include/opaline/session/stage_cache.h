@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "opaline/cache/blob_cache.h"
+#include "opaline/diffusion/radial_table.h"
 #include "opaline/exitance/surface_cache.h"
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/octree/octree.h"
@@ -45,6 +46,9 @@ class StageCache {
   std::optional<SurfaceCache> find_exitance(const StageKey& key, const World& world,
                                             std::span<const std::uint32_t> meshes);
 
+  /// The shape of a walked profile.
+  std::optional<RadialTable> find_walked_profile(const StageKey& key);
+
   /// meshes: the body's, in its order.
   void keep_samples(const StageKey& key, const SurfaceSamples& samples,
                     std::span<const std::uint32_t> meshes);
@@ -57,6 +61,8 @@ class StageCache {
   /// meshes: the body's, in its order.
   void keep_exitance(const StageKey& key, const SurfaceCache& exitance,
                      std::span<const std::uint32_t> meshes);
+  /// The shape of a walked profile.
+  void keep_walked_profile(const StageKey& key, const RadialTable& table);
 
   /// One line that names every entry that could not be used and why something was not kept; empty: all well.
   std::string warning() const { return blobs_.warning(); }

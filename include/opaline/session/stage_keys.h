@@ -42,6 +42,9 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
                     std::span<const Light> lights);
 
+/// Of the shape of a profile that is walked, in mean free paths.
+StageKey walked_profile_key(double absorbed, double eta);
+
 /// Of what camera rays meet: the camera, the film, all meshes, how the structure was built that rays walk.
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes);
 

@@ -9,7 +9,7 @@
 #include "opaline/core/monitor.h"
 #include "opaline/geometry/world.h"
 #include "opaline/irradiance/irradiance.h"
-#include "opaline/volume/medium.h"
+#include "opaline/transport/medium.h"
 #include "opaline/volume/volume_exitance.h"
 
 namespace opaline {

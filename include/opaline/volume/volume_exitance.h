@@ -13,7 +13,7 @@
 #include "opaline/geometry/ray_scene.h"
 #include "opaline/sampling/sample_surface.h"
 #include "opaline/scene/scene.h"
-#include "opaline/volume/medium.h"
+#include "opaline/transport/medium.h"
 
 namespace opaline {
 

@@ -3,7 +3,7 @@
 //
 // A walk carries a weight, the share of light that it stands for. What leaves at the boundary is counted as its
 // expected value, absorption takes its share of the weight, and roulette ends walks without bias. The
-// derivation is in src/volume/README.md.
+// derivation is in src/transport/README.md.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 #include <limits>
 
 #include "opaline/core/vec3.h"
-#include "opaline/volume/henyey_greenstein.h"
-#include "opaline/volume/medium.h"
-#include "opaline/volume/smooth_boundary.h"
-#include "opaline/volume/walk_numbers.h"
+#include "opaline/transport/henyey_greenstein.h"
+#include "opaline/transport/medium.h"
+#include "opaline/transport/smooth_boundary.h"
+#include "opaline/transport/walk_numbers.h"
 
 namespace opaline {
 

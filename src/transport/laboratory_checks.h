@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "opaline/volume/laboratory.h"
+#include "opaline/transport/laboratory.h"
 
 namespace opaline {
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "opaline/volume/laboratory.h"
-#include "opaline/volume/medium.h"
+#include "opaline/transport/laboratory.h"
+#include "opaline/transport/medium.h"
 
 namespace opaline {
 
@@ -23,7 +23,7 @@ double decay_constant(double absorbed);
 /// continuous ones.
 /// in    medium that scatters evenly: g is not looked at; sigma_t > 0; r > 0 in mm
 /// out   relative error below 1e-8; without scattering the Beer-Lambert law alone
-/// from  Case & Zweifel 1967, sec. 4.5; derived in src/volume/README.md
+/// from  Case & Zweifel 1967, sec. 4.5; derived in src/transport/README.md
 double point_source_fluence(const HomogeneousMedium& medium, double r);
 
 /// Classical diffusion: 3 sigma_t' exp(-sigma_tr r) / (4 pi r), sigma_tr = sqrt(3 sigma_a sigma_t').

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/volume/laboratory.h"
+#include "opaline/transport/laboratory.h"
 
 namespace opaline {
 

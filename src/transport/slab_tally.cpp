@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volume/slab_tally.h"
+#include "transport/slab_tally.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "volume/control_regression.h"
+#include "transport/control_regression.h"
 
 namespace opaline {
 namespace {

@@ -5,12 +5,12 @@
 #include <array>
 #include <cstddef>
 
-#include "opaline/volume/random_walk.h"
+#include "opaline/transport/random_walk.h"
 
 namespace opaline {
 
 /// For each of a family of functions f(depth, upward cosine), the sum over a walk's flights of weight (f before the
-/// flight - mean of weight f after it), less f at the start: its mean is 0 whatever f is (src/volume/README.md).
+/// flight - mean of weight f after it), less f at the start: its mean is 0 whatever f is (src/transport/README.md).
 /// The family: exp(rate depth) times a Legendre polynomial of the cosine, whose means have closed forms. One more is
 /// the weight at the start less 1.
 class SlabControls {

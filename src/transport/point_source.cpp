@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/volume/point_source.h"
+#include "opaline/transport/point_source.h"
 
 #include <boost/math/quadrature/exp_sinh.hpp>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "opaline/volume/laboratory.h"
-#include "volume/slab_controls.h"
+#include "opaline/transport/laboratory.h"
+#include "transport/slab_controls.h"
 
 namespace opaline {
 

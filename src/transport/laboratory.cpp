@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/volume/laboratory.h"
+#include "opaline/transport/laboratory.h"
 
 #include <cmath>
 #include <utility>
 
 #include "opaline/core/parallel.h"
-#include "opaline/diffusion/fresnel.h"
-#include "opaline/volume/random_walk.h"
-#include "volume/laboratory_checks.h"
-#include "volume/slab_tally.h"
+#include "opaline/transport/fresnel.h"
+#include "opaline/transport/random_walk.h"
+#include "transport/laboratory_checks.h"
+#include "transport/slab_tally.h"
 
 namespace opaline {
 namespace {

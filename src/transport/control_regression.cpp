@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volume/control_regression.h"
+#include "transport/control_regression.h"
 
 #include <algorithm>
 #include <cmath>

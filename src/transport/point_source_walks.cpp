@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "opaline/core/parallel.h"
-#include "opaline/volume/point_source.h"
-#include "opaline/volume/random_walk.h"
-#include "volume/control_regression.h"
-#include "volume/laboratory_checks.h"
-#include "volume/slab_tally.h"
+#include "opaline/transport/point_source.h"
+#include "opaline/transport/random_walk.h"
+#include "transport/control_regression.h"
+#include "transport/laboratory_checks.h"
+#include "transport/slab_tally.h"
 
 namespace opaline {
 namespace {

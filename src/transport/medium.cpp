@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/volume/medium.h"
+#include "opaline/transport/medium.h"
 
 #include <fmt/format.h>
 

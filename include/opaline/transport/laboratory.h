@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "opaline/core/monitor.h"
-#include "opaline/volume/medium.h"
+#include "opaline/transport/medium.h"
 
 namespace opaline {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "opaline/core/vec3.h"
-#include "opaline/diffusion/fresnel.h"
+#include "opaline/transport/fresnel.h"
 
 namespace opaline {
 

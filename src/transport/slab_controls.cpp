@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "volume/slab_controls.h"
+#include "transport/slab_controls.h"
 
 #include <algorithm>
 #include <cmath>

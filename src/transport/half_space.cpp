@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/half_space.h"
+#include "opaline/transport/half_space.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/diffusion/fresnel.h"
+#include "opaline/transport/fresnel.h"
 
 namespace opaline {
 namespace {

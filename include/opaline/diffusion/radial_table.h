@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A radial profile known at distances of equal ratio.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace opaline {
+
+/// What a table of numbers is laid over: (1 + kappa r) exp(-kappa r) / (r (r^2 + width^2)), as light that was
+/// scattered once close by, and as a dipole far away. Lengths in mean free paths.
+struct RadialReference {
+  double decay = 0;  ///< kappa >= 0
+  double width = 1;  ///< > 0
+  double operator()(double r) const;
+};
+
+/// Share per area of all light that leaves, of integral 1 over the plane, lengths in mean free paths: the
+/// reference times exp(f(ln r)), f a cubic spline through its values at knots, constant before the first and
+/// after the last of them. Falls everywhere. Close to 0 it is a power law 1/r, far away the reference.
+class RadialTable {
+ public:
+  static constexpr double kFirst = 1e-3;  ///< the first knot
+  static constexpr int kPerDecade = 10;   ///< knots
+  static constexpr std::size_t kKnots = 61;
+  static double knot(std::size_t i);
+
+  /// logarithms: f at the knots up to a constant, kKnots of them. Where the product would rise they are lowered.
+  RadialTable(const RadialReference& reference, std::vector<double> logarithms);
+
+  const RadialReference& reference() const { return reference_; }
+  const std::vector<double>& logarithms() const { return logarithms_; }
+
+  /// r > 0.
+  double density(double r) const;
+  /// The share nearer than r, and the rest of it, each with its own digits.
+  double within(double r) const;
+  double beyond(double r) const;
+  /// The r at which the share beyond is `share` in (0, 1].
+  double radius_beyond(double share) const;
+  /// The R at which beyond(R) + pi R^2 density(R) is `share` in (0, 1].
+  double chord_radius_beyond(double share) const;
+
+ private:
+  double spline(double u) const;
+  double ring(double u) const;  // 2 pi r^2 density, u = ln r
+  double ring_integral(double low, double high) const;
+  double place_of(double r) const;  // ln r, in knots
+  template <class Falling>
+  double find(const Falling& falling, double share, double low, double high) const;
+
+  RadialReference reference_;
+  std::vector<double> logarithms_, curvature_;  // at the knots; second derivatives by knot^2
+  double scale_ = 1;                            // of the reference
+  std::vector<double> within_, beyond_;         // at the knots and beyond them, as far as there is light
+};
+
+}  // namespace opaline
