@@ -88,6 +88,8 @@ TEST(SceneErrors, Media) {
       {with_medium(artist + "-@.1}"), {"invalid number", "expected digit after '-'"}},
       {with_medium(artist + "@\"#12345g\"}"), {"#rrggbb", "#12345g"}},
       {with_medium(artist + "1, \"subsurface_scatter_anisotropy\": @1}"), {"_anisotropy'", "(-1, 1)"}},
+      {with_medium(R"({"preset": "cream", "scatter_anisotropy": @0.96})"), {"scatter_anisotropy'", "[-0.95, 0.95]"}},
+      {with_medium(R"({"sigma_a": 0, "sigma_s": 1, @"scatter_anisotropy": 0})"), {"no meaning beside 'sigma_s'"}},
       {with_medium(R"({"subsurface_radius": @-1, "subsurface_color": 1})"), {"'media.m.subsurface_radius'"}},
       {with_medium(R"(@{"subsurface_color": 1})"), {"lacks the key 'subsurface_radius'"}},
       {with_medium(R"({"preset": "cream", @"eta": 1.2, "specular_ior": 1.2})"),
