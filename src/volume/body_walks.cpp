@@ -175,7 +175,7 @@ class BodyWalks::Walker {
 
 BodyWalks::BodyWalks(const VolumeInput& input, std::size_t starts)
     : input_(input),
-      points_(input.rays, input.world, input.meshes, area_of(input) / double(starts)),
+      points_(input.rays, input.world, input.meshes, .5 * area_of(input) / double(input.samples.size())),
       inside_(input.rays, input.world, input.meshes),
       free_(input.world, inside_.box(), kVoxel * least_mean_free_path(input), kReach / kVoxel),
       cells_(input.samples, &input.world),
