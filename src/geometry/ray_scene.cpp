@@ -154,9 +154,12 @@ SurfacePoint RayScene::surface_point(std::uint32_t mesh, std::uint32_t triangle,
   const Vec3f ab = b.position - a.position, ac = c.position - a.position;
   const Vec3f normal = a.normal * (1 - u - v) + b.normal * u + c.normal * v;
   SurfacePoint point = oriented_point(a.position + ab * u + ac * v, ab, ac, view.faceted ? nullptr : &normal);
-  const Vec3f& p = point.position;
-  point.offset = view.offset + 0x1p-20f * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
+  point.offset = offset(mesh, point.position);
   return point;
+}
+
+float RayScene::offset(std::uint32_t mesh, const Vec3f& p) const {
+  return meshes_[mesh].offset + 0x1p-20f * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
 }
 
 }  // namespace opaline

@@ -7,6 +7,7 @@ namespace opaline {
 namespace {
 
 constexpr int kMostSheets = 64;  // that a ray goes through
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 TracedRay traced_ray(const Vec3d& from, const Vec3d& direction, double far) {
   return {Ray(Vec3f(from), Vec3f(direction), float(far)), {}};
@@ -44,8 +45,7 @@ bool BodyInside::find_overlaps(const World& world, std::span<const std::uint32_t
     const std::size_t count = world.meshes[m].triangles.size();
     for (std::size_t t = 0; t < count; t += std::max<std::size_t>(1, count / kTriangles)) {
       const SurfacePoint point = rays_.surface_point(m, std::uint32_t(t), 1 / 3.0f, 1 / 3.0f);
-      TracedRay traced =
-          traced_ray(moved_off(point, -1), -Vec3d(point.geometric), std::numeric_limits<double>::infinity());
+      TracedRay traced = traced_ray(at(point).inside(), -Vec3d(point.geometric), kEndless);
       rays_.intersect_one(traced);
       if (traced.hit.mesh == m && !leaves(traced)) return true;
     }
@@ -53,19 +53,26 @@ bool BodyInside::find_overlaps(const World& world, std::span<const std::uint32_t
   return false;
 }
 
+// Normals are those of the triangle that the ray met.
+Wall BodyInside::wall_of(const TracedRay& traced) const {
+  const double distance = double(traced.ray.far);
+  const Vec3d position = Vec3d(traced.ray.origin) + Vec3d(traced.ray.direction) * distance;
+  return {distance,
+          {position, normalized(Vec3d(traced.hit.edges_cross)),
+           double(rays_.offset(traced.hit.mesh, Vec3f(position)))},
+          is_body_[traced.hit.mesh]};
+}
+
 Wall BodyInside::wall(const Vec3d& from, const Vec3d& direction, double reach) const {
   TracedRay traced = traced_ray(from, direction, reach);
   for (int sheets = 0; sheets < kMostSheets; ++sheets) {
     rays_.intersect_one(traced);
     if (traced.hit.mesh == Hit::kMiss) return {};
-    const Wall wall{double(traced.ray.far), traced.hit, normalized(Vec3d(traced.hit.edges_cross)),
-                    is_body_[traced.hit.mesh]};
+    const Wall wall = wall_of(traced);
     if (!wall.is_body) return boundary_behind(traced, wall);
-    if (leaves(traced) && !overlaps_) return wall;
-    if (leaves(traced)) {
-      const double beyond = wall.distance + 2 * double(rays_.offset(point(traced.hit)));
-      if (!contains(from + direction * beyond, direction)) return wall;
-    }
+    if (leaves(traced) &&
+        !(overlaps_ && contains(wall.point.position + direction * (2 * wall.point.offset), direction)))
+      return wall;
     go_on(traced, reach);
   }
   return {};
@@ -73,36 +80,35 @@ Wall BodyInside::wall(const Vec3d& from, const Vec3d& direction, double reach) c
 
 // Something that touches the body lies at its boundary, and rays may meet either first.
 Wall BodyInside::boundary_behind(TracedRay traced, const Wall& other) const {
-  const double far = other.distance + 2 * double(rays_.offset(point(other.hit)));
+  const double far = other.distance + 2 * other.point.offset;
   for (int sheets = 0; sheets < 2; ++sheets) {
     go_on(traced, far);
     rays_.intersect_one(traced);
     if (traced.hit.mesh == Hit::kMiss) break;
-    if (is_body_[traced.hit.mesh] && leaves(traced))
-      return {double(traced.ray.far), traced.hit, normalized(Vec3d(traced.hit.edges_cross)), true};
+    if (is_body_[traced.hit.mesh] && leaves(traced)) return wall_of(traced);
   }
   return other;
 }
 
 // More sheets are left than entered on the way out.
 bool BodyInside::contains(const Vec3d& point, const Vec3d& direction) const {
-  TracedRay traced = traced_ray(point, direction, std::numeric_limits<double>::infinity());
+  TracedRay traced = traced_ray(point, direction, kEndless);
   int inside = 0;
   for (int sheets = 0; sheets < kMostSheets; ++sheets) {
     rays_.intersect_one(traced);
     if (traced.hit.mesh == Hit::kMiss) break;
     if (is_body_[traced.hit.mesh]) inside += leaves(traced) ? 1 : -1;
     if (inside > 0) return true;
-    go_on(traced, std::numeric_limits<double>::infinity());
+    go_on(traced, kEndless);
   }
   return false;
 }
 
-std::optional<SurfacePoint> BodyInside::entry(const Vec3d& from, const Vec3d& direction) const {
-  TracedRay traced = traced_ray(from, direction, std::numeric_limits<double>::infinity());
+std::optional<BoundaryPoint> BodyInside::entry(const Vec3d& from, const Vec3d& direction) const {
+  TracedRay traced = traced_ray(from, direction, kEndless);
   rays_.intersect_one(traced);
   if (traced.hit.mesh == Hit::kMiss || !is_body_[traced.hit.mesh] || leaves(traced)) return {};
-  return point(traced.hit);
+  return wall_of(traced).point;
 }
 
 }  // namespace opaline

@@ -12,11 +12,19 @@
 
 namespace opaline {
 
+/// A point of the boundary.
+struct BoundaryPoint {
+  Vec3d position, normal;  ///< geometric, unit, out of the body
+  double offset = 0;       ///< how far from it rays start
+
+  Vec3d inside() const { return position - normal * offset; }
+  Vec3d outside() const { return position + normal * offset; }
+};
+
 /// Where a ray from inside the body ends.
 struct Wall {
   double distance = std::numeric_limits<double>::infinity();
-  Hit hit;
-  Vec3d normal;          ///< geometric, unit, out of the body
+  BoundaryPoint point;
   bool is_body = false;  ///< or something that stops light
 };
 
@@ -34,17 +42,14 @@ class BodyInside {
   Wall wall(const Vec3d& from, const Vec3d& direction, double reach) const;
 
   /// Where a ray from outside meets the body, unless something else stops it or it misses.
-  std::optional<SurfacePoint> entry(const Vec3d& from, const Vec3d& direction) const;
+  std::optional<BoundaryPoint> entry(const Vec3d& from, const Vec3d& direction) const;
 
-  SurfacePoint point(const Hit& hit) const {
-    return rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
-  }
-  /// Where rays start that leave a point of the surface along its normal (side 1) or against it (-1).
-  Vec3d moved_off(const SurfacePoint& point, double side) const {
-    return Vec3d(point.position) + Vec3d(point.geometric) * (side * double(rays_.offset(point)));
+  BoundaryPoint at(const SurfacePoint& point) const {
+    return {Vec3d(point.position), Vec3d(point.geometric), double(rays_.offset(point))};
   }
 
  private:
+  Wall wall_of(const TracedRay& traced) const;
   Wall boundary_behind(TracedRay traced, const Wall& other) const;
   bool contains(const Vec3d& point, const Vec3d& direction) const;
   bool find_overlaps(const World& world, std::span<const std::uint32_t> meshes) const;

@@ -6,16 +6,18 @@
 namespace opaline {
 namespace {
 
-constexpr double kReach = 2;   // mean free paths: farther boundaries are met by chance, not by expectation
-constexpr double kDeep = 1;    // mean free paths: deeper than that flights go without a ray
-constexpr double kVoxel = .5;  // mean free paths: edge of the safe distance's grid
+// In mean free paths; measured in src/volume/README.md.
+constexpr double kReach = 2;     // a boundary beyond is met by chance, not by expectation
+constexpr double kDeep = .5;     // where no surface is nearer than that flights go without a ray
+constexpr double kVoxel = 1;     // edge of FreeDistance's voxels, in the channel where it is least
+constexpr double kLeast = .2;    // of its first weight: below that roulette ends a walk
+constexpr double kOutside = .5;  // of its first weight: less than that outside is rounded by roulette
 constexpr std::uint64_t kMostFlights = 1'000'000;
-constexpr int kMostBounces = 16;      // outside, from one place of the body to another
-constexpr double kOutsideShare = .5;  // of a walk's first weight: what light outside is rounded to
+constexpr int kMostBounces = 16;  // outside, from one place of the body to another
 
-double surface_area(const VolumeInput& input) {
+double area_of(const VolumeInput& input) {
   double area = 0;
-  for (const std::uint32_t m : input.meshes) area += opaline::surface_area(input.world.meshes[m]);
+  for (const std::uint32_t m : input.meshes) area += surface_area(input.world.meshes[m]);
   return area;
 }
 
@@ -26,130 +28,170 @@ double least_mean_free_path(const VolumeInput& input) {
   return least;
 }
 
-/// Uniform over the sphere (Marsaglia 1972).
-Vec3d any_direction(WalkNumbers& numbers) {
-  for (;;) {
-    const auto [x, y] = numbers.next_pair();
-    const double s = x * x + y * y;
-    if (s < 1) {
-      const double k = 2 * std::sqrt(1 - s);
-      return {x * k, y * k, 1 - 2 * s};
-    }
-  }
-}
-
 }  // namespace
 
-/// One start's light: the walk inside, and those that begin where it enters again.
-struct BodyWalks::Walker {
-  const BodyWalks& body;
-  const HomogeneousMedium& medium;
-  WalkCounts& counts;
-  WalkNumbers numbers, outside_numbers;
-  double outside_weight = 0;
-  std::vector<WalkState>& pending;
-  const double sigma_t = medium.sigma_t(), albedo = medium.albedo(), reach = kReach / sigma_t,
-               deep = kDeep / sigma_t;
+/// The walks that one start brings about: the first, and those that begin where light enters again.
+class BodyWalks::Walker {
+ public:
+  /// weight: of the light that arrives
+  Walker(const BodyWalks& body, const HomogeneousMedium& medium, const SphereExits& exits, WalkCounts& counts,
+         WalkNumbers inside_numbers, WalkNumbers outside_numbers, double weight)
+      : body_(body),
+        medium_(medium),
+        exits_(exits),
+        counts_(counts),
+        numbers_(inside_numbers),
+        outside_numbers_(outside_numbers),
+        outside_weight_(kOutside * weight),
+        sigma_t_(medium.sigma_t()),
+        log_albedo_(std::log(medium.albedo())),
+        reach_(kReach / sigma_t_),
+        deep_(kDeep / sigma_t_) {}
 
-  void count(const Vec3d& position, const Vec3d& normal, double weight) {
-    counts.flux[body.cells_.at(Vec3f(position), Vec3f(normal))] += float(weight);
-  }
-
-  // Light that has left or was reflected: a ray for a share of it.
-  void send_outside(const SurfacePoint& point, const Vec3d& direction, double weight) {
-    if (weight < outside_weight) {
-      if (outside_numbers.next() * outside_weight >= weight) return;
-      weight = outside_weight;
+  void arrive(const BoundaryPoint& point, const ArrivedLight& light, double weight) {
+    const double cosine = std::min(1.0, -dot(point.normal, light.direction));
+    const double reflectance = fresnel_reflectance(cosine, medium_.eta), enters = weight * (1 - reflectance);
+    counts_.entered += enters;
+    if (enters > 0)
+      pending_.push_back(
+          {point.inside(), refracted_inward(light.direction, point.normal, medium_.eta), enters, 0});
+    if (reflectance > 0) send_outside(point, mirrored(light.direction, point.normal), weight * reflectance);
+    while (!pending_.empty()) {
+      const WalkState state = pending_.back();
+      pending_.pop_back();
+      walk(state);
     }
-    meet_again(point, direction, weight);
   }
 
-  void meet_again(const SurfacePoint& point, Vec3d direction, double weight) {
-    Vec3d from = body.inside_.moved_off(point, 1);
+ private:
+  // Light that has left or was reflected may meet the body again. Its random numbers are its own: where it never
+  // does, the walks are the same without it.
+  void send_outside(const BoundaryPoint& point, const Vec3d& direction, double weight) {
+    if (!body_.input_.reenter) return;
+    if (weight < outside_weight_) {
+      if (outside_numbers_.next() * outside_weight_ >= weight) return;
+      weight = outside_weight_;
+    }
+    meet_again(point.outside(), direction, weight);
+  }
+
+  void meet_again(Vec3d from, Vec3d direction, double weight) {
     for (int bounces = 0; bounces < kMostBounces; ++bounces) {
-      const std::optional<SurfacePoint> met = body.inside_.entry(from, direction);
+      const std::optional<BoundaryPoint> met = body_.inside_.entry(from, direction);
       if (!met) return;
-      const Vec3d normal(met->geometric);
-      const double cosine = std::min(1.0, -dot(normal, direction));
-      if (outside_numbers.next() >= fresnel_reflectance(cosine, medium.eta)) {
-        pending.push_back(
-            {body.inside_.moved_off(*met, -1), refracted_inward(direction, normal, medium.eta), weight, 0});
+      const double cosine = std::min(1.0, -dot(met->normal, direction));
+      if (outside_numbers_.next() >= fresnel_reflectance(cosine, medium_.eta)) {
+        pending_.push_back({met->inside(), refracted_inward(direction, met->normal, medium_.eta), weight, 0});
         return;
       }
-      direction = mirrored(direction, normal);
-      from = body.inside_.moved_off(*met, 1);
+      direction = mirrored(direction, met->normal);
+      from = met->outside();
     }
   }
 
   void walk(WalkState state) {
-    const double least = .2 * state.weight;
+    const double least = kLeast * state.weight, albedo = medium_.albedo();
+    const bool is_even = medium_.g == 0;
+    bool is_scattered = false;  // just now
     for (std::uint64_t flights = 0; flights < kMostFlights; ++flights) {
-      const double safe = body.safe_.at(state.position);
-      if (safe < 0) break;
-      bool collides = true;
-      if (safe > deep) {
-        const double distance = -std::log(1 - numbers.next()) / sigma_t;
-        collides = distance < safe;
-        state.position += state.direction * (collides ? distance : safe);
-        if (!collides) continue;
+      const FreeDistance::Place place = body_.free_.place_of(state.position);
+      if (place.is_outside()) break;
+      const double around = body_.free_.around(place);
+      if (is_scattered && is_even && around * sigma_t_ > SphereExits::kRadii[0]) {
+        if (!leap(state, around * sigma_t_)) return;
+        is_scattered = false;
+      } else if (around > deep_) {
+        is_scattered = fly_free(state, around);
+      } else if (body_.free_.is_free(place, state.direction)) {
+        is_scattered = fly_free(state, body_.free_.reach());
       } else {
-        collides = fly_to_wall(state);
+        is_scattered = fly_to_wall(state);
       }
-      if (collides) {
+      if (is_scattered) {
         state.weight *= albedo;
-        if (!survives_long(state.weight, ++state.collisions, numbers)) return;
+        if (!survives_long(state.weight, ++state.collisions, numbers_)) return;
         state.direction =
-            medium.g == 0 ? any_direction(numbers) : scattered(state.direction, medium.g, numbers);
+            is_even ? even_direction(numbers_) : scattered(state.direction, medium_.g, numbers_);
       }
-      if (!survives(state.weight, least, numbers)) return;
+      if (!survives(state.weight, least, numbers_)) return;
     }
-    counts.lost += state.weight;
+    counts_.lost += state.weight;
   }
 
-  // Whether the flight ends in a collision. Free paths have no memory: one that ends within reach of no wall goes
-  // on from there.
+  // Whether the flight ends in a collision. Free paths have no memory: one that is longer than `most` goes on from
+  // there.
+  bool fly_free(WalkState& state, double most) {
+    const double distance = free_path(numbers_) / sigma_t_;
+    state.position += state.direction * std::min(distance, most);
+    return distance < most;
+  }
+
+  // To the surface of the largest sphere that lies inside; whether the walk goes on.
+  bool leap(WalkState& state, double mean_free_paths) {
+    std::size_t size = 0;
+    while (size + 1 < SphereExits::kSizes && SphereExits::kRadii[size + 1] < mean_free_paths) ++size;
+    const SphereExits::Exit& exit = exits_.any(size, numbers_);
+    const Vec3d normal = even_direction(numbers_);
+    state.position += normal * (SphereExits::kRadii[size] / sigma_t_);
+    state.direction = deflected(normal, double(exit.cosine), numbers_.next_angle());
+    if (exit.collisions > 0) state.weight *= std::exp(double(exit.collisions) * log_albedo_);
+    return survives_long(state.weight, state.collisions, exit.collisions, numbers_);
+  }
+
   bool fly_to_wall(WalkState& state) {
-    const Wall wall = body.inside_.wall(state.position, state.direction, reach);
-    if (!std::isfinite(wall.distance)) {
-      const double distance = -std::log(1 - numbers.next()) / sigma_t;
-      state.position += state.direction * std::min(distance, reach);
-      return distance < reach;
-    }
-    Crossing crossing = cross(medium, state, {wall.distance, wall.normal});
+    const Wall wall = body_.inside_.wall(state.position, state.direction, reach_);
+    if (!std::isfinite(wall.distance)) return fly_free(state, reach_);
+    Crossing crossing = cross(medium_, state, {wall.distance, wall.point.normal});
     if (!wall.is_body) crossing.reflectance = 0;
-    const Flight flight = fly(medium, state.weight, {wall.distance, {}}, crossing, numbers);
-    if (!wall.is_body) counts.stopped += flight.leaving;
-    if (flight.leaving > 0 && wall.is_body) {
-      count(state.position + state.direction * wall.distance, wall.normal, flight.leaving);
-      if (body.input_.reenter)
-        send_outside(body.inside_.point(wall.hit),
-                     refracted_outward(state.direction, wall.normal, medium.eta), flight.leaving);
-    }
+    const Flight flight = fly(medium_, state.weight, {wall.distance, {}}, crossing, numbers_);
+    if (flight.leaving > 0) leave(wall, state.direction, flight.leaving);
     state.weight = flight.remaining;
     if (flight.collides) {
       state.position += state.direction * flight.distance;
     } else {
-      state.position = body.inside_.moved_off(body.inside_.point(wall.hit), -1);
-      state.direction = mirrored(state.direction, wall.normal);
+      state.position = wall.point.inside();
+      state.direction = mirrored(state.direction, wall.point.normal);
     }
     return flight.collides;
   }
+
+  void leave(const Wall& wall, const Vec3d& direction, double weight) {
+    const BoundaryPoint& point = wall.point;
+    if (!wall.is_body) {
+      counts_.stopped += weight;
+      return;
+    }
+    counts_.flux[body_.cells_.at(Vec3f(point.position), Vec3f(point.normal))] += float(weight);
+    send_outside(point, refracted_outward(direction, point.normal, medium_.eta), weight);
+  }
+
+  const BodyWalks& body_;
+  const HomogeneousMedium& medium_;
+  const SphereExits& exits_;
+  WalkCounts& counts_;
+  WalkNumbers numbers_, outside_numbers_;
+  double outside_weight_, sigma_t_, log_albedo_, reach_, deep_;
+  std::vector<WalkState> pending_;
 };
 
 BodyWalks::BodyWalks(const VolumeInput& input, std::size_t starts)
     : input_(input),
-      points_(input.rays, input.world, input.meshes, surface_area(input) / double(starts)),
+      points_(input.rays, input.world, input.meshes, .5 * area_of(input) / double(input.samples.size())),
       inside_(input.rays, input.world, input.meshes),
-      safe_(input.world, inside_.box(), kVoxel * least_mean_free_path(input)),
+      free_(input.world, inside_.box(), kVoxel * least_mean_free_path(input), kReach / kVoxel),
       cells_(input.samples, &input.world),
       starts_(starts) {}
 
+SphereExits BodyWalks::exits_of(std::size_t pass) const {
+  constexpr std::size_t kFewest = 64, kMost = 8192, kStarts = 8;
+  return {std::clamp(starts_ / kStarts, kFewest, kMost), hash_bits(input_.seed + 1, pass)};
+}
+
 // Channels of a light have the starts in common: what differs between them is not their noise.
-WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chunk) const {
-  const HomogeneousMedium& medium = input_.media[job.channel];
+WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chunk,
+                           const SphereExits& exits) const {
   WalkCounts counts;
   counts.flux.resize(input_.samples.size());
-  std::vector<WalkState> pending;
   std::size_t hint = 0;
   for (std::size_t k = starts_ * chunk / kChunks; k < starts_ * (chunk + 1) / kChunks; ++k) {
     const std::uint64_t start = pass * starts_ + k;
@@ -160,27 +202,10 @@ WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chu
     const ArrivedLight light = light_at(input_.rays, job.lights, job.unit_emission, entry, numbers);
     const double irradiance = light.irradiance[job.channel];
     if (!(irradiance > 0)) continue;
-    const Vec3d normal(entry.geometric);
-    const double reflectance = fresnel_reflectance(std::min(1.0, -dot(normal, light.direction)), medium.eta);
-    const double weight = irradiance * (1 - reflectance);
-    counts.entered += weight;
-    Walker walker{*this,
-                  medium,
-                  counts,
-                  WalkNumbers(job.seed + 1 + 2 * job.channel, start),
-                  WalkNumbers(job.seed + 2 + 2 * job.channel, start),
-                  kOutsideShare * irradiance,
-                  pending};
-    if (weight > 0)
-      pending.push_back(
-          {inside_.moved_off(entry, -1), refracted_inward(light.direction, normal, medium.eta), weight, 0});
-    if (input_.reenter && reflectance > 0)
-      walker.send_outside(entry, mirrored(light.direction, normal), irradiance * reflectance);
-    while (!pending.empty()) {
-      const WalkState state = pending.back();
-      pending.pop_back();
-      walker.walk(state);
-    }
+    Walker(*this, input_.media[job.channel], exits, counts,
+           WalkNumbers(job.seed + 1 + 2 * job.channel, start),
+           WalkNumbers(job.seed + 2 + 2 * job.channel, start), irradiance)
+        .arrive(inside_.at(entry), light, irradiance);
   }
   return counts;
 }

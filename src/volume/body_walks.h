@@ -11,8 +11,9 @@
 #include "opaline/volume/nearest_sample.h"
 #include "opaline/volume/volume_exitance.h"
 #include "volume/body_inside.h"
+#include "volume/free_distance.h"
 #include "volume/light_entry.h"
-#include "volume/safe_distance.h"
+#include "volume/sphere_exits.h"
 
 namespace opaline {
 
@@ -35,17 +36,22 @@ class BodyWalks {
   /// starts: of a pass
   BodyWalks(const VolumeInput& input, std::size_t starts);
 
+  /// For all walks of a pass, whatever their light and channel. Each pass has its own, so that what is chance in
+  /// them is chance of the pass.
+  SphereExits exits_of(std::size_t pass) const;
+
   /// A pass spreads its starts evenly over the surface. Of them, those of one of kChunks stretches.
-  WalkCounts walk(const WalkJob& job, std::size_t pass, std::size_t chunk) const;
+  /// exits: those of the pass
+  WalkCounts walk(const WalkJob& job, std::size_t pass, std::size_t chunk, const SphereExits& exits) const;
   static constexpr std::size_t kChunks = 16;
 
  private:
-  struct Walker;
+  class Walker;
 
   const VolumeInput& input_;
   EvenPoints points_;
   BodyInside inside_;
-  SafeDistance safe_;
+  FreeDistance free_;
   NearestSample cells_;
   std::size_t starts_;
 };

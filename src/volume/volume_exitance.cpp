@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "opaline/core/parallel.h"
 #include "opaline/lights/light.h"
@@ -204,10 +205,15 @@ class Walks {
 
   void add_together(std::span<const Job> jobs) const {
     constexpr std::size_t kChunks = BodyWalks::kChunks;
+    std::map<std::size_t, SphereExits> exits;
+    for (const Job& job : jobs)
+      if (const std::size_t pass = sums(job).passes; !exits.contains(pass))
+        exits.emplace(pass, walks_.exits_of(pass));
     std::vector<WalkCounts> counts(jobs.size() * kChunks);
     parallel_chunks(counts.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
       const Job& job = jobs[i / kChunks];
-      counts[i] = walks_.walk(of(job), sums(job).passes, i % kChunks);
+      const std::size_t pass = sums(job).passes;
+      counts[i] = walks_.walk(of(job), pass, i % kChunks, exits.at(pass));
       advance(input_.monitor, 1);
     });
     for (std::size_t j = 0; j < jobs.size(); ++j)

@@ -84,6 +84,14 @@ TEST(SceneValues, Media) {
   EXPECT_EQ(physical(R"("sigma_a": 0, "sigma_s_prime": 0)").sigma_s_prime, Rgb());
   EXPECT_NEAR(physical(R"("sigma_a": 0, "sigma_s": 1, "g": 0.999)").sigma_s_prime.x, 0.001, 1e-15);
   EXPECT_NEAR(physical(R"("sigma_a": 0, "sigma_s": 1, "g": -0.999)").sigma_s_prime.x, 1.999, 1e-15);
+  const Scene anisotropic = parse(R"({"media": {"a": {"preset": "marble", "scatter_anisotropy": 0.95},
+      "b": {"sigma_a": 0, "sigma_s_prime": 2, "scatter_anisotropy": -0.95}, "c": {"sigma_a": 0, "sigma_s": 4, "g": 0.5},
+      "d": {"preset": "marble"}}})");
+  const std::vector<double> anisotropies{.95, -.95, .5, 0};
+  for (std::size_t m = 0; m < anisotropies.size(); ++m)
+    EXPECT_EQ(anisotropic.media[m].scatter_anisotropy, anisotropies[m]);
+  EXPECT_EQ(std::get<PhysicalMedium>(anisotropic.media[0].coefficients),
+            std::get<PhysicalMedium>(anisotropic.media[3].coefficients));
   for (const char* albedo : {"0", "0.999", "1", "[0, 0.5, 1]"})
     EXPECT_NO_THROW(artist(R"("subsurface_radius": 0, "subsurface_color": )" + std::string(albedo)))
         << albedo;

@@ -115,7 +115,7 @@ TEST(CameraPaths, TwoOverlappingBoxes) {
       });
     };
     const Vec3d middle{-1, -1, 0};
-    expect_agreement(walked_patches(body, middle, 16), seen_patches(body, middle, 800000, is_inside));
+    expect_agreement(walked_patches(body, middle, 24), seen_patches(body, middle, 1000000, is_inside));
   }
 }
 

@@ -68,6 +68,7 @@ class RayScene {
   /// How far to move the origin of a ray off the surface of a mesh, along the geometric normal: 2^-18 of
   /// the mesh's diagonal, more where floats far from the middle of the world are coarser.
   float offset(const SurfacePoint& point) const { return point.offset > 0 ? point.offset : largest_offset_; }
+  float offset(std::uint32_t mesh, const Vec3f& position) const;
 
   /// Rays traced so far and the CPU time spent inside Embree for them, all threads: the floor of a render
   /// pass. Every eighth batch is timed, for the clock itself costs as much as ten rays.

@@ -79,6 +79,34 @@ inline bool survives_long(double& weight, std::uint64_t collisions, WalkNumbers&
   return numbers.next() < .5;
 }
 
+/// The same where some more collisions come at once; `collisions` becomes their sum.
+inline bool survives_long(double& weight, std::uint64_t& collisions, std::uint64_t more,
+                          WalkNumbers& numbers) {
+  constexpr std::uint64_t kFirst = 1024;
+  std::uint64_t next = kFirst;
+  while (next <= collisions) next *= 4;
+  collisions += more;
+  for (; next <= collisions; next *= 4) {
+    weight *= 2;
+    if (numbers.next() >= .5) return false;
+  }
+  return true;
+}
+
+/// In mean free paths.
+inline double free_path(WalkNumbers& numbers) {
+  return -std::log(1 - numbers.next());
+}
+
+/// Uniform over the sphere (Marsaglia 1972).
+inline Vec3d even_direction(WalkNumbers& numbers) {
+  for (;;) {
+    const auto [x, y] = numbers.next_pair();
+    const double s = x * x + y * y, k = 2 * std::sqrt(std::max(0.0, 1 - s));
+    if (s < 1) return {x * k, y * k, 1 - 2 * s};
+  }
+}
+
 inline Vec3d scattered(const Vec3d& direction, double g, WalkNumbers& numbers) {
   const double cosine = sample_henyey_greenstein(g, numbers.next());
   return deflected(direction, cosine, numbers.next_angle());
