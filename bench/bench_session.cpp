@@ -15,6 +15,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "opaline/lights/light.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 #include "user_seconds.h"
@@ -52,13 +53,7 @@ double sum(const PartSeconds& seconds) {
 }
 
 void tint(Light& light) {
-  std::visit(
-      [](auto& source) {
-        if constexpr (requires { source.intensity; }) source.intensity *= 1.1;
-        if constexpr (requires { source.radiance; }) source.radiance *= 1.1;
-        if constexpr (requires { source.irradiance; }) source.irradiance *= 1.1;
-      },
-      light.source);
+  light = with_emission(light, emission(light) * 1.1);
 }
 
 void print_edits(const Scene& base) {

@@ -3,6 +3,7 @@
 
 #include "cli/report.h"
 #include "opaline/core/units.h"
+#include "opaline/lights/light.h"
 #include "opaline/scene/names.h"
 
 namespace opaline {
@@ -29,7 +30,9 @@ std::string picture_text(const Film& film) {
 
 std::string lights_text(const std::vector<Light>& lights) {
   std::string text;
-  for (const Light& light : lights) {
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const Light& light = lights[l];
+    if (l > 0 && share_rays(lights[l - 1], light)) continue;
     const std::string kind(name_of(light.source));
     text += (text.empty() ? "" : ", ") + light.name + (light.name == kind ? "" : " (" + kind + ")");
   }
@@ -71,8 +74,9 @@ Json group_json(const Scene& scene, const GroupPlan& group) {
 
 Json plan_json(const Scene& scene, const Plan& plan) {
   Json lights = Json::array(), groups = Json::array();
-  for (const Light& light : scene.lights)
-    lights.push_back({{"name", light.name}, {"type", name_of(light.source)}});
+  for (std::size_t l = 0; l < scene.lights.size(); ++l)
+    if (l == 0 || !share_rays(scene.lights[l - 1], scene.lights[l]))
+      lights.push_back({{"name", scene.lights[l].name}, {"type", name_of(scene.lights[l].source)}});
   for (const GroupPlan& group : plan.groups) groups.push_back(group_json(scene, group));
   Json json{{"scene", scene.file},
             {"method", name_of(scene.settings.method)},

@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include <csignal>
+#include <map>
 #include <optional>
 
 #include "cli/commands.h"
@@ -136,10 +137,13 @@ Summary summarize(const Session& session, const Shading& shading) {
       summary.walks = std::max(summary.walks, group.volume->walks);
       summary.walk_noise = std::max(summary.walk_noise, group.volume->relative_error);
     }
-    for (std::size_t l = 0; l < group.transfers.size(); ++l)
-      if (group.transfers[l].relative_error > 0)
-        summary.noise.push_back(
-            {group.plan.name, session.scene().lights[l].name, group.transfers[l].relative_error});
+    std::map<std::string, double> noise;  // the largest of a light's channels
+    for (std::size_t l = 0; l < group.transfers.size(); ++l) {
+      double& largest = noise[session.scene().lights[l].name];
+      largest = std::max(largest, group.transfers[l].relative_error);
+    }
+    for (const auto& [light, error] : noise)
+      if (error > 0) summary.noise.push_back({group.plan.name, light, error});
   }
   return summary;
 }

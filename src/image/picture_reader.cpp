@@ -20,7 +20,7 @@
 namespace opaline {
 namespace {
 
-/// "exr" or "png" by the first bytes. OpenImageIO would try every format it knows, and finds a Targa in
+/// "exr", "hdr" or "png" by the first bytes. OpenImageIO would try every format it knows, and finds a Targa in
 /// noise.
 const char* format_of(const std::string& path) {
   std::error_code failure;
@@ -32,10 +32,11 @@ const char* format_of(const std::string& path) {
   char bytes[8] = {};
   file.read(bytes, sizeof bytes);
   const std::string_view start(bytes, static_cast<std::size_t>(file.gcount()));
-  if (start.empty()) throw bad_file(path, "the file is empty", "an EXR or PNG picture");
+  if (start.empty()) throw bad_file(path, "the file is empty", "an EXR, HDR or PNG picture");
   if (start.starts_with("\x76\x2f\x31\x01")) return "exr";
   if (start == "\x89PNG\r\n\x1a\n") return "png";
-  throw bad_file(path, "not a picture that can be read", "an EXR or PNG picture");
+  if (start.starts_with("#?RADIAN") || start.starts_with("#?RGBE")) return "hdr";
+  throw bad_file(path, "not a picture that can be read", "an EXR, HDR or PNG picture");
 }
 
 std::string one_line(std::string message) {

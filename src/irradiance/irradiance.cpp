@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "irradiance/shadow_batch.h"
@@ -58,49 +59,53 @@ struct ErrorSums {
   double variance = 0, sum = 0;
 };
 
-// unblocked: what the weights would be were nothing in the way.
-LightTransfer transfer_from(const IrradianceInput& input, const Light& light, std::uint64_t seed,
-                            std::vector<float>& unblocked) {
-  LightTransfer transfer;
-  transfer.weights.resize(input.samples.size());
-  unblocked.resize(input.samples.size());
+// Of lights that share their rays; unblocked: what the weights would be were nothing in the way.
+void trace_transfers(const IrradianceInput& input, std::span<const Light> lights,
+                     std::span<LightTransfer> transfers, std::span<std::vector<float>> unblocked) {
+  const std::size_t n = input.samples.size();
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    transfers[l].weights.resize(n);
+    unblocked[l].resize(n);
+  }
   // A single ray a point: enough of them that many lie together.
   constexpr std::size_t kSinglePoints = 4096;
-  const std::size_t batch_size = is_delta(light) ? kSinglePoints : batch_points(input.light_samples);
-  std::vector<ErrorSums> errors(chunk_count(input.samples.size(), batch_size));
-  parallel_chunks(input.samples.size(), batch_size,
-                  [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-                    ShadowBatch batch(input.rays, light, input.eta, input.light_samples, seed);
-                    batch.scatter();
-                    batch.reserve(end - begin);
-                    for (std::size_t i = begin; i < end; ++i) {
-                      const SurfaceSample& s = input.samples[i];
-                      batch.add(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v), i);
-                    }
-                    const Halves halves(batch.samples());
-                    std::vector<std::array<double, 2>> sums(end - begin);
-                    batch.trace([&](std::size_t p, int s, float e, float free) {
-                      sums[p][halves.of(s)] += double(e);
-                      unblocked[begin + p] += free;
-                    });
-                    for (std::size_t p = 0; p < sums.size(); ++p) {
-                      const double sum = sums[p][0] + sums[p][1];
-                      transfer.weights[begin + p] = float(sum);
-                      const double deviation = halves.deviation(sums[p]);
-                      errors[chunk].variance += deviation * deviation;
-                      errors[chunk].sum += sum;
-                    }
-                    advance(input.monitor, end - begin);
-                  });
-  if (is_delta(light) || input.light_samples < 2) return transfer;
-  ErrorSums all;
-  for (const ErrorSums& e : errors) {
-    all.variance += e.variance;
-    all.sum += e.sum;
+  const std::size_t batch_size = is_delta(lights[0]) ? kSinglePoints : batch_points(input.light_samples);
+  std::vector<std::vector<ErrorSums>> errors(lights.size(),
+                                             std::vector<ErrorSums>(chunk_count(n, batch_size)));
+  parallel_chunks(n, batch_size, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    ShadowBatch batch(input.rays, lights, input.eta, input.light_samples, light_seed(input.seed, lights[0]));
+    batch.scatter();
+    batch.reserve(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      const SurfaceSample& s = input.samples[i];
+      batch.add(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v), i);
+    }
+    const Halves halves(batch.samples());
+    std::vector<std::vector<std::array<double, 2>>> sums(lights.size(),
+                                                         std::vector<std::array<double, 2>>(end - begin));
+    batch.trace_lights([&](std::size_t l, std::size_t p, int s, float e, float free) {
+      sums[l][p][halves.of(s)] += double(e);
+      unblocked[l][begin + p] += free;
+    });
+    for (std::size_t l = 0; l < lights.size(); ++l)
+      for (std::size_t p = 0; p < end - begin; ++p) {
+        const double sum = sums[l][p][0] + sums[l][p][1], deviation = halves.deviation(sums[l][p]);
+        transfers[l].weights[begin + p] = float(sum);
+        errors[l][chunk].variance += deviation * deviation;
+        errors[l][chunk].sum += sum;
+      }
+    advance(input.monitor, (end - begin) * lights.size());
+  });
+  if (is_delta(lights[0]) || input.light_samples < 2) return;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    ErrorSums all;
+    for (const ErrorSums& e : errors[l]) {
+      all.variance += e.variance;
+      all.sum += e.sum;
+    }
+    if (all.sum > 0)
+      transfers[l].relative_error = std::sqrt(all.variance / double(n)) / (all.sum / double(n));
   }
-  const double n = double(input.samples.size());
-  if (all.sum > 0) transfer.relative_error = std::sqrt(all.variance / n) / (all.sum / n);
-  return transfer;
 }
 
 }  // namespace
@@ -108,11 +113,13 @@ LightTransfer transfer_from(const IrradianceInput& input, const Light& light, st
 std::vector<LightTransfer> compute_irradiance(const IrradianceInput& input) {
   if (input.monitor != nullptr)
     input.monitor->begin("irradiance", input.samples.size() * input.lights.size());
-  std::vector<LightTransfer> transfers;
+  std::vector<LightTransfer> transfers(input.lights.size());
   std::vector<std::vector<float>> unblocked(input.lights.size());
-  for (std::size_t l = 0; l < input.lights.size(); ++l)
-    transfers.push_back(
-        transfer_from(input, input.lights[l], light_seed(input.seed, input.lights[l]), unblocked[l]));
+  for (std::size_t l = 0, count = 0; l < input.lights.size(); l += count) {
+    count = sharing_rays(input.lights.subspan(l));
+    trace_transfers(input, input.lights.subspan(l, count), std::span(transfers).subspan(l, count),
+                    std::span(unblocked).subspan(l, count));
+  }
   refine_shadow_edges(input, unblocked, transfers);
   return transfers;
 }
@@ -126,33 +133,48 @@ std::vector<RgbF> combine_lights(std::span<const LightTransfer> transfers, std::
   return irradiance;
 }
 
-PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light) {
+namespace {
+
+// To lights that share their rays.
+std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std::span<const Light> lights) {
   const std::size_t n = input.points.size(), batch_size = batch_points(input.light_samples);
-  PointTransfers transfers;
-  transfers.weights.resize(n);
-  if (!input.variance.empty()) transfers.deviations.resize(n);
-  ShadowBatch batch(input.rays, input.lights[light], input.eta, input.light_samples,
-                    light_seed(input.seed, input.lights[light]));
+  std::vector<PointTransfers> transfers(lights.size());
+  for (PointTransfers& t : transfers) {
+    t.weights.resize(n);
+    if (!input.variance.empty()) t.deviations.resize(n);
+  }
+  ShadowBatch batch(input.rays, lights, input.eta, input.light_samples, light_seed(input.seed, lights[0]));
   const Halves halves(batch.samples());
-  std::vector<std::array<double, 2>> sums;  // over the halves of a point's rays
+  std::vector<std::array<double, 2>> sums;  // over the halves of a point's rays, light by light
   batch.reserve(std::min(batch_size, n));
   for (std::size_t begin = 0; begin < n; begin += batch_size) {
-    const std::size_t end = std::min(n, begin + batch_size);
-    for (std::size_t i = begin; i < end; ++i) batch.add(input.points[i], input.keys[i]);
+    const std::size_t count = std::min(n - begin, batch_size);
+    for (std::size_t i = begin; i < begin + count; ++i) batch.add(input.points[i], input.keys[i]);
     if (batch.samples() < 2) {
-      batch.trace([&](std::size_t p, int, float e, float) { transfers.weights[begin + p] = e; });
+      batch.trace_lights(
+          [&](std::size_t l, std::size_t p, int, float e, float) { transfers[l].weights[begin + p] = e; });
       continue;
     }
-    sums.assign(end - begin, {});
-    batch.trace([&](std::size_t p, int s, float e, float) { sums[p][halves.of(s)] += double(e); });
-    for (std::size_t p = 0; p < sums.size(); ++p) {
-      transfers.weights[begin + p] = float(sums[p][0] + sums[p][1]);
-      if (!transfers.deviations.empty()) transfers.deviations[begin + p] = float(halves.deviation(sums[p]));
-    }
+    sums.assign(count * lights.size(), {});
+    batch.trace_lights([&](std::size_t l, std::size_t p, int s, float e, float) {
+      sums[l * count + p][halves.of(s)] += double(e);
+    });
+    for (std::size_t l = 0; l < lights.size(); ++l)
+      for (std::size_t p = 0; p < count; ++p) {
+        const std::array<double, 2>& sum = sums[l * count + p];
+        transfers[l].weights[begin + p] = float(sum[0] + sum[1]);
+        if (!input.variance.empty()) transfers[l].deviations[begin + p] = float(halves.deviation(sum));
+      }
   }
-  if (!transfers.deviations.empty() && !is_delta(input.lights[light]))
-    fit_to_neighbours(transfers.weights, batch.samples() < 2, transfers.deviations);
+  if (!input.variance.empty() && !is_delta(lights[0]))
+    for (PointTransfers& t : transfers) fit_to_neighbours(t.weights, batch.samples() < 2, t.deviations);
   return transfers;
+}
+
+}  // namespace
+
+PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light) {
+  return std::move(transfers_to(input, input.lights.subspan(light, 1))[0]);
 }
 
 void for_each_ray(const PointIrradianceInput& input, std::size_t light, const UseOfRay& use) {
@@ -171,7 +193,10 @@ void for_each_ray(const PointIrradianceInput& input, std::size_t light, const Us
 
 std::vector<PointTransfers> transfers_at(const PointIrradianceInput& input) {
   std::vector<PointTransfers> transfers;
-  for (std::size_t l = 0; l < input.lights.size(); ++l) transfers.push_back(transfers_at(input, l));
+  for (std::size_t l = 0, count = 0; l < input.lights.size(); l += count) {
+    count = sharing_rays(input.lights.subspan(l));
+    std::ranges::move(transfers_to(input, input.lights.subspan(l, count)), std::back_inserter(transfers));
+  }
   return transfers;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "opaline/core/morton.h"
@@ -20,12 +21,27 @@ inline std::size_t batch_points(int light_samples) {
   return std::clamp<std::size_t>(16384 / std::size_t(light_samples), 1, 256);
 }
 
-/// Shadow rays of a batch of points towards one light, with what each carries if nothing blocks it.
+/// How many lights, from the first on, share their rays.
+inline std::size_t sharing_rays(std::span<const Light> lights) {
+  const auto other = std::find_if(lights.begin() + 1, lights.end(),
+                                  [&](const Light& l) { return !share_rays(lights[0], l); });
+  return std::size_t(other - lights.begin());
+}
+
+/// Shadow rays of a batch of points towards one light, with what each carries if nothing blocks it; or towards
+/// lights that share their rays.
 class ShadowBatch {
  public:
   /// samples: rays a point; 1 for lights without an area, whatever is asked.
+  ShadowBatch(const RayScene& rays, std::span<const Light> lights, double eta, int samples,
+              std::uint64_t seed)
+      : rays_(rays),
+        lights_(lights),
+        eta_(float(eta)),
+        samples_(is_delta(lights[0]) ? 1 : samples),
+        seed_(seed) {}
   ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
-      : rays_(rays), light_(light), eta_(float(eta)), samples_(is_delta(light) ? 1 : samples), seed_(seed) {}
+      : ShadowBatch(rays, std::span(&light, 1), eta, samples, seed) {}
 
   /// To be told where points that follow each other do not lie together.
   void scatter() { scattered_ = samples_ == 1; }
@@ -36,7 +52,7 @@ class ShadowBatch {
   int samples() const { return samples_; }
 
   void reserve(std::size_t points) {
-    carried_.reserve(points * std::size_t(samples_));
+    carried_.reserve(points * std::size_t(samples_) * lights_.size());
     shadow_.reserve(points * std::size_t(samples_));
   }
 
@@ -44,42 +60,56 @@ class ShadowBatch {
   /// among them it begins.
   void add(const SurfacePoint& point, std::uint64_t index, std::uint64_t first = 0) {
     std::array<double, 2> shift{};
-    if (!is_delta(light_))
+    if (!is_delta(lights_[0]))
       shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
     for (int s = 0; s < samples_; ++s) {
-      const LightSample sample = sample_light(light_, point.position, point.normal,
-                                              r2_point(first + std::uint64_t(s), shift), samples_);
+      const std::array<double, 2> square = r2_point(first + std::uint64_t(s), shift);
+      LightSample sample = sample_light(lights_[0], point.position, point.normal, square, samples_);
       const float cosine = dot(point.normal, sample.direction);
-      float carried = 0;
-      if (sample.weight > 0 && cosine > 0 && dot(point.geometric, sample.direction) > 0) {
-        carried =
-            sample.weight * cosine * (eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f);
+      const bool is_above = cosine > 0 && dot(point.geometric, sample.direction) > 0;
+      const float transmitted =
+          is_above && eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f;
+      bool is_carried = false;
+      for (std::size_t l = 0; l < lights_.size(); ++l) {
+        if (l > 0) sample = sample_light(lights_[l], point.position, point.normal, square, samples_);
+        carried_.push_back(is_above && sample.weight > 0 ? sample.weight * cosine * transmitted : 0);
+        is_carried |= carried_.back() > 0;
       }
-      carried_.push_back(carried);
       if (keeps_directions_) directions_.push_back(sample.direction);
-      if (carried > 0) {
+      if (is_carried) {
         const Vec3f origin = point.position + point.geometric * rays_.offset(point);
         shadow_.push_back({origin, sample.direction, sample.distance * 0.9999f});
       }
     }
   }
 
-  /// Calls use(point in batch, sample, contribution, contribution were nothing in the way) for each ray in
+  /// Calls use(light, point in batch, sample, contribution, contribution were nothing in the way) for each ray in
   /// order, then forgets them.
   template <class Use>
-  void trace(const Use& use) {
+  void trace_lights(const Use& use) {
     if (scattered_ && shadow_.size() > kSorted)
       trace_sorted();
     else
       rays_.occluded(shadow_);
     std::size_t ray = 0;
-    for (std::size_t i = 0; i < carried_.size(); ++i) {
-      const bool lit = carried_[i] > 0 && shadow_[ray++].far >= 0;
-      use(i / std::size_t(samples_), int(i % std::size_t(samples_)), lit ? carried_[i] : 0.0f, carried_[i]);
+    const std::size_t lights = lights_.size();
+    for (std::size_t i = 0; i < carried_.size(); i += lights) {
+      const std::span<const float> carried(&carried_[i], lights);
+      const bool lit = std::ranges::any_of(carried, [](float c) { return c > 0; }) && shadow_[ray++].far >= 0;
+      const std::size_t sample = i / lights;
+      for (std::size_t l = 0; l < lights; ++l)
+        use(l, sample / std::size_t(samples_), int(sample % std::size_t(samples_)), lit ? carried[l] : 0.0f,
+            carried[l]);
     }
     carried_.clear();
     shadow_.clear();
     directions_.clear();
+  }
+
+  /// Where there is one light: use(point in batch, sample, ...).
+  template <class Use>
+  void trace(const Use& use) {
+    trace_lights([&](std::size_t, std::size_t p, int s, float e, float free) { use(p, s, e, free); });
   }
 
   /// Towards the light, of a point's sample: while `trace` calls `use`.
@@ -112,7 +142,7 @@ class ShadowBatch {
   }
 
   const RayScene& rays_;
-  const Light& light_;
+  std::span<const Light> lights_;
   float eta_;
   int samples_;
   std::uint64_t seed_;

@@ -82,6 +82,14 @@ LightSample LightOf<DirectionalLight>::sample(const DirectionalLight& light, con
 }
 
 template <>
+float LightOf<DirectionalLight>::density(const DirectionalLight& light, const Vec3f&, const Vec3f&,
+                                         const Vec3f& direction) {
+  if (light.angle == 0) return 0;
+  const double drop = cap(half_sine2(light));
+  return -dot(Vec3d(direction), light.direction) < 1 - drop ? 0 : float(1 / (2 * std::numbers::pi * drop));
+}
+
+template <>
 EmitterHit LightOf<DirectionalLight>::intersect(const DirectionalLight&, const Vec3f&, const Vec3f&, float) {
   return {};
 }

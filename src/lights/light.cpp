@@ -19,8 +19,32 @@ Rgb emission(const Light& light) {
   return by_kind(light, [](const auto& kind, auto of) { return of.emission(kind); });
 }
 
+Light with_emission(const Light& light, const Rgb& emission) {
+  Light coloured = light;
+  std::visit(
+      [&](auto& source) {
+        if constexpr (requires { source.intensity; })
+          source.intensity = emission;
+        else if constexpr (requires { source.radiance; })
+          source.radiance = emission;
+        else if constexpr (requires { source.strength; })
+          source.strength = emission;
+        else
+          source.irradiance = emission;  // a kind with another name for its colour does not compile
+      },
+      coloured.source);
+  return coloured;
+}
+
 bool is_delta(const Light& light) {
   return by_kind(light, [](const auto& kind, auto of) { return of.is_delta(kind); });
+}
+
+bool share_rays(const Light& a, const Light& b) {
+  const auto *one = std::get_if<EnvironmentLight>(&a.source),
+             *other = std::get_if<EnvironmentLight>(&b.source);
+  return one != nullptr && other != nullptr && a.name == b.name && one->picture == other->picture &&
+         one->rotation == other->rotation;
 }
 
 std::uint64_t light_seed(std::uint64_t seed, const Light& light) {
@@ -40,6 +64,11 @@ LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& no
                          std::array<double, 2> unit_square, int samples) {
   return by_kind(
       light, [&](const auto& kind, auto of) { return of.sample(kind, point, normal, unit_square, samples); });
+}
+
+float sampling_density(const Light& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction) {
+  return by_kind(light,
+                 [&](const auto& kind, auto of) { return of.density(kind, point, normal, direction); });
 }
 
 EmitterHit intersect_emitter(const Light& light, const Vec3f& origin, const Vec3f& direction, float far) {

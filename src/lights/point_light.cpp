@@ -52,6 +52,11 @@ LightSample LightOf<PointLight>::sample(const PointLight& light, const Vec3f& po
 }
 
 template <>
+float LightOf<PointLight>::density(const PointLight&, const Vec3f&, const Vec3f&, const Vec3f&) {
+  return 0;
+}
+
+template <>
 EmitterHit LightOf<PointLight>::intersect(const PointLight&, const Vec3f&, const Vec3f&, float) {
   return {};
 }

@@ -2,6 +2,7 @@
 // A flat lamp that shines on one side.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lights/light_of.h"
 #include "opaline/scene/light_reader.h"
@@ -75,6 +76,15 @@ EmitterHit LightOf<QuadLight>::intersect(const QuadLight& light, const Vec3f& or
   const double n2 = dot(n, n), u = dot(cross(p, light.v), n) / n2, v = dot(cross(light.u, p), n) / n2;
   if (u >= 0 && u <= 1 && v >= 0 && v <= 1) return {true, float(t), RgbF(light.radiance)};
   return {};
+}
+
+template <>
+float LightOf<QuadLight>::density(const QuadLight& light, const Vec3f& point, const Vec3f&,
+                                  const Vec3f& direction) {
+  const EmitterHit met = intersect(light, point, direction, std::numeric_limits<float>::infinity());
+  if (!met.hit) return 0;
+  const double facing = -dot(cross(light.u, light.v), Vec3d(direction));
+  return float(double(met.t) * double(met.t) / facing);
 }
 
 template <>

@@ -2,6 +2,7 @@
 // A ball that glows.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "lights/light_of.h"
@@ -80,6 +81,17 @@ EmitterHit LightOf<SphereLight>::intersect(const SphereLight& light, const Vec3f
   const double half = std::sqrt(inside / a), t = b / a - half > 0 ? b / a - half : b / a + half;
   if (t > 0 && t < far) return {true, float(t), RgbF(light.radiance)};
   return {};
+}
+
+template <>
+float LightOf<SphereLight>::density(const SphereLight& light, const Vec3f& point, const Vec3f&,
+                                    const Vec3f& direction) {
+  const Vec3d to_center = light.center - Vec3d(point);
+  const double d2 = dot(to_center, to_center), r2 = light.radius * light.radius;
+  if (d2 <= r2) return float(.25 * std::numbers::inv_pi);
+  if (!intersect(light, point, direction, std::numeric_limits<float>::infinity()).hit) return 0;
+  const double sin2 = r2 / d2, one_minus_cos = sin2 / (1 + std::sqrt(1 - sin2));
+  return float(1 / (2 * std::numbers::pi * one_minus_cos));
 }
 
 template <>

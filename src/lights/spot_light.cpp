@@ -90,6 +90,11 @@ LightSample LightOf<SpotLight>::sample(const SpotLight& light, const Vec3f& poin
 }
 
 template <>
+float LightOf<SpotLight>::density(const SpotLight&, const Vec3f&, const Vec3f&, const Vec3f&) {
+  return 0;
+}
+
+template <>
 EmitterHit LightOf<SpotLight>::intersect(const SpotLight&, const Vec3f&, const Vec3f&, float) {
   return {};
 }

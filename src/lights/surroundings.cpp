@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The same radiance from all around. A key of the scene, not an entry of `lights`.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -47,6 +48,12 @@ LightSample LightOf<Surroundings>::sample(const Surroundings&, const Vec3f&, con
   const Vec3f direction =
       x * float(radius * std::cos(phi)) + y * float(radius * std::sin(phi)) + normal * float(cosine);
   return {direction, std::numeric_limits<float>::infinity(), float(std::numbers::pi / (cosine * samples))};
+}
+
+template <>
+float LightOf<Surroundings>::density(const Surroundings&, const Vec3f&, const Vec3f& normal,
+                                     const Vec3f& direction) {
+  return std::max(0.0f, dot(normal, direction)) * std::numbers::inv_pi_v<float>;
 }
 
 template <>

@@ -102,7 +102,7 @@ std::vector<Body> draft_groups(const PrecomputeInput& input) {
     const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
     SurfaceSamples surface =
         draft_samples(input.world, plan.meshes, std::max(kFewest, plan.samples / kFewer));
-    SplitKernel kernel = group_kernel(profile, surface, input.world, input.scene.settings);
+    SplitKernel kernel = group_kernel(profile, surface, input.world, input.scene);
     std::vector<LightTransfer> transfers = light_samples(input, g, surface.samples, lights);
     std::vector<RgbF> irradiance = combine_lights(transfers, lights);
     Octree octree = gather_flux(surface.samples, irradiance);

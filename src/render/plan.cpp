@@ -256,10 +256,14 @@ std::string walks_stage(const Settings& settings) {
 }
 
 std::string irradiance_stage(const Scene& scene) {
-  std::size_t rays = 0;
-  for (const Light& light : scene.lights)
+  std::size_t lights = 0, rays = 0;
+  for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+    const Light& light = scene.lights[l];
+    if (l > 0 && share_rays(scene.lights[l - 1], light)) continue;
+    ++lights;
     rays += is_delta(light) ? 1 : std::size_t(scene.settings.light_samples);
-  return fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample", scene.lights.size(), rays);
+  }
+  return fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample", lights, rays);
 }
 
 void list_stages(const Scene& scene, Plan& plan) {

@@ -135,10 +135,20 @@ Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF>
   return build_octree(std::move(flux));
 }
 
+NearIrradiance near_irradiance(const Scene& scene) {
+  const auto is_all_around = [](const Light& light) {
+    const LightExtent shape = extent(light);
+    return !is_delta(light) && !shape.center && !shape.towards;
+  };
+  const NearIrradiance wanted = scene.settings.near_irradiance;
+  const bool is_soft = !scene.lights.empty() && std::ranges::all_of(scene.lights, is_all_around);
+  return wanted == NearIrradiance::mixed && is_soft ? NearIrradiance::samples : wanted;
+}
+
 SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,
-                         const Settings& settings) {
-  return make_split_kernel(profile, surface.spacing(), world.diagonal, settings.near_field,
-                           settings.near_irradiance);
+                         const Scene& scene) {
+  return make_split_kernel(profile, surface.spacing(), world.diagonal, scene.settings.near_field,
+                           near_irradiance(scene));
 }
 
 namespace {
@@ -173,7 +183,7 @@ CloudError cloud_error(const Body& group, const World& world, const Scene& scene
   const Settings& settings = scene.settings;
   const auto kernel = [&](double spacing) {
     return make_split_kernel(group.profile, spacing, world.diagonal, settings.near_field,
-                             settings.near_irradiance);
+                             near_irradiance(scene));
   };
   CloudError error =
       tell_cloud_error({group.octree, group.kernel, kernel, settings.evaluator, settings.tolerance,

@@ -10,27 +10,14 @@
 namespace opaline {
 namespace {
 
-constexpr float kInversePi = float(std::numbers::inv_pi);
-
 Appearance appearance_of(const Scene& scene, const Shape& shape) {
-  if (!shape.medium) return {.albedo = RgbF(shape.reflectance)};
-  const DiffuseProfile profile = make_diffuse_profile(scene.media[*shape.medium]);
-  return {true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance)};
-}
-
-// Radiance in the view direction over the exitance.
-float radiance_of_exitance(const Appearance& a, float cos_view) {
-  if (!a.translucent) return kInversePi;
-  return kInversePi * fresnel_transmittance(cos_view, a.eta) / (1 - a.average_reflectance);
-}
-
-// By the shading normal. On coarse meshes it can be at right angles to the view, or turned away from it,
-// where the triangle is seen well: a boundary that lets nothing through. So at least half of the triangle's
-// cosine.
-float cos_view(const SurfacePoint& point, const Vec3f& direction) {
-  const float side = dot(point.geometric, direction), shading = dot(point.normal, direction);
-  const float towards = side > 0 ? shading : -shading;
-  return std::min(1.0f, std::max(towards, 0.5f * std::abs(side)) / length(direction));
+  if (!shape.medium) return {.albedo = RgbF(shape.reflectance), .rough = {}};
+  const Medium& medium = scene.media[*shape.medium];
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  Appearance appearance{
+      true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), {}};
+  if (medium.specular_roughness > 0) appearance.rough.emplace(medium.specular_roughness, medium.eta);
+  return appearance;
 }
 
 SurfacePoint point_of(const Hit& hit, const RayScene& rays) {
@@ -55,25 +42,42 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
     (extent(light).center ? emitters_ : surroundings_).push_back(lights_.back());
   }
   for (const Shape& shape : input.scene.shapes) appearances_.push_back(appearance_of(input.scene, shape));
+  // The samples of a pixel share the rays: their average has as many.
+  const int spp = input.scene.film.samples_per_pixel;
+  light_samples_ = (input.scene.settings.light_samples + spp - 1) / spp;
 }
 
 std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                           std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held) const {
   std::size_t queries = 0;
+  const std::vector<SurfaceHits> all_hits = shade_diffuse({rays, keys, out}, light_samples_, pass, held);
+  for (std::size_t f = 0; f < fields_.all.size(); ++f) {
+    if (all_hits[f].points.empty()) continue;
+    if (fields_.all[f]->eta() > 0) add_specular(all_hits[f], {rays, keys, out}, pass);
+    if (fields_.all[f]->asks_samples()) queries += all_hits[f].points.size();
+  }
+  return queries;
+}
+
+std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
+                                               HeldView::Batch* held) const {
   if (held != nullptr) held->surfaces.resize(fields_.all.size());
-  const std::vector<SurfaceHits> all_hits = collect(rays, keys, out, held);
+  std::vector<SurfaceHits> all_hits = collect(batch.rays, batch.keys, batch.out, held);
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
     const SurfaceHits& hits = all_hits[f];
     if (hits.points.empty()) continue;
     const Field& field = *fields_.all[f];
-    write(
-        hits,
-        field.at(hits, lighting_of(hits, field.eta()), pass, held != nullptr ? &held->surfaces[f] : nullptr),
-        rays, out);
-    if (field.eta() > 0 && has_visible_lights()) add_mirrored_lights(hits, rays, out);
-    if (field.asks_samples()) queries += hits.points.size();
+    const PointIrradianceInput lighting{input_.rays,
+                                        hits.points,
+                                        hits.keys,
+                                        lights_,
+                                        double(field.eta()),
+                                        light_samples,
+                                        point_irradiance_seed(input_.scene.settings)};
+    write(hits, field.at(hits, lighting, pass, held != nullptr ? &held->surfaces[f] : nullptr), batch.rays,
+          batch.out);
   }
-  return queries;
+  return all_hits;
 }
 
 // Sorts the hits by field; rays that meet a light or nothing are done.
@@ -121,7 +125,7 @@ void Shader::write(const SurfaceHits& hits, const LeavingLight& light, std::span
     const Appearance& appearance = appearances_[hit.mesh];
     const SurfacePoint& point = hits.points[i];
     PixelSample& sample = out[hits.rays[i]];
-    const float radiance = radiance_of_exitance(appearance, cos_view(point, ray.direction));
+    const float radiance = appearance.radiance_of_exitance(cos_view(point, ray.direction));
     sample.diffuse = light.exitance[i] * radiance;
     sample.coverage = 1;
     sample.albedo = appearance.albedo;
@@ -133,30 +137,6 @@ void Shader::write(const SurfaceHits& hits, const LeavingLight& light, std::span
     sample.normal = point.normal;
     sample.position = Vec3f(out_of_world(input_.world, Vec3d(point.position)));
     sample.depth = float(ray.far * input_.world.unit);
-  }
-}
-
-// The smooth boundary mirrors area lights and surroundings; a point has no extent to be seen by reflection.
-void Shader::add_mirrored_lights(const SurfaceHits& hits, std::span<const TracedRay> rays,
-                                 std::span<PixelSample> out) const {
-  std::vector<TracedRay> mirrored(hits.rays.size());
-  for (std::size_t i = 0; i < mirrored.size(); ++i) {
-    const SurfacePoint& point = hits.points[i];
-    const Vec3f d = normalized(rays[hits.rays[i]].ray.direction);
-    const Vec3f r = d - point.normal * (2 * dot(d, point.normal));
-    const float side = dot(r, point.geometric) >= 0 ? 1.0f : -1.0f;
-    mirrored[i].ray = {point.position + point.geometric * (side * point.offset), r};
-  }
-  input_.rays.intersect(mirrored);
-  for (std::size_t i = 0; i < mirrored.size(); ++i) {
-    const auto& [ray, hit] = mirrored[i];
-    const EmitterHit emitter = nearest_emitter(ray.origin, ray.direction, ray.far);
-    const RgbF seen = emitter.hit              ? emitter.radiance
-                      : hit.mesh != Hit::kMiss ? RgbF{}
-                                               : surroundings(ray.direction);
-    const TracedRay& camera = rays[hits.rays[i]];
-    const float cosine = cos_view(hits.points[i], camera.ray.direction);
-    out[hits.rays[i]].specular = seen * fresnel_reflectance(cosine, appearances_[camera.hit.mesh].eta);
   }
 }
 
@@ -173,20 +153,6 @@ RgbF Shader::surroundings(const Vec3f& direction) const {
   RgbF radiance;
   for (const Light& light : surroundings_) radiance += background(light, direction);
   return radiance;
-}
-
-PointIrradianceInput Shader::lighting_of(const SurfaceHits& hits, float eta) const {
-  const Settings& settings = input_.scene.settings;
-  // The samples of a pixel share the rays: their average has as many.
-  const int spp = input_.scene.film.samples_per_pixel,
-            light_samples = (settings.light_samples + spp - 1) / spp;
-  return {input_.rays,
-          hits.points,
-          hits.keys,
-          lights_,
-          double(eta),
-          light_samples,
-          point_irradiance_seed(settings)};
 }
 
 }  // namespace opaline

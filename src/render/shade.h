@@ -9,17 +9,10 @@
 #include "opaline/lights/light.h"
 #include "opaline/render/layers.h"
 #include "opaline/render/render.h"
+#include "render/appearance.h"
 #include "render/fields/make_fields.h"
 
 namespace opaline {
-
-/// What the boundary of a mesh makes of the light that leaves.
-struct Appearance {
-  bool translucent = false;
-  RgbF albedo{};                  ///< reflectance, or total diffuse reflectance
-  float eta = 1;                  ///< translucent only
-  float average_reflectance = 0;  ///< F_bar
-};
 
 class Shader {
  public:
@@ -35,14 +28,30 @@ class Shader {
   bool has_visible_lights() const { return !emitters_.empty() || !surroundings_.empty(); }
 
  private:
+  struct RayBatch {
+    std::span<const TracedRay> rays;
+    std::span<const std::uint64_t> keys;
+    std::span<PixelSample> out;
+  };
+  struct GlossyHits;
+
   RgbF surroundings(const Vec3f& direction) const;
   std::vector<SurfaceHits> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                    std::span<PixelSample> out, HeldView::Batch* held) const;
-  PointIrradianceInput lighting_of(const SurfaceHits& hits, float eta) const;
+  /// What leaves where rays meet surfaces, and lights that they meet. Returns the hits of each field.
+  std::vector<SurfaceHits> shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
+                                         HeldView::Batch* held) const;
   void write(const SurfaceHits& hits, const LeavingLight& light, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;
-  void add_mirrored_lights(const SurfaceHits& hits, std::span<const TracedRay> rays,
-                           std::span<PixelSample> out) const;
+  // What boundaries mirror: shade_specular.cpp.
+  void add_specular(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const;
+  void add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const;
+  void add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const;
+  void add_highlights(const GlossyHits& glossy) const;
+  void add_reflections(const GlossyHits& glossy, const Pass& pass) const;
+  std::vector<PixelSample> seen_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
+                                      const Pass& pass) const;
+  bool mirrors_surfaces() const { return has_visible_lights() || input_.scene.shapes.size() > 1; }
   EmitterHit nearest_emitter(const Vec3f& origin, const Vec3f& direction, float far) const;
 
   const RenderInput& input_;
@@ -51,6 +60,7 @@ class Shader {
   std::vector<Light> surroundings_;      // those all around
   std::vector<Appearance> appearances_;  // one a mesh
   Fields fields_;
+  int light_samples_ = 1;  // a camera ray
 };
 
 }  // namespace opaline

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "opaline/geometry/mesh_file.h"
+#include "opaline/lights/environment_picture.h"
 #include "scene/keyed_values.h"
 #include "scene/overrides.h"
 #include "scene/readers.h"
@@ -61,6 +62,24 @@ std::vector<T> read_named(const std::optional<Value>& list, const std::string& d
     value.fail("gets a default name that is taken: '" + printable(name) + "'");
   }
   return records;
+}
+
+/// A light for each channel of a coloured picture: what arrives from a light is one number.
+std::vector<Light> by_channel(const std::vector<Light>& lights) {
+  std::vector<Light> split;
+  for (const Light& light : lights) {
+    const auto* environment = std::get_if<EnvironmentLight>(&light.source);
+    if (environment == nullptr || environment->picture->is_grey()) {
+      split.push_back(light);
+      continue;
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      EnvironmentLight channel = *environment;
+      channel.channel = c;
+      split.push_back({light.name, channel, light.place});
+    }
+  }
+  return split;
 }
 
 void read_surroundings(const Value& value, std::vector<Light>& lights) {
@@ -114,19 +133,15 @@ Scene read_scene(const Document& document) {
   const double mm_per_unit = scene.mm_per_unit = unit ? unit->number() : 1;
   if (const auto media = reader.find("media"))
     for (const Value& medium : media->members()) scene.media.push_back(read_medium(medium, mm_per_unit));
-  ShapeContext context{std::filesystem::path(document.file).parent_path().string(),
-                       document.frame,
-                       mm_per_unit,
-                       &scene.media,
-                       {}};
+  ShapeContext context{mm_per_unit, &scene.media, {}};
   scene.shapes = read_named<Shape>(
       reader.find("shapes"), "shape",
       [&](const Value& value, const std::string& name) { return read_shape(value, name, context); });
   share_triangles(scene.shapes);
   take_thickness_of_plates(scene);
-  scene.lights = read_named<Light>(
+  scene.lights = by_channel(read_named<Light>(
       reader.find("lights"), "light",
-      [&](const Value& value, const std::string& name) { return read_light(value, name, mm_per_unit); });
+      [&](const Value& value, const std::string& name) { return read_light(value, name, mm_per_unit); }));
   if (const auto surroundings = reader.find("surroundings")) read_surroundings(*surroundings, scene.lights);
   scene.camera = read_camera(reader.find("camera"), mm_per_unit);
   if (const auto film = reader.find("film")) scene.film = read_film(*film);

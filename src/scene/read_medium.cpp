@@ -93,6 +93,8 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   const auto eta = reader.find("eta"), specular_ior = reader.find("specular_ior");
   if (eta && specular_ior) eta->fail_key("and 'specular_ior' are the same", "one of the two");
   if (eta || specular_ior) medium.eta = (eta ? eta : specular_ior)->number();
+  if (const auto roughness = reader.find("specular_roughness"))
+    medium.specular_roughness = roughness->number();
   if (const auto profile = reader.find("profile"))
     medium.profile = static_cast<ProfileKind>(profile->choice());
   if (const auto thickness = reader.find("thickness")) medium.thickness = thickness->length(mm_per_unit);

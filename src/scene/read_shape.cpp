@@ -14,8 +14,7 @@ constexpr std::array<std::string_view, 6> source_names{"file", "sphere", "box", 
 
 MeshFile read_mesh_file(const ObjectReader& shape, const ShapeContext& context) {
   MeshFile mesh;
-  mesh.path = (std::filesystem::path(context.folder) / with_frame(shape.need("file").string(), context.frame))
-                  .string();
+  mesh.path = shape.need("file").file_path();
   if (const auto fill_holes = shape.find("fill_holes")) mesh.fill_holes = fill_holes->flag();
   if (const auto fit_size = shape.find("fit_size")) mesh.fit_size = fit_size->length(context.mm_per_unit);
   return mesh;

@@ -14,8 +14,6 @@ namespace opaline {
 
 /// What a shape needs to know about the scene around it.
 struct ShapeContext {
-  std::string folder;  ///< stands in front of relative mesh paths
-  int frame = 1;
   double mm_per_unit = 1;
   const std::vector<Medium>* media = nullptr;
   std::map<std::string, std::size_t> group_media;  ///< filled while reading

@@ -108,6 +108,9 @@ std::vector<KeyInfo> medium_rows() {
       row("medium", "specular_ior", number, "", {.1, 10},
           "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
       row("medium", "eta", number, "", {.1, 10}, "", "another word for `specular_ior`; use one of the two"),
+      row("medium", "specular_roughness", number, "", kUnitInterval, "0",
+          "of the surface as it mirrors: 0 smooth, .3 satin; alone a rough one shows highlights of lights "
+          "without size"),
       row("medium", "thickness", length, "", kFiniteNumber, "that of the built-in plates, else thick",
           "for `\"multipole\"`: how thick the things made of it are; light that enters on the far side "
           "leaves on "

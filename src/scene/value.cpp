@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <utility>
 
+#include "opaline/scene/load_scene.h"
 #include "opaline/scene/nearest_name.h"
 
 namespace opaline {
@@ -89,6 +91,11 @@ std::string Value::string() const {
   if (node.text.empty() || node.text.find('\0') != std::string::npos)
     fail("is no usable text", "a string that is not empty");
   return node.text;
+}
+
+std::string Value::file_path() const {
+  return (std::filesystem::path(document_->file).parent_path() / with_frame(string(), document_->frame))
+      .string();
 }
 
 std::size_t Value::choice() const {

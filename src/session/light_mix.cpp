@@ -13,21 +13,8 @@
 namespace opaline {
 namespace {
 
-void set_emission(Light& light, const Rgb& emission) {
-  std::visit(
-      [&](auto& source) {
-        if constexpr (requires { source.intensity; })
-          source.intensity = emission;
-        else if constexpr (requires { source.radiance; })
-          source.radiance = emission;
-        else
-          source.irradiance = emission;  // a kind with another name for its colour does not compile
-      },
-      light.source);
-}
-
 Scene without_colours(Scene scene) {
-  for (Light& light : scene.lights) set_emission(light, {});
+  for (Light& light : scene.lights) light = with_emission(light, {});
   return scene;
 }
 
@@ -114,11 +101,11 @@ bool LightMix::separate(const Scene& scene, const std::vector<std::size_t>& ligh
   if (!has_room(scene.film, single_.size() + lights.size() + 2)) return false;
   for (const std::size_t l : lights) {
     Scene alone = without_colours(scene);
-    set_emission(alone.lights[l], Rgb(1));
+    alone.lights[l] = with_emission(alone.lights[l], Rgb(1));
     single_.push_back({l, render(alone)});
   }
   Scene rest = scene;
-  for (const Part& part : single_) set_emission(rest.lights[part.light], {});
+  for (const Part& part : single_) rest.lights[part.light] = with_emission(rest.lights[part.light], {});
   const bool is_dark = rest.lights == without_colours(scene).lights;
   others_ = is_dark ? black_out(single_[0].image) : render(rest);
   return true;

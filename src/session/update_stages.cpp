@@ -291,11 +291,11 @@ void Session::State::update_kernel(Body& body, BodyKeys& known) {
   key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(medium.profile);
   if (medium.profile == ProfileKind::multipole) key.add(medium.thickness);
   key.add(body.surface.spacing()).add(world_->diagonal).add(world_->unit);
-  key.add(scene_.settings.near_field).add(scene_.settings.near_irradiance);
+  key.add(scene_.settings.near_field).add(near_irradiance(scene_));
   if (key.key() == known.kernel_key) return;
   known.kernel_key = {};
   find_walked_profiles(body);
-  body.kernel = group_kernel(body.profile, body.surface, *world_, scene_.settings);
+  body.kernel = group_kernel(body.profile, body.surface, *world_, scene_);
   known.kernel_key = key.key();
 }
 

@@ -128,6 +128,30 @@ std::uint32_t DiffusionBody::last_cell(const Vec3d& from, const Vec3d& way, std:
   return last;
 }
 
+// Of some directions towards a light, one, with the chance of its share of what would enter there.
+Vec3f towards_light(const Light& light, const BoundaryPoint& point, double eta, std::size_t i) {
+  constexpr int kTries = 8;
+  const int tries = is_delta(light) ? 1 : kTries;
+  Vec3f chosen = point.normal;
+  double sum = 0, chance = unit_double(hash_bits(0, i));
+  for (int t = 0; t < tries; ++t) {
+    const LightSample sample =
+        sample_light(light, point.position, point.normal,
+                     r2_point(i * std::size_t(tries) + std::size_t(t), {.5, .5}), tries);
+    const double cosine = double(dot(sample.direction, point.normal));
+    if (!(sample.weight > 0 && cosine > 0)) continue;
+    const double share = double(sample.weight) * cosine * fresnel_transmittance(std::min(cosine, 1.0), eta);
+    sum += share;
+    if (chance * sum < share) {  // reservoir: the number is used again within what it has chosen
+      chosen = sample.direction;
+      chance = chance * sum / share;
+    } else {
+      chance = (chance * sum - share) / (sum - share);
+    }
+  }
+  return chosen;
+}
+
 // Light of one source that enters at a point: what collides between the point and the centre of its cell leaves in
 // part at once, as between two resistances; of the rest of its way one place stands for all.
 void DiffusionBody::deposit(const EnteringLight& light, std::size_t l, std::size_t i,
@@ -136,9 +160,7 @@ void DiffusionBody::deposit(const EnteringLight& light, std::size_t l, std::size
   const double weight = double(light.transfers[l].weights[point.sample]);
   if (!(weight > 0) || attached_[i].cell == DiffusionGrid::kNone) return;
   const Rgb entering = emission(light.lights[l]) * weight;
-  const Vec3f towards =
-      sample_light(light.lights[l], point.position, point.normal, r2_point(i, {.5, .5}), 1).direction;
-  if (!(dot(towards, point.normal) > 0)) return;
+  const Vec3f towards = towards_light(light.lights[l], point, media_[0].eta, i);
   const Vec3d normal(point.normal);
   const Vec3d inward = refracted_inward(-Vec3d(towards), normal, media_[0].eta);
   const double cosine = std::max(kLeastCosine, -dot(inward, normal)), depth = attached_[i].depth;

@@ -9,21 +9,6 @@ namespace {
 
 using namespace test;
 
-Light coloured(const Light& light, const Rgb& colour) {
-  Light result = light;
-  std::visit(
-      [&](auto& source) {
-        if constexpr (requires { source.intensity; })
-          source.intensity = colour;
-        else if constexpr (requires { source.irradiance; })
-          source.irradiance = colour;
-        else
-          source.radiance = colour;
-      },
-      result.source);
-  return result;
-}
-
 std::vector<Light> all_kinds() {
   return {unit_point({5, 20, 3}), unit_directional({.2, -1, .1}), unit_sphere_light({-15, 10, 0}, 3),
           unit_quad_light({-4, 15, -4}, {8, 0, 0}, {0, 0, 8}), unit_surroundings()};
@@ -42,7 +27,7 @@ struct Scene {
 TEST(Linearity, WeightsAreOnePerLight) {
   const Scene scene;
   std::vector<Light> lights = all_kinds(), bright;
-  for (const Light& light : lights) bright.push_back(coloured(light, {1e12, 0, 3}));
+  for (const Light& light : lights) bright.push_back(with_emission(light, {1e12, 0, 3}));
   const auto together = scene.lit.transfers(scene.samples, lights, 1.5);
   const auto recoloured = scene.lit.transfers(scene.samples, bright, 1.5);
   ASSERT_EQ(together.size(), lights.size());
@@ -70,7 +55,7 @@ TEST(Linearity, HoldsFromFaintToBlinding) {
     std::vector<Rgb> colours;
     for (std::size_t l = 0; l < lights.size(); ++l) {
       colours.push_back(Rgb(1, .5 + double(l), 30 / (1. + double(l))) * k);
-      dyed.push_back(coloured(lights[l], colours.back()));
+      dyed.push_back(with_emission(lights[l], colours.back()));
     }
     const std::vector<RgbF> sums = combine_lights(transfers, dyed);
     ASSERT_EQ(sums.size(), scene.samples.size());
@@ -89,8 +74,8 @@ TEST(Linearity, HoldsFromFaintToBlinding) {
 // mixed.
 TEST(Linearity, ChannelsAreApart) {
   const Scene scene;
-  const std::vector<Light> lights = {coloured(unit_point({0, 20, 0}), {1e12, 0, 0}),
-                                     coloured(unit_point({0, 20, 0}), {0, 0, 1e-30})};
+  const std::vector<Light> lights = {with_emission(unit_point({0, 20, 0}), {1e12, 0, 0}),
+                                     with_emission(unit_point({0, 20, 0}), {0, 0, 1e-30})};
   const auto transfers = scene.lit.transfers(scene.samples, lights, 1.5);
   const std::vector<RgbF> sums = combine_lights(transfers, lights);
   for (std::size_t i = 0; i < sums.size(); ++i) {
@@ -106,7 +91,7 @@ TEST(Linearity, ChannelsAreApart) {
 TEST(Linearity, RedStaysRed) {
   const Scene scene;
   for (const Light& light : all_kinds()) {
-    const std::vector<Light> red = {coloured(light, {7, 0, 0})};
+    const std::vector<Light> red = {with_emission(light, {7, 0, 0})};
     float most = 0;
     for (const RgbF& e : combine_lights(scene.lit.transfers(scene.samples, red, 1.5), red)) {
       most = std::max(most, e.x);

@@ -102,15 +102,7 @@ TEST(Scale, PowersOfTwoAreTheSamePicture) {
 
 /// The scene in light k times as bright.
 Scene brighter(Scene scene, double k) {
-  const auto scale = [k](auto& light) {
-    if constexpr (requires { light.intensity; })
-      light.intensity = light.intensity * k;
-    else if constexpr (requires { light.irradiance; })
-      light.irradiance = light.irradiance * k;
-    else
-      light.radiance = light.radiance * k;
-  };
-  for (Light& light : scene.lights) std::visit(scale, light.source);
+  for (Light& light : scene.lights) light = with_emission(light, emission(light) * k);
   return scene;
 }
 

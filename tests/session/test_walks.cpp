@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random walks from edit to edit.
+#include "opaline/lights/light.h"
 #include "opaline/transport/fresnel.h"
 #include "opaline/transport/laboratory.h"
 #include "session_test.h"
@@ -82,13 +83,7 @@ TEST(Walks, LightsAddUp) {
     Scene scene = both;
     scene.lights.clear();
     for (const std::size_t l : lights) scene.lights.push_back(both.lights[l]);
-    for (Light& light : scene.lights)
-      std::visit(
-          [factor](auto& source) {
-            if constexpr (requires { source.intensity; }) source.intensity *= factor;
-            if constexpr (requires { source.irradiance; }) source.irradiance *= factor;
-          },
-          light.source);
+    for (Light& light : scene.lights) light = with_emission(light, emission(light) * factor);
     return cold_picture(scene);
   };
   const Image sum = by({0, 1}, 1), first = by({0}, 1), second = by({1}, 1), twice = by({0, 1}, 2);

@@ -35,7 +35,7 @@ WriteReport write_exr(const std::string& path, const Image& image, bool half);
 /// error as write_exr
 void write_png(const std::string& path, const Image& image, double exposure);
 
-/// Reads an EXR or PNG (PNG is converted from sRGB to linear).
+/// Reads an EXR, HDR (Radiance) or PNG (PNG is converted from sRGB to linear).
 /// error Error{bad_input} naming the file: missing, truncated, not an image
 Image read_image(const std::string& path);
 

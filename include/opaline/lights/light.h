@@ -24,8 +24,14 @@ struct LightSample {
 /// The light's colour: what a sample's weight multiplies.
 Rgb emission(const Light& light);
 
+/// The light in another colour.
+Light with_emission(const Light& light, const Rgb& emission);
+
 /// True where one sample is exact (point and directional lights).
 bool is_delta(const Light& light);
+
+/// True for the channels of one picture: their samples have the same directions.
+bool share_rays(const Light& a, const Light& b);
 
 /// Seed of a light's random numbers: by its name, so that adding or removing another light leaves them alone.
 std::uint64_t light_seed(std::uint64_t seed, const Light& light);
@@ -40,6 +46,9 @@ Light recentred(const Light& light, const Vec3d& origin, double unit = 1);
 ///       (quad)
 LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& normal,
                          std::array<double, 2> unit_square, int samples);
+
+/// With which sample_light draws a direction from the point, 1/sr; 0 for delta lights.
+float sampling_density(const Light& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction);
 
 /// Radiance of area lights that a ray meets before `far` (nearest one), and whether there is any.
 struct EmitterHit {

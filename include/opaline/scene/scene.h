@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -59,6 +60,7 @@ struct Medium {
   double scatter_anisotropy = 0;
   /// Of the plates and bodies made of it, mm, > 0; infinite: thick. ProfileKind::multipole alone asks.
   double thickness = std::numeric_limits<double>::infinity();
+  double specular_roughness = 0;  ///< of the boundary as it mirrors, [0, 1]; its square is GGX's alpha
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
@@ -163,12 +165,23 @@ struct Surroundings {  ///< the same radiance from everywhere
   Rgb radiance;
   friend bool operator==(const Surroundings&, const Surroundings&) = default;
 };
+class EnvironmentPicture;
+/// A picture's radiance, by direction. A coloured picture becomes three lights of one name, a channel each: so what
+/// arrives from each of them is one number, as from any light.
+struct EnvironmentLight {
+  static constexpr std::string_view kType = "environment";
+  std::shared_ptr<const EnvironmentPicture> picture;
+  Rgb strength{1, 1, 1};               ///< times its radiance
+  double rotation = 0;                 ///< about +y, counterclockwise seen from above, degrees
+  std::optional<std::size_t> channel;  ///< it shines in this one alone; none: the picture is grey
+  friend bool operator==(const EnvironmentLight&, const EnvironmentLight&) = default;
+};
 
-using LightSource =
-    std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, QuadLight, Surroundings>;
+using LightSource = std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, QuadLight,
+                                 Surroundings, EnvironmentLight>;
 
 struct Light {
-  std::string name;
+  std::string name;  ///< the channels of one picture have the same
   LightSource source;
   SourcePlace place{};
   friend bool operator==(const Light&, const Light&) = default;

@@ -41,8 +41,9 @@ class Value {
   std::uint64_t whole_number(std::uint64_t low, std::uint64_t high) const;
   /// true or false.
   bool flag() const;
-  std::string string() const;  ///< not empty
-  std::size_t choice() const;  ///< the index of one of the row's choices
+  std::string string() const;     ///< not empty
+  std::string file_path() const;  ///< a file's name, relative to the scene file's folder, as it can be opened
+  std::size_t choice() const;     ///< the index of one of the row's choices
 
   Vec3d triple() const { return triple(info_->range); }  ///< [x, y, z]
   Vec3d number_or_triple() const;                        ///< [x, y, z], or one number for all three

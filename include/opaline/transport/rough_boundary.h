@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A rough dielectric boundary as mirror: microfacets after Trowbridge & Reitz (GGX), shadowed after Smith.
+#pragma once
+
+#include <array>
+
+#include "opaline/core/vec3.h"
+
+namespace opaline {
+
+/// Directions are local, unit, z along the normal, away from the surface. Light that facets would reflect twice goes
+/// below instead, as most of it does at a dielectric.
+class RoughBoundary {
+ public:
+  /// in    roughness: (0, 1], its square is GGX's alpha; eta: inside over outside
+  RoughBoundary(double roughness, double eta);
+
+  /// The share of light from a direction that is reflected, to any side; from a table, error below .002.
+  float reflectance(float cosine) const;
+
+  /// Light that is reflected by a facet drawn with the density of those that the viewer sees (Heitz 2018).
+  struct Sample {
+    Vec3f direction;
+    float weight;  ///< reflected radiance over the radiance from there, over the density; 0: it goes below
+  };
+  Sample sample(const Vec3f& view, std::array<double, 2> unit_square) const;
+
+  /// The density of sample(), 1/sr.
+  float density(const Vec3f& view, const Vec3f& light) const;
+  /// Reflected radiance over incoming radiance and solid angle, 1/sr: the reflectance function times the cosine.
+  float value(const Vec3f& view, const Vec3f& light) const;
+
+ private:
+  float smith(const Vec3f& direction) const;  ///< share of facets that are seen from there, G1
+  float facets(const Vec3f& normal) const;    ///< their distribution, D
+
+  static constexpr std::size_t kCosines = 33;
+  float alpha_, eta_;
+  std::array<float, kCosines> reflectances_{};
+};
+
+}  // namespace opaline

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the boundaries of translucent things mirror: lights, what is all around, and surfaces as they are lit. A smooth
+// boundary is one ray. A rough one draws directions from its lobe and from the lights, weighted by the balance
+// heuristic (Veach & Guibas 1995).
+#include <algorithm>
+#include <cmath>
+
+#include "irradiance/shadow_batch.h"
+#include "opaline/core/random.h"
+#include "render/shade.h"
+
+namespace opaline {
+namespace {
+
+// Of a camera ray where there is one a pixel: facets drawn, and directions to each light.
+constexpr int kFacets = 16, kLightSamples = 16;
+// Shadow rays towards a surface that is seen in a mirror, over those where it is seen: a mirror takes most away.
+constexpr int kFewerInMirrors = 4;
+
+TracedRay leaving(const SurfacePoint& point, const Vec3f& direction) {
+  const float side = dot(direction, point.geometric) >= 0 ? 1.0f : -1.0f;
+  return {{point.position + point.geometric * (side * point.offset), direction}, {}};
+}
+
+// The frame of a hit, in which RoughBoundary counts.
+struct Frame {
+  Vec3f x, y, z, view;
+
+  Frame(const SurfacePoint& point, const Vec3f& towards_eye) : z(point.normal) {
+    tangent_frame(z, x, y);
+    view = {dot(towards_eye, x), dot(towards_eye, y), cos_view(point, -towards_eye)};
+    view = normalized(view);
+  }
+  Vec3f local(const Vec3f& d) const { return {dot(d, x), dot(d, y), dot(d, z)}; }
+  Vec3f world(const Vec3f& d) const { return x * d.x + y * d.y + z * d.z; }
+};
+
+float balance(float own, float other) {
+  return own > 0 ? own / (own + other) : 0;
+}
+
+}  // namespace
+
+void Shader::add_specular(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const {
+  SurfaceHits smooth, rough;
+  for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+    SurfaceHits& part = appearances_[hits.hits[i].mesh].rough ? rough : smooth;
+    part.points.push_back(hits.points[i]);
+    part.hits.push_back(hits.hits[i]);
+    part.keys.push_back(hits.keys[i]);
+    part.rays.push_back(hits.rays[i]);
+  }
+  if (!smooth.rays.empty() && mirrors_surfaces()) add_mirrored(smooth, batch, pass);
+  if (!rough.rays.empty()) add_glossy(rough, batch, pass);
+}
+
+// Without what is mirrored there.
+std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
+                                            std::span<const std::uint64_t> keys, const Pass& pass) const {
+  std::vector<PixelSample> seen(rays.size());
+  shade_diffuse({rays, keys, seen}, std::max(1, light_samples_ / kFewerInMirrors), pass, nullptr);
+  return seen;
+}
+
+// Lights without an area have no extent to be seen by.
+void Shader::add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const {
+  std::vector<TracedRay> mirrored;
+  for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+    const Vec3f d = normalized(batch.rays[hits.rays[i]].ray.direction), &normal = hits.points[i].normal;
+    mirrored.push_back(leaving(hits.points[i], d - normal * (2 * dot(d, normal))));
+  }
+  input_.rays.intersect(mirrored);
+  const std::vector<PixelSample> seen = seen_along(mirrored, hits.keys, pass);
+  for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+    const float cosine = cos_view(hits.points[i], batch.rays[hits.rays[i]].ray.direction);
+    const float share = appearances_[hits.hits[i].mesh].reflectance(cosine);
+    batch.out[hits.rays[i]].specular = (seen[i].diffuse + seen[i].emitted) * share;
+  }
+}
+
+/// Hits of rough boundaries, and what it takes to draw from their lobes.
+struct Shader::GlossyHits {
+  const SurfaceHits& hits;
+  const RayBatch& batch;
+  std::vector<Frame> frames;
+  std::vector<const RoughBoundary*> boundaries;
+  int facets, to_lights;
+  std::uint64_t seed;
+
+  GlossyHits(const Shader& shader, const SurfaceHits& all, const RayBatch& rays)
+      : hits(all), batch(rays), seed(point_irradiance_seed(shader.input_.scene.settings) + 1) {
+    const int spp = shader.input_.scene.film.samples_per_pixel;
+    facets = (kFacets + spp - 1) / spp;
+    to_lights = (kLightSamples + spp - 1) / spp;
+    for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+      frames.emplace_back(hits.points[i], -normalized(batch.rays[hits.rays[i]].ray.direction));
+      boundaries.push_back(&*shader.appearances_[hits.hits[i].mesh].rough);
+    }
+  }
+  RgbF& specular(std::size_t i) const { return batch.out[hits.rays[i]].specular; }
+  // How many directions each way of drawing puts there, 1/sr.
+  float of_lobe(std::size_t i, const Vec3f& towards) const {
+    return float(facets) * boundaries[i]->density(frames[i].view, frames[i].local(towards));
+  }
+  float of_light(std::size_t i, const Light& light, const Vec3f& towards) const {
+    const SurfacePoint& point = hits.points[i];
+    return float(to_lights) * sampling_density(light, point.position, point.normal, towards);
+  }
+};
+
+void Shader::add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const {
+  const GlossyHits glossy(*this, hits, batch);
+  add_highlights(glossy);
+  if (mirrors_surfaces()) add_reflections(glossy, pass);
+}
+
+// By directions to the lights.
+void Shader::add_highlights(const GlossyHits& glossy) const {
+  const PointIrradianceInput lighting{input_.rays, glossy.hits.points, glossy.hits.keys, lights_,
+                                      0,           glossy.to_lights,   glossy.seed};
+  for (std::size_t l = 0; l < lights_.size(); ++l) {
+    const Light& light = lights_[l];
+    const RgbF emitted(emission(light));
+    for_each_ray(lighting, l, [&](std::size_t i, const Vec3f& towards, float irradiance) {
+      const Vec3f local = glossy.frames[i].local(towards);
+      const float share =
+          is_delta(light) ? 1 : balance(glossy.of_light(i, light, towards), glossy.of_lobe(i, towards));
+      const float value = glossy.boundaries[i]->value(glossy.frames[i].view, local) / local.z;
+      glossy.specular(i) += emitted * (irradiance * value * share);
+    });
+  }
+}
+
+// By directions of the lobe.
+void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
+  struct Drawn {
+    float weight;
+    std::uint32_t hit;
+  };
+  std::vector<TracedRay> rays;
+  std::vector<Drawn> drawn;
+  for (std::size_t i = 0; i < glossy.hits.rays.size(); ++i) {
+    const std::uint64_t key = glossy.hits.keys[i];
+    const std::array<double, 2> shift{unit_double(hash_bits(glossy.seed, 2 * key)),
+                                      unit_double(hash_bits(glossy.seed, 2 * key + 1))};
+    for (int k = 0; k < glossy.facets; ++k) {
+      const auto [direction, weight] =
+          glossy.boundaries[i]->sample(glossy.frames[i].view, r2_point(std::uint64_t(k), shift));
+      const Vec3f towards = glossy.frames[i].world(direction);
+      if (!(weight > 0 && dot(towards, glossy.hits.points[i].geometric) > 0)) continue;
+      rays.push_back(leaving(glossy.hits.points[i], towards));
+      drawn.push_back({weight / float(glossy.facets), std::uint32_t(i)});
+    }
+  }
+  input_.rays.intersect(rays);
+
+  // Of the surfaces that a hit's rays meet, one stands for all.
+  std::vector<Drawn> met;
+  std::vector<TracedRay> met_rays;
+  std::vector<std::uint64_t> met_keys;
+  for (std::size_t r = 0; r < rays.size(); ++r) {
+    const auto& [ray, mesh_hit] = rays[r];
+    const auto [weight, i] = drawn[r];
+    const bool is_free = mesh_hit.mesh == Hit::kMiss;
+    for (const Light& light : lights_) {
+      if (is_delta(light)) continue;
+      const EmitterHit emitter = intersect_emitter(light, ray.origin, ray.direction, ray.far);
+      const RgbF radiance = emitter.hit ? emitter.radiance
+                            : is_free   ? background(light, ray.direction)
+                                        : RgbF{};
+      if (radiance == RgbF{}) continue;
+      glossy.specular(i) += radiance * (weight * balance(glossy.of_lobe(i, ray.direction),
+                                                         glossy.of_light(i, light, ray.direction)));
+    }
+    if (is_free) continue;
+    if (met.empty() || met.back().hit != i) {
+      met.push_back({0, i});
+      met_rays.push_back(rays[r]);
+      met_keys.push_back(glossy.hits.keys[i]);
+    }
+    met.back().weight += weight;
+    const double chance = unit_double(hash_bits(glossy.seed + r, glossy.hits.keys[i]));
+    if (chance * double(met.back().weight) < double(weight)) met_rays.back() = rays[r];
+  }
+  const std::vector<PixelSample> seen = seen_along(met_rays, met_keys, pass);
+  for (std::size_t m = 0; m < met.size(); ++m) glossy.specular(met[m].hit) += seen[m].diffuse * met[m].weight;
+}
+
+}  // namespace opaline

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures that shine from all around.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "opaline/core/error.h"
+#include "opaline/core/random.h"
+#include "opaline/image/image.h"
+#include "opaline/lights/environment_picture.h"
+#include "opaline/scene/load_scene.h"
+#include "support/lighting.h"
+
+namespace opaline {
+namespace {
+
+using namespace test;
+
+std::shared_ptr<const EnvironmentPicture> picture_of(std::size_t width, const auto& colour_at) {
+  std::vector<RgbF> pixels;
+  for (std::size_t y = 0; y < width / 2; ++y)
+    for (std::size_t x = 0; x < width; ++x) pixels.push_back(colour_at(x, y));
+  return std::make_shared<EnvironmentPicture>(width, width / 2, std::move(pixels));
+}
+
+std::shared_ptr<const EnvironmentPicture> constant_picture(const RgbF& colour) {
+  return picture_of(64, [&](std::size_t, std::size_t) { return colour; });
+}
+
+// One bright, coloured window in a dim room.
+RgbF room(std::size_t x, std::size_t y, std::size_t width) {
+  const std::size_t column = 16 * x / width, row = 16 * y / width;
+  return column == 5 && row == 2 ? RgbF{40, 60, 20} : RgbF{.2f, .1f, .4f} * float(1 + row);
+}
+
+// Claim: the middle of the picture is +z, its left half has +x, its top is +y, and a rotation by 90 degrees
+// brings +z to +x. Source: OpenEXR's convention. Tolerance: none, pixels apart are black. Fails when: the picture
+// is mirrored, upside down, or turned the other way.
+TEST(EnvironmentLight, WhereThePictureIs) {
+  const std::size_t n = 64;
+  const auto lit_at = [&](std::size_t column, std::size_t row) {
+    return picture_of(n, [&](std::size_t x, std::size_t y) {
+      return RgbF(std::abs(int(x) - int(column)) <= 1 && std::abs(int(y) - int(row)) <= 1 ? 1.0f : 0.0f);
+    });
+  };
+  EXPECT_GT(lit_at(n / 2, n / 4)->radiance({0, 0, 1}).x, .5f);
+  EXPECT_GT(lit_at(n / 4, n / 4)->radiance({1, 0, 0}).x, .5f);
+  EXPECT_GT(lit_at(3 * n / 4, n / 4)->radiance({-1, 0, 0}).x, .5f);
+  EXPECT_GT(lit_at(0, n / 4)->radiance(normalized(Vec3d{.03, 0, -1})).x, .5f);
+  EXPECT_GT(lit_at(n / 4, 1)->radiance(normalized(Vec3d{.05, 1, 0})).x, .5f);
+  const Light turned = light_of(EnvironmentLight{lit_at(n / 2, n / 4), Rgb(1), 90, {}});
+  EXPECT_GT(background(turned, {1, 0, 0}).x, .5f);
+  EXPECT_EQ(background(turned, {0, 0, 1}).x, 0);
+  EXPECT_GT(sample_light(turned, {}, {1, 0, 0}, {.5, .5}, 1).direction.x, .99f);
+}
+
+// Claim: the mean of the samples' weights is the picture's integral over all directions, also of parts of it, and
+// each sample has the radiance of its direction. Source: the integral over pixels of radiance x solid angle.
+// Tolerance: 1 % at 65,536 samples; the width that is no multiple of the table's has rows and columns left over.
+// Fails when: rows are weighted by their number instead of their solid angle (11 %), or densities by pixels.
+TEST(EnvironmentLight, SamplesAddUpToThePicture) {
+  for (const std::size_t width : {64u, 1000u, 2300u}) {
+    SCOPED_TRACE(width);
+    const auto picture = picture_of(width, [&](std::size_t x, std::size_t y) { return room(x, y, width); });
+    Rgb whole{}, upper{}, sampled{}, sampled_upper{};
+    const double height = double(width / 2);
+    for (std::size_t y = 0; y < width / 2; ++y)
+      for (std::size_t x = 0; x < width; ++x) {
+        const double angle = 2 * pi / double(width) *
+                             (std::cos(pi * double(y) / height) - std::cos(pi * double(y + 1) / height));
+        whole += Rgb(room(x, y, width)) * angle;
+        if (y < width / 8) upper += Rgb(room(x, y, width)) * angle;
+      }
+    constexpr int kSamples = 65536;
+    for (int i = 0; i < kSamples; ++i) {
+      const auto [direction, weight] = picture->sample(r2_point(std::uint64_t(i), {.5, .5}));
+      EXPECT_NEAR(length(direction), 1, 1e-9);
+      sampled += Rgb(weight) / kSamples;
+      if (direction.y > std::cos(pi / 4)) sampled_upper += Rgb(weight) / kSamples;
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(sampled[c] / whole[c], 1, .01) << c;
+      EXPECT_NEAR(sampled_upper[c] / upper[c], 1, .015) << c;
+    }
+  }
+}
+
+// Claim: a constant picture is `surroundings`. Source: both are the same light. Tolerance: .5 % of the mean over 1000
+// samples. Fails when: the cosine is counted twice or the solid angle is not 4 pi.
+TEST(EnvironmentLight, AConstantPictureIsSurroundings) {
+  const LitWorld scene(world_of({SphereShape{{5, 0, 0}, 10}}));
+  const std::vector<SurfaceSample> samples = samples_on(scene.world, 1000).samples;
+  const Light light = light_of(EnvironmentLight{constant_picture({1, 1, 1}), Rgb(1), 0, {}});
+  for (const double eta : {1., 1.5}) {
+    const double expected = mean_of(scene.transfer(samples, unit_surroundings(), eta).weights);
+    EXPECT_NEAR(mean_of(scene.transfer(samples, light, eta, 256).weights) / expected, 1, .005);
+  }
+  EXPECT_EQ(background(light, {0, 0, 1}).x, 1);
+}
+
+// Claim: the three channels of a coloured picture trace the rays of one light, and add up to what its channels say
+// alone. Source: they share their directions. Tolerance: none. Fails when: each channel traces its own rays.
+TEST(EnvironmentLight, ChannelsShareTheirRays) {
+  const LitWorld scene(world_of({SphereShape{{0, 0, 0}, 10}, SphereShape{{25, 0, 0}, 10}}));
+  const std::vector<SurfaceSample> samples = samples_on(scene.world, 300).samples;
+  const auto picture = picture_of(64, [](std::size_t x, std::size_t y) { return room(x, y, 64); });
+  std::vector<Light> channels;
+  for (std::size_t c = 0; c < 3; ++c) channels.push_back(light_of(EnvironmentLight{picture, Rgb(1), 0, c}));
+  const std::vector<LightTransfer> together = scene.transfers(samples, channels, 1.5);
+  const std::uint64_t rays = scene.rays.statistics().rays;
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_EQ(scene.transfer(samples, channels[c], 1.5).weights, together[c].weights) << c;
+  EXPECT_GT(scene.rays.statistics().rays - rays, 2 * rays);
+  const std::vector<RgbF> sum = combine_lights(together, channels);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    EXPECT_EQ(sum[i], (RgbF{together[0].weights[i], together[1].weights[i], together[2].weights[i]}));
+}
+
+class EnvironmentFile : public testing::Test {
+ protected:
+  EnvironmentFile() { std::filesystem::create_directories(folder_); }
+  ~EnvironmentFile() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(int width, int height, float value, const std::vector<std::string>& channels) {
+    Image image;
+    image.width = image.full_width = width;
+    image.height = image.full_height = height;
+    image.channels = channels;
+    image.pixels.resize(std::size_t(width * height) * channels.size());
+    for (float& pixel : image.pixels) pixel = value;
+    write_exr((folder_ / "room.exr").string(), image, false);
+    return (folder_ / "room.exr").string();
+  }
+  Scene scene(const std::string& light = R"("type": "environment", "file": "room.exr")") const {
+    return parse_scene(R"({"shapes": [{"sphere": {"radius": 1}}], "lights": [{)" + light + "}]}",
+                       (folder_ / "scene.json").string());
+  }
+  std::string error() const {
+    try {
+      scene();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "none";
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("opaline_environment_" + std::to_string(::getpid()));
+};
+
+// Claim: grey pictures are one light, coloured ones three of one name; the file lies beside the scene; what is read
+// again unchanged is the same picture. Fails when: a light is a channel too many or the path is the program's.
+TEST_F(EnvironmentFile, IsReadBesideTheScene) {
+  write(64, 32, 2, {"R", "G", "B"});
+  const Scene grey = scene(
+      R"("type": "environment", "file": "room.exr", "strength": [1, 2, 3], "rotation": 30, "name": "sky")");
+  ASSERT_EQ(grey.lights.size(), 1u);
+  EXPECT_EQ(emission(grey.lights[0]), Rgb(1, 2, 3));
+  EXPECT_EQ(background(grey.lights[0], {0, 1, 0}), RgbF(2, 4, 6));
+  EXPECT_EQ(grey.lights,
+            scene(R"("type": "environment", "file": "room.exr", "strength": [1, 2, 3], "rotation": 30,
+                                  "name": "sky")")
+                .lights);
+  Image coloured = read_image(write(64, 32, 2, {"R", "G", "B"}));
+  coloured.pixels[0] = 3;
+  write_exr((folder_ / "coloured.exr").string(), coloured, false);
+  const Scene three = scene(R"("type": "environment", "file": "coloured.exr", "strength": 5)");
+  ASSERT_EQ(three.lights.size(), 3u);
+  EXPECT_EQ(three.lights[0].name, three.lights[2].name);
+  EXPECT_EQ(emission(three.lights[1]), Rgb(0, 5, 0));
+}
+
+// Claim: what is no environment is an error that names the file and what is wrong. Fails when: it is rendered.
+TEST_F(EnvironmentFile, WhatIsNoneIsAnError) {
+  EXPECT_NE(error().find("room.exr: cannot read"), std::string::npos) << error();
+  write(64, 64, 1, {"R", "G", "B"});
+  EXPECT_NE(
+      error().find("room.exr: is no picture of an environment (expected a lat-long picture, twice as wide as "
+                   "high, got 64 x 64)"),
+      std::string::npos)
+      << error();
+  write(64, 32, 1, {"U", "V"});
+  EXPECT_NE(error().find("room.exr: has no colours"), std::string::npos) << error();
+}
+
+}  // namespace
+}  // namespace opaline
