@@ -25,8 +25,21 @@ struct AssetScene {
   Vec3d center;                  ///< of the box around the shapes
   double radius = 1;             ///< from there to the outermost vertex
   double center_irradiance = 0;  ///< that its lights bring to a surface there that faces them
+  bool is_one_mesh = false;      ///< its shapes are parts of one body
   std::vector<std::string> translated, not_carried;
 };
+
+/// What the material of a shape becomes.
+struct SurfaceTranslation {
+  Json medium;  ///< as in a scene file; null: opaque
+  Vec3d reflectance{1, 1, 1};
+};
+
+/// A surface of a MaterialX file.
+/// in    file_and_name: "skin.mtlx", or "skin.mtlx#name" of a surface or material in it; scene: whose unit its lengths
+///       are in, and which is told what became of the values
+/// error Error{bad_input} naming the file: no XML, no such surface, a value that is not of its type
+SurfaceTranslation translate_materialx(const std::string& file_and_name, AssetScene& scene);
 
 AssetScene import_gltf(const std::string& path, const std::string& mesh_path);
 AssetScene import_obj(const std::string& path, const std::string& mesh_path);

@@ -7,11 +7,6 @@
 
 namespace opaline {
 
-struct SurfaceTranslation {
-  Json medium;  ///< as in a scene file; null: opaque
-  Vec3d reflectance{1, 1, 1};
-};
-
 /// in    index: of the material; -1: glTF's default one, white
 /// error Error{bad_input} at a value that is not of its type
 SurfaceTranslation translate_material(const GltfModel& gltf, int index, AssetScene& scene);

@@ -32,16 +32,44 @@ std::string summary_of(const AssetScene& scene, bool own_camera, bool own_lights
   return text;
 }
 
+/// Within what a scene file may hold, with room for a camera and lights.
+void check_extent(const std::string& path, const AssetScene& scene) {
+  constexpr double limit = 1e15;
+  const double farthest = max_component(component_max(scene.center, -scene.center)) + scene.radius;
+  if (!(farthest < limit))
+    throw bad_file(path, "reaches too far out", fmt::format("coordinates below {:.0e}", limit),
+                   fmt::format("{:.3g}", farthest));
+}
+
+void replace_materials(AssetScene& scene, const std::string& material) {
+  scene.translated.push_back("all materials of the asset -> " + in_quotes(material));
+  const SurfaceTranslation surface = translate_materialx(material, scene);
+  constexpr const char* name = "material";
+  scene.media = Json::object();
+  if (!surface.medium.is_null()) scene.media[name] = surface.medium;
+  for (Json& shape : scene.shapes) {
+    for (const char* key : {"medium", "reflectance", "group"}) shape.erase(key);
+    if (surface.medium.is_null())
+      shape["reflectance"] = triple_json(surface.reflectance);
+    else
+      shape["medium"] = name;
+    if (!surface.medium.is_null() && scene.is_one_mesh && scene.shapes.size() > 1) shape["group"] = name;
+  }
+}
+
 }  // namespace
 
 bool is_asset_name(const std::string& path) {
   return kind_of(path) != AssetKind::none;
 }
 
-ImportedAsset import_asset(const std::string& path, const std::string& mesh_path) {
+ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,
+                           const std::string& material) {
   AssetScene scene =
       kind_of(path) == AssetKind::gltf ? import_gltf(path, mesh_path) : import_obj(path, mesh_path);
   const bool own_camera = !scene.camera.is_null(), own_lights = scene.center_irradiance > 0;
+  check_extent(path, scene);
+  if (!material.empty()) replace_materials(scene, material);
   add_defaults(scene);
   try {
     std::string text = scene_text(scene, std::filesystem::path(path).filename().string());

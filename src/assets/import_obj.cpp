@@ -65,7 +65,9 @@ ObjOutline read_outline(const std::string& text) {
   for_each_line(text, [&](std::string_view line) {
     const std::string_view keyword = next_word(line);
     if (keyword == "v") {
-      if (const auto position = three_numbers(line)) outline.vertices.push_back(*position);
+      const auto position = three_numbers(line);  // where they are none, the reader of the mesh says so
+      if (position && max_component(component_max(*position, -*position)) < 1e18)
+        outline.vertices.push_back(*position);
     } else if (keyword == "mtllib") {
       outline.libraries.emplace_back(trimmed(line));
     } else if (keyword == "usemtl") {
@@ -86,6 +88,7 @@ class ObjImporter {
     const ObjOutline outline = read_outline(read_asset_bytes(path_));
     if (outline.materials.empty()) throw bad_file(path_, "shows nothing", "a mesh with faces");
     enclose(scene_, [&](const auto& visit) { std::ranges::for_each(outline.vertices, visit); });
+    scene_.is_one_mesh = true;
     scene_.translated.push_back("OBJ has no unit: lengths are taken for millimetres");
     for (const std::string& library : outline.libraries) read_libraries(library);
     for (const std::string& material : outline.materials) add_shape(material);

@@ -52,7 +52,8 @@ struct PrecomputeArguments {
 /// An asset of another program, to be written as a scene file.
 struct ImportArguments {
   std::string asset;
-  std::string scene;  ///< to write
+  std::string scene;     ///< to write
+  std::string material;  ///< MaterialX, in place of the asset's materials; empty: these
   Log log;
 };
 

@@ -55,6 +55,8 @@ on stderr says what became of a value, or what is not carried over.
           (KHR_materials_volume with KHR_materials_volume_scatter or KHR_materials_scatter) becomes a medium of
           sigma_a and sigma_s in 1/mm; all others are matte, of their baseColorFactor. Lengths are metres.
           A candela is drawn as 1e6 W/sr and a lux as 1 W/mm^2; the PNG's exposure suits the brightness.
+  .mtlx   the constants of open_pbr_surface and standard_surface: where they scatter below the surface, a medium of
+          subsurface_color and subsurface_radius, whose lengths are in the asset's unit; else a matte colour.
   OBJ     meshes, a shape for each usemtl, with the Kd of its MTL. Lengths are taken for millimetres.
 
 Without a camera the picture is a three-quarter view of the whole, without lights there are a key, a fill and a rim
@@ -63,6 +65,7 @@ light of a size that suits it.
 Examples:
   opaline import statue.glb -o statue.json
   opaline render statue.glb -o statue.png
+  opaline import bunny.obj --material skin.mtlx#SR_skin -o bunny.json
 
 Exit codes: 0 done, 2 the asset is broken, 3 the scene file cannot be written.)";
 

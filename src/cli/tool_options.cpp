@@ -10,6 +10,10 @@ namespace opaline {
 void add_import_options(CLI::App& app, ImportArguments& import) {
   app.add_option("ASSET", import.asset, "GLB, glTF 2.0 or OBJ file")->required()->type_name("FILE");
   app.add_option("-o,--output", import.scene, "scene file to write, .json")->required()->type_name("FILE");
+  app.add_option("--material", import.material,
+                 "MaterialX file (.mtlx) in place of the asset's materials; one of several surfaces in it by "
+                 "its name")
+      ->type_name("FILE[#NAME]");
   app.footer(kImportNotes);
 }
 
