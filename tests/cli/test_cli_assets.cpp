@@ -83,12 +83,14 @@ TEST(CliAssets, BrokenAssetsAreNamed) {
   const struct {
     std::vector<std::string> words;
     const char* said;
-  } cases[] = {{{"import", "bad.gltf", "-o", "a.json"}, "bad.gltf: cannot be read as glTF 2.0"},
-               {{"render", "bad.gltf", "-o", "a.png"}, "bad.gltf: cannot be read as glTF 2.0"},
-               {{"import", "gone.glb", "-o", "a.json"}, "gone.glb: no such file"},
-               {{"import", "wax.txt", "-o", "a.json"}, "is no asset that can be imported"},
-               {{"import", "cubes.glb", "-o", "a.gltf"}, "a name that ends in .json"},
-               {{"render", "cubes.glb", "-o", "a.png", "--set", "media.wix.g=0"}, "did you mean 'wax'"}};
+  } cases[] = {
+      {{"import", "bad.gltf", "-o", "a.json"}, "bad.gltf: cannot be read as glTF 2.0"},
+      {{"render", "bad.gltf", "-o", "a.png"}, "bad.gltf: cannot be read as glTF 2.0"},
+      {{"import", "gone.glb", "-o", "a.json"}, "gone.glb: no such file"},
+      {{"import", "cubes.glb", "--material", "gone.mtlx", "-o", "a.json"}, "gone.mtlx: no such file"},
+      {{"import", "wax.txt", "-o", "a.json"}, "is no asset that can be imported"},
+      {{"import", "cubes.glb", "-o", "a.gltf"}, "a name that ends in .json"},
+      {{"render", "cubes.glb", "-o", "a.png", "--set", "media.wix.g=0"}, "did you mean 'wax'"}};
   for (const auto& c : cases) {
     const Outcome outcome = run_program(c.words, folder.path);
     EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
