@@ -73,11 +73,6 @@ TEST(GltfBadInput, IsNamed) {
        },
        "test.gltf: reaches too far out"},
       {[](Json& j) {
-         j["nodes"][0]["scale"] = {1e308, 1, 1};
-         j["nodes"][0]["translation"] = {1e308, 0, 0};
-       },
-       "test.gltf: reaches too far out"},
-      {[](Json& j) {
          j["nodes"][0]["rotation"] = {0, 0, 0, 0};
        },
        "test.gltf: nodes[0].rotation is no rotation"},
