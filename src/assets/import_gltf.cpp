@@ -253,9 +253,14 @@ class GltfImporter {
       scene_.not_carried.push_back(
           fmt::format("skins ({}): meshes stand as they were modelled", count("skins")));
     constexpr std::array<std::string_view, 2> read{"KHR_lights_punctual", "KHR_mesh_quantization"};
-    for (const std::string& name : gltf_.model.extensionsUsed)
+    const tinygltf::Model& model = gltf_.model;
+    const std::set<std::string> required(model.extensionsRequired.begin(), model.extensionsRequired.end());
+    std::set<std::string> used = required;
+    used.insert(model.extensionsUsed.begin(), model.extensionsUsed.end());
+    for (const std::string& name : used)
       if (!name.starts_with("KHR_materials_") && std::ranges::find(read, name) == read.end())
-        scene_.not_carried.push_back("extension " + in_quotes(name));
+        scene_.not_carried.push_back("extension " + in_quotes(name) +
+                                     (required.contains(name) ? ", which the asset requires" : ""));
   }
 
   const GltfModel& gltf_;
