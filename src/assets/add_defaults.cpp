@@ -34,6 +34,9 @@ constexpr std::array<DefaultLight, 3> kLights{
 constexpr double kLightDistance = 4;  // over the asset's radius
 constexpr double kWhite = .8;         // of a surface under the asset's own lights
 
+// Where the PNG must be darkened by more stops than this, highlights may be beyond the largest half, 65504.
+constexpr double kHalfExposure = -8;
+
 Vec3d towards_camera() {
   const double azimuth = kAzimuth * kRadians, elevation = kElevation * kRadians;
   return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
@@ -71,6 +74,7 @@ void add_exposure(AssetScene& scene) {
   const double stops = std::log2(kWhite * std::numbers::pi / scene.center_irradiance);
   const double exposure = std::clamp(std::round(stops * 100) / 100, -100., 100.);
   scene.film["exposure"] = exposure;
+  if (exposure < kHalfExposure) scene.film["pixel_type"] = "float";
   scene.translated.push_back(fmt::format(
       "exposure {:.2f} stops: a white surface at the asset's centre comes out as {}", exposure, kWhite));
 }

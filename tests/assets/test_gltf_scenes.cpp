@@ -131,6 +131,18 @@ TEST(GltfScenes, PunctualLightsKeepTheirRatios) {
   EXPECT_TRUE(has(imported(asset).not_carried, "range 3 m"));
 }
 
+// Claim: lights as bright as real lamps make an EXR of floats, since halves end at 65504. Fails if the brightness of
+// the file has no say in the pixels' type.
+TEST(GltfScenes, BrightLightsMakeFloats) {
+  for (const double candela : {10., 1e5}) {
+    Asset asset = cube_asset();
+    asset.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", candela}}};
+    asset.root(
+        asset.node({{"translation", {0, 5, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
+    EXPECT_EQ(scene_of(asset.glb(), "a.glb").film.half, candela < 100);
+  }
+}
+
 // Claim: without a camera the picture holds the asset, at three quarters, whatever its size and place, and without
 // lights there are three around it. Fails if the distance does not follow from the radius.
 TEST(GltfScenes, TheDefaultCameraHoldsTheAsset) {
