@@ -11,12 +11,14 @@ root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 # The lists are for the scripts that source this file.
 # shellcheck disable=SC2034
 build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev libopenexr-dev libpng-dev
-  libopenimageio-dev openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhdf5-dev libxxhash-dev)
+  libopenimageio-dev openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhdf5-dev libxxhash-dev
+  libtinygltf-dev libpugixml-dev)
 # shellcheck disable=SC2034
 test_packages=(libgtest-dev parallel clang-format)
 # The report's page is tested in a browser, 98 MB to fetch and 300 MB on the disk: the slow tier alone needs it.
+# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk.
 # shellcheck disable=SC2034
-long_test_packages=(chromium-headless-shell)
+long_test_packages=(chromium-headless-shell assimp-testmodels)
 
 bunny_package=glmark2-data
 bunny_path=./usr/share/glmark2/models/bunny.obj

@@ -16,6 +16,7 @@
 #include "cli/metadata.h"
 #include "cli/option_values.h"
 #include "cli/quality.h"
+#include "opaline/assets/import_asset.h"
 #include "opaline/core/error.h"
 #include "opaline/scene/json_tree.h"
 #include "opaline/scene/nearest_name.h"
@@ -79,6 +80,15 @@ CompareArguments checked(CompareArguments compare, const Options& options) {
   if (!options.fail_above.empty()) compare.fail_above = share_of(options.fail_above);
   compare.log.format = options.json ? LogFormat::json : LogFormat::text;
   return compare;
+}
+
+ImportArguments checked(ImportArguments import) {
+  if (!is_asset_name(import.asset))
+    throw usage_error("is no asset that can be imported", "a name that ends in .glb, .gltf or .obj",
+                      "'" + import.asset + "'");
+  if (!import.scene.ends_with(".json"))
+    throw usage_error("a scene file is written", "a name that ends in .json", "'" + import.scene + "'");
+  return import;
 }
 
 constexpr double kReferenceError = .02, kQuickReferenceError = .03;
@@ -195,6 +205,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   BenchArguments bench;
   CacheArguments cache;
   ProfileArguments profile;
+  ImportArguments import;
   Options options;
   CLI::App app("opaline renders translucent things fast, and says how accurate the picture is.", "opaline");
   app.get_formatter()->column_width(34);
@@ -207,6 +218,8 @@ Command parse_arguments(int argc, const char* const* argv) {
       *app.add_subcommand("precompute", "fill a cache with what rendering will ask for");
   CLI::App& info_command =
       *app.add_subcommand("info", "print what a scene requires and why; nothing is rendered");
+  CLI::App& import_command =
+      *app.add_subcommand("import", "write an asset (.glb, .gltf, .obj) as a scene file, to be edited");
   CLI::App& compare_command = *app.add_subcommand("compare", "print how far a picture is from a reference");
   CLI::App& bench_command =
       *app.add_subcommand("bench", "measure what scenes cost and how far off they are, at many settings");
@@ -217,6 +230,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   add_precompute_options(precompute_command, precompute, options);
   add_common_options(info_command, info.scene, options);
   add_picture_options(info_command, options);
+  add_import_options(import_command, import);
   add_compare_options(compare_command, compare, options);
   add_bench_options(bench_command, bench, options);
   add_profile_options(profile_command, profile, options);
@@ -230,9 +244,10 @@ Command parse_arguments(int argc, const char* const* argv) {
     throw parse_error(app, failure);
   }
   if (app.get_subcommands().empty())
-    throw usage_error("no command given: render, info, compare, bench, profile, cache or precompute" +
+    throw usage_error("no command given: render, info, import, compare, bench, profile, cache or precompute" +
                       hint(app));
   if (compare_command.parsed()) return checked(std::move(compare), options);
+  if (import_command.parsed()) return checked(std::move(import));
   if (cache_command.parsed()) {
     cache.log.format = options.json ? LogFormat::json : LogFormat::text;
     return cache;

@@ -49,6 +49,14 @@ struct PrecomputeArguments {
   Log log;
 };
 
+/// An asset of another program, to be written as a scene file.
+struct ImportArguments {
+  std::string asset;
+  std::string scene;     ///< to write
+  std::string material;  ///< MaterialX, in place of the asset's materials; empty: these
+  Log log;
+};
+
 struct InfoArguments {
   std::string scene;
   std::vector<std::string> overrides;
@@ -93,7 +101,7 @@ struct ShowText {
 };
 
 using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments,
-                             CacheArguments, PrecomputeArguments, ProfileArguments>;
+                             CacheArguments, PrecomputeArguments, ProfileArguments, ImportArguments>;
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case

@@ -49,7 +49,9 @@ CLI::Option* add_key(CLI::App& app, const char* name, T& value, std::string_view
 }  // namespace
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {
-  app.add_option("SCENE", scene, "scene file (JSON with comments)")->required()->type_name("FILE");
+  app.add_option("SCENE", scene, "scene file (JSON with comments), or an asset (.glb, .gltf, .obj)")
+      ->required()
+      ->type_name("FILE");
   add_repeatable(app, "--set", options.sets,
                  "change any value of the scene, e.g. media.marble.eta=1.4; repeatable")
       ->type_name("KEY=VALUE");

@@ -11,6 +11,10 @@ namespace opaline {
 ///       it where some of several frames failed
 void render_command(const RenderArguments& arguments);
 
+/// Writes what was understood of an asset as a scene file, and prints how each value was translated.
+/// error Error{bad_input}: the asset is broken, or is none; Error{run_failed}: the scene file cannot be written
+void import_command(const ImportArguments& arguments);
+
 /// Prints the plan; error run_failed where stdout cannot take it.
 void info_command(const InfoArguments& arguments);
 

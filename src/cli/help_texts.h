@@ -6,6 +6,8 @@ namespace opaline {
 
 inline constexpr const char* kExamples = R"(Examples:
   opaline info bunny.json
+  opaline render statue.glb -o statue.png
+  opaline import statue.glb -o statue.json
   opaline render bunny.json -o bunny.exr -o bunny.png
   opaline render bunny.json -o draft.png --method lambert --resolution 256x256
   opaline render bunny.json -o bunny.exr --target-error 1% --verify
@@ -44,6 +46,28 @@ files tell what samples cost and bring; as many are taken as there is time for, 
 even the cheapest picture takes longer it is made, and a warning says how long. Pixels, --spp and
 settings.light_samples stay yours. What is chosen depends on the clock: the closing line "again by" is a command
 that makes the same pixels without it. With --method direct it is when to stop.)";
+
+inline constexpr const char* kImportNotes =
+    R"(Other commands take an asset wherever they take a scene file: what they see is what is written here. Each line
+on stderr says what became of a value, or what is not carried over.
+
+  glTF    meshes, nodes, cameras, lights (KHR_lights_punctual) and materials. A material that scatters
+          (KHR_materials_volume with KHR_materials_volume_scatter or KHR_materials_scatter) becomes a medium of
+          sigma_a and sigma_s in 1/mm; all others are matte, of their baseColorFactor. Lengths are metres.
+          A candela is drawn as 1e6 W/sr and a lux as 1 W/mm^2; the PNG's exposure suits the brightness.
+  .mtlx   the constants of open_pbr_surface and standard_surface: where they scatter below the surface, a medium of
+          subsurface_color and subsurface_radius, whose lengths are in the asset's unit; else a matte colour.
+  OBJ     meshes, a shape for each usemtl, with the Kd of its MTL. Lengths are taken for millimetres.
+
+Without a camera the picture is a three-quarter view of the whole, without lights there are a key, a fill and a rim
+light of a size that suits it.
+
+Examples:
+  opaline import statue.glb -o statue.json
+  opaline render statue.glb -o statue.png
+  opaline import bunny.obj --material skin.mtlx#SR_skin -o bunny.json
+
+Exit codes: 0 done, 2 the asset is broken, 3 the scene file cannot be written.)";
 
 inline constexpr const char* kCompareNotes =
     R"(Figures are of the relative error (a - b) / max(|b|, floor), floor being 1e-3 of the p99 of |b|, over the

@@ -13,6 +13,7 @@ int run(const opaline::Command& command) {
   if (const auto* precompute = std::get_if<opaline::PrecomputeArguments>(&command))
     opaline::precompute_command(*precompute);
   if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) opaline::info_command(*info);
+  if (const auto* import = std::get_if<opaline::ImportArguments>(&command)) opaline::import_command(*import);
   if (const auto* compare = std::get_if<opaline::CompareArguments>(&command))
     return opaline::compare_command(*compare);
   if (const auto* bench = std::get_if<opaline::BenchArguments>(&command))
@@ -32,6 +33,7 @@ opaline::Log log_of(const opaline::Command& command) {
   if (const auto* profile = std::get_if<opaline::ProfileArguments>(&command)) return profile->log;
   if (const auto* cache = std::get_if<opaline::CacheArguments>(&command)) return cache->log;
   if (const auto* precompute = std::get_if<opaline::PrecomputeArguments>(&command)) return precompute->log;
+  if (const auto* import = std::get_if<opaline::ImportArguments>(&command)) return import->log;
   return {};
 }
 

@@ -51,6 +51,7 @@ void print_group(const Scene& scene, const GroupPlan& group) {
 void print_text(const Scene& scene, const Plan& plan) {
   print_row("scene", fmt::format("{}: {}, {}", scene.file, counted(scene.shapes.size(), "shape"),
                                  counted(plan.triangles, "triangle")));
+  if (!scene.translation.empty()) print_row("asset", scene.translation);
   print_row("picture", picture_text(scene.film));
   print_row("lights", lights_text(scene.lights));
   for (const GroupPlan& group : plan.groups) print_group(scene, group);
@@ -90,6 +91,7 @@ Json plan_json(const Scene& scene, const Plan& plan) {
             {"groups", groups},
             {"stages", plan.stages},
             {"memory_bytes", plan.bytes}};
+  if (!scene.translation.empty()) json["asset"] = scene.translation;
   if (scene.film.crop) json["crop"] = *scene.film.crop;
   return json;
 }

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the commands that render nothing of their own: compare, bench, profile and cache.
+// Options of the commands that render nothing of their own: import, compare, bench, profile and cache.
 #include "cli/command_options.h"
 #include "cli/help_texts.h"
 #include "cli/option_helpers.h"
 #include "cli/option_values.h"
 
 namespace opaline {
+
+void add_import_options(CLI::App& app, ImportArguments& import) {
+  app.add_option("ASSET", import.asset, "GLB, glTF 2.0 or OBJ file")->required()->type_name("FILE");
+  app.add_option("-o,--output", import.scene, "scene file to write, .json")->required()->type_name("FILE");
+  app.add_option("--material", import.material,
+                 "MaterialX file (.mtlx) in place of the asset's materials; one of several surfaces in it by "
+                 "its name")
+      ->type_name("FILE[#NAME]");
+  app.footer(kImportNotes);
+}
 
 void add_compare_options(CLI::App& app, CompareArguments& compare, Options& options) {
   app.add_option("A", compare.picture, "the picture under test, EXR or PNG")->required()->type_name("FILE");
@@ -29,7 +39,9 @@ void add_compare_options(CLI::App& app, CompareArguments& compare, Options& opti
 }
 
 void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
-  app.add_option("SCENE", bench.scenes, "scene files (JSON with comments)")->required()->type_name("FILE");
+  app.add_option("SCENE", bench.scenes, "scene files (JSON with comments), or assets")
+      ->required()
+      ->type_name("FILE");
   app.add_option("-o,--output", bench.report, "write a report into this folder")->type_name("FOLDER");
   app.add_option("--csv", bench.csv, "write all figures")->type_name("FILE");
   app.add_option("--against", bench.against,

@@ -16,7 +16,7 @@ namespace {
 
 struct SourceReader {
   const std::string& name;
-  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path); }
+  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path, file.part); }
   template <class Builtin>
   SourceMesh operator()(const Builtin& shape) const {
     return tessellate(shape, name);
@@ -88,8 +88,11 @@ CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh me
   CheckSettings settings;
   settings.name = name;
   settings.smooth = shape.normals == NormalMode::smooth;
-  settings.may_be_open = std::holds_alternative<QuadShape>(shape.source) && !shape.medium;
-  if (const auto* file = std::get_if<MeshFile>(&shape.source)) settings.fill_holes = file->fill_holes;
+  const auto* file = std::get_if<MeshFile>(&shape.source);
+  const bool is_part =
+      file != nullptr && !file->part.empty();  // of an asset, whose surfaces need not be closed
+  settings.may_be_open = (is_part || std::holds_alternative<QuadShape>(shape.source)) && !shape.medium;
+  if (file != nullptr) settings.fill_holes = file->fill_holes;
   place(mesh, shape.to_world, name);
   return check_mesh(std::move(mesh), settings, memory);
 }

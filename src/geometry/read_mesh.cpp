@@ -87,15 +87,22 @@ bool is_mesh_file_name(const std::string& path) {
   return find_mesh_format(path) != nullptr;
 }
 
-SourceMesh read_mesh(const std::string& path) {
+std::string mesh_contents(const std::string& path) {
+  const MeshFormat* format = find_mesh_format(path);
+  return format != nullptr && format->contents != nullptr ? format->contents(path) : read_mesh_bytes(path);
+}
+
+SourceMesh read_mesh(const std::string& path, const std::string& part) {
   const MeshFormat* format = find_mesh_format(path);
   if (format == nullptr) {
     const std::string extension = fs::path(path).extension().string();
     throw bad_file(path, "unknown mesh format", "a name that ends in " + known_extensions(),
                    extension.empty() ? "no extension" : "'" + extension + "'");
   }
+  if (!part.empty() && format->read_part == nullptr)
+    throw bad_file(path, "its format has no parts", "no \"part\"", '"' + part + '"');
   std::string bytes = read_mesh_bytes(path);
-  SourceMesh mesh = format->read(path, bytes);
+  SourceMesh mesh = part.empty() ? format->read(path, bytes) : format->read_part(path, part, bytes);
   require_indexable(path, mesh);
   return mesh;
 }

@@ -8,9 +8,10 @@
 
 namespace opaline {
 
-/// Its file, or "shape 'name'".
+/// Its file, with the part of it that is meant, or "shape 'name'".
 inline std::string shape_label(const Shape& shape) {
-  if (const auto* file = std::get_if<MeshFile>(&shape.source)) return file->path;
+  if (const auto* file = std::get_if<MeshFile>(&shape.source))
+    return file->path + (file->part.empty() ? "" : " part '" + file->part + "'");
   return "shape '" + shape.name + "'";
 }
 

@@ -11,6 +11,7 @@
 #include <set>
 #include <vector>
 
+#include "opaline/assets/import_asset.h"
 #include "opaline/geometry/mesh_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "scene/keyed_values.h"
@@ -44,7 +45,7 @@ void check_is_no_mesh(const std::string& path) {
   throw bad_file(path, "is a mesh, not a scene",
                  "a scene file (JSON) with \"shapes\": [{\"file\": \"" +
                      printable(std::filesystem::path(path).filename().string()) +
-                     "\"}], as scenes/bunny-marble.json");
+                     "\"}], as scenes/bunny-marble.json, or an asset: .glb, .gltf or .obj");
 }
 
 /// Reads the elements of a list, and rejects a name used twice.
@@ -149,11 +150,29 @@ Scene read_scene(const Document& document) {
   return scene;
 }
 
+/// The lines of a text that the user has not seen would mislead.
+void forget_places(Scene& scene) {
+  const auto forget = [&](auto& records) {
+    for (auto& record : records)
+      if (record.place.file == scene.file) record.place = {};
+  };
+  forget(scene.media);
+  forget(scene.shapes);
+  forget(scene.lights);
+}
+
 }  // namespace
 
 Scene load_scene(const std::string& path, std::span<const std::string> overrides, int frame) {
-  check_is_no_mesh(path);
-  return parse_scene(read_text(path), path, overrides, frame);
+  if (!is_asset_name(path)) {
+    check_is_no_mesh(path);
+    return parse_scene(read_text(path), path, overrides, frame);
+  }
+  const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
+  Scene scene = parse_scene(asset.text, path, overrides, frame);
+  scene.translation = asset.summary;
+  forget_places(scene);
+  return scene;
 }
 
 std::string with_frame(const std::string& path, int frame) {

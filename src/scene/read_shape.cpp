@@ -15,6 +15,7 @@ constexpr std::array<std::string_view, 6> source_names{"file", "sphere", "box", 
 MeshFile read_mesh_file(const ObjectReader& shape, const ShapeContext& context) {
   MeshFile mesh;
   mesh.path = shape.need("file").file_path();
+  if (const auto part = shape.find("part")) mesh.part = part->string();
   if (const auto fill_holes = shape.find("fill_holes")) mesh.fill_holes = fill_holes->flag();
   if (const auto fit_size = shape.find("fit_size")) mesh.fit_size = fit_size->length(context.mm_per_unit);
   return mesh;
@@ -61,7 +62,7 @@ ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context, 
   const std::string_view kind = shape.exactly_one_of(source_names);
   place = shape.need(kind).place();
   if (kind == "file") return read_mesh_file(shape, context);
-  for (const std::string_view option : {"fill_holes", "fit_size"})
+  for (const std::string_view option : {"part", "fill_holes", "fit_size"})
     if (const auto value = shape.find(option)) value->fail_key("has no meaning without 'file'");
   const ObjectReader source(shape.need(kind), "shape." + std::string(kind));
   const double mm_per_unit = context.mm_per_unit;

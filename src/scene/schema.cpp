@@ -125,7 +125,12 @@ std::vector<KeyInfo> shape_rows() {
       row("shape", "name", text, "", kFiniteNumber, "\"shape0\", \"shape1\", ...",
           "what messages and `--set` call it; no two alike"),
       row("shape", "file", text, "", kFiniteNumber, "",
-          "mesh: OBJ, PLY, STL or OFF; relative paths start at the scene file's folder"),
+          "mesh: OBJ, PLY, STL, OFF or an asset's GLB or glTF; relative paths start at the scene file's "
+          "folder"),
+      row("shape", "part", text, "", kFiniteNumber, "all of the file",
+          "with `file`: a part of it; of GLB and glTF, which must have it, `\"mesh/primitive\"` by their "
+          "indices, "
+          "of OBJ the material whose faces are meant"),
       row("shape", "sphere", object, "", kFiniteNumber, "", "a built-in sphere, see below"),
       row("shape", "box", object, "", kFiniteNumber, "", "a built-in box"),
       row("shape", "quad", object, "", kFiniteNumber, "", "a built-in parallelogram"),

@@ -8,6 +8,7 @@
 #include <set>
 #include <string_view>
 
+#include "opaline/assets/import_asset.h"
 #include "opaline/core/error.h"
 #include "opaline/geometry/mesh_file.h"
 
@@ -24,9 +25,9 @@ std::string read_again(const std::string& path) {
   return bytes;
 }
 
-std::string mesh_bytes(const Shape& shape, const std::string& path) {
+std::string contents_of(const Shape& shape, const std::string& path) {
   try {
-    return read_mesh_bytes(path);
+    return mesh_contents(path);
   } catch (const Error& failure) {
     throw told_at(shape.place, failure);
   }
@@ -45,12 +46,12 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
     hash.append(length.data(), length.size());
     hash.append(part.data(), part.size());
   };
-  add(read_again(path));
+  add(is_asset_name(path) ? import_asset(path, "").text : read_again(path));
   for (const std::string& text : overrides) add(text);
   std::set<std::string> seen;
   for (const Shape& shape : scene.shapes)
     if (const auto* mesh = std::get_if<MeshFile>(&shape.source))
-      if (seen.insert(mesh->path).second) add(mesh_bytes(shape, mesh->path));
+      if (seen.insert(mesh->path).second) add(contents_of(shape, mesh->path));
   return hash.digest();
 }
 

@@ -9,7 +9,8 @@ namespace {
 struct AddSource {
   KeyBuilder& key;
   void operator()(const MeshFile& mesh) const {
-    key.add(mesh.path).add(read_mesh_bytes(mesh.path)).add(mesh.fill_holes).add(mesh.fit_size.value_or(0));
+    key.add(mesh.path).add(mesh_contents(mesh.path)).add(mesh.part);
+    key.add(mesh.fill_holes).add(mesh.fit_size.value_or(0));
   }
   void operator()(const SphereShape& s) const { key.add(s.center).add(s.radius).add(s.fineness); }
   void operator()(const BoxShape& s) const { key.add(s.low).add(s.high); }

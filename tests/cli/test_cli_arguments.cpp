@@ -44,7 +44,8 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"rendr", scene}, "unknown command 'rendr' (did you mean 'render'?)"},
       {{"ifno", scene, "--spp", "4"}, "unknown command 'ifno' (did you mean 'info'?)"},
       {{"draw", scene},
-       "unknown command 'draw' (expected one of render, precompute, info, compare, bench, profile, cache)"},
+       "unknown command 'draw' (expected one of render, precompute, info, import, compare, bench, profile, "
+       "cache)"},
       {{"cache", "lss", out}, "unknown command 'lss' (did you mean 'ls'?)"},
       {{"help", "rendr"}, "unknown command 'rendr' (did you mean 'render'?)"},
       {{"render", scene, "--outpt", out}, "unknown option '--outpt' (did you mean '--output'?)"},
@@ -55,7 +56,7 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
        "unknown key 'samples' in the scene (did you mean 'settings.samples'?)"},
       {{"info", scene, "--set", "resolutoin=[4,4]"}, "(did you mean 'film.resolution'?)"},
       {{"info", scene, "--set", "settings.sampels=4"}, "(did you mean 'samples'?)"},
-      {{"info", "bunny.obj"}, "bunny.obj: is a mesh, not a scene"},
+      {{"info", "bunny.ply"}, "bunny.ply: is a mesh, not a scene"},
       {{"render", scene, "-o", out, "--target-error", "1"}, "got 1, which is 100 %; did you mean 1%?"},
       {{"render", scene, "-o", out, "--until-error", "2"}, "did you mean 2%?"},
       {{scene}, "unknown command '"},

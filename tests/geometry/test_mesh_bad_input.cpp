@@ -73,7 +73,8 @@ TEST(BadMesh, Obj) {
       {"continued.obj", triangle + "f 1 2 \\\n 3\nf 1 2 \\\n 7\n", ":7: vertex index out of range"},
       {"noarea.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n", "no area"},
       {"point.obj", "v 0 0 0\nf 1 1 1\n", "no area"},
-      {"mesh.xyz", triangle, "expected a name that ends in .obj, .ply, .stl or .off, got '.xyz'"},
+      {"mesh.xyz", triangle,
+       "expected a name that ends in .obj, .ply, .stl, .off, .glb or .gltf, got '.xyz'"},
       {"mesh", triangle, "got no extension"},
   });
 }

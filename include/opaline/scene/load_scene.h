@@ -10,7 +10,7 @@
 
 namespace opaline {
 
-/// Reads and checks a scene file; lengths are converted to mm by its mm_per_unit.
+/// Reads and checks a scene file, or an asset (GLB, glTF, OBJ) as what import_asset makes of it; lengths are converted to mm by its mm_per_unit.
 /// in    overrides: "media.marble.eta=1.4": a path of keys (array elements by index or by "name") and a JSON
 /// value
 ///       (a value that is not JSON is taken as a string), applied before checking

@@ -72,6 +72,9 @@ struct MeshFile {
   /// If set: scale so that the largest side of the bounding box is this long (mm), centre x and z on the
   /// origin, and stand the mesh on y = 0; applied before the shape's transform.
   std::optional<double> fit_size;
+  /// Of the file, where it holds several meshes: "mesh/primitive" by their indices of a glTF asset, the
+  /// material's name of an OBJ. Empty: all of the file.
+  std::string part{};
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
@@ -233,8 +236,9 @@ struct Settings {
 };
 
 struct Scene {
-  std::string file;        ///< for messages
-  double mm_per_unit = 1;  ///< of the file, for what is written in its units; nothing here is
+  std::string file;         ///< for messages
+  std::string translation;  ///< of an asset: what its import made of it, in a line; empty: a scene file
+  double mm_per_unit = 1;   ///< of the file, for what is written in its units; nothing here is
   std::vector<Medium> media;
   std::vector<Shape> shapes;
   std::vector<Light> lights;

@@ -19,13 +19,20 @@ struct MeshFormat {
   /// error Error{bad_input} naming the file, and the line where the format has lines
   SourceMesh (*read)(const std::string& path, std::string& bytes);
 
+  /// A part of the mesh, see MeshFile::part. Null: files of the format have no parts.
+  SourceMesh (*read_part)(const std::string& path, const std::string& part, std::string& bytes) = nullptr;
+
+  /// What the mesh of a file whose bytes alone do not say it all depends on. Null: on its bytes.
+  std::string (*contents)(const std::string& path) = nullptr;
+
   /// The length of the whole file as its header announces it; 0 if it does not. Null: the format never does.
   std::uintmax_t (*announced_length)(std::istream& file) = nullptr;
 };
 
-extern const MeshFormat obj_format, ply_format, stl_format, off_format;
+extern const MeshFormat obj_format, ply_format, stl_format, off_format, glb_format, gltf_format;
 
-inline constexpr std::array mesh_formats{&obj_format, &ply_format, &stl_format, &off_format};
+inline constexpr std::array mesh_formats{&obj_format, &ply_format, &stl_format,
+                                         &off_format, &glb_format, &gltf_format};
 
 /// The format that a file's name ends in, in upper or lower case; null if it is none of them.
 const MeshFormat* find_mesh_format(const std::string& path);

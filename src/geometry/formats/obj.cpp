@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wavefront OBJ: v, vn and f are read; what else a file says is counted and said.
+// Wavefront OBJ: v, vn and f are read, and usemtl where the faces of one material are a part of the file; what
+// else a file says is counted and said.
 #include <algorithm>
 #include <array>
 #include <unordered_set>
@@ -7,6 +8,7 @@
 
 #include "file_checks.h"
 #include "mesh_format.h"
+#include "opaline/assets/obj_material.h"
 #include "text_cursor.h"
 
 namespace opaline {
@@ -50,7 +52,9 @@ class VertexVariants {
 
 class ObjReader {
  public:
-  ObjReader(const std::string& path, std::string& bytes) : path_(path), bytes_(bytes) {}
+  /// part: the material whose faces are read; null: all faces
+  ObjReader(const std::string& path, const std::string* part, std::string& bytes)
+      : path_(path), part_(part), bytes_(bytes) {}
 
   SourceMesh run() {
     if (bytes_.find('\0') != bytes_.npos)
@@ -90,6 +94,7 @@ class ObjReader {
       first_unread_ = quoted(keyword);
       first_unread_line_ = line(at);
     }
+    if (keyword == "usemtl") material_ = obj_material_name(at.rest_of_line());
     if (first_material_line_ == 0 && (keyword == "mtllib" || keyword == "usemtl"))
       first_material_line_ = line(at);
   }
@@ -149,6 +154,7 @@ class ObjReader {
       corners_.push_back(corner(word, at));
     if (corners_.size() < 3)
       throw bad_line(path_, line(at), "bad face", "at least three corners", std::to_string(corners_.size()));
+    if (part_ != nullptr && material_ != *part_) return;
     keep_first_of_equal_corners();
     if (corners_.size() < 3) {
       ++mesh_.collapsed;
@@ -185,7 +191,10 @@ class ObjReader {
   }
 
   void finish() {
-    require_faces(path_, mesh_.positions.size(), mesh_.triangles.size() + mesh_.collapsed);
+    const std::size_t faces = mesh_.triangles.size() + mesh_.collapsed;
+    if (part_ != nullptr && faces == 0)
+      throw bad_file(path_, "has no such part", "a material that usemtl gives to faces", quoted(*part_));
+    require_faces(path_, mesh_.positions.size(), faces);
     check_.throw_if_any(path_);
     check_range(highest_vertex_, mesh_.positions.size(), "vertex");
     check_range(highest_normal_, normals_.size(), "normal");
@@ -193,7 +202,7 @@ class ObjReader {
       mesh_.warnings.push_back(
           path_ + ":" + std::to_string(first_unread_line_) + ": " + std::to_string(unread_) +
           " statements that are no part of a polygon mesh are" + " left out, the first is " + first_unread_);
-    if (first_material_line_ > 0)
+    if (first_material_line_ > 0 && part_ == nullptr)
       mesh_.warnings.push_back(path_ + ":" + std::to_string(first_material_line_) +
                                ": materials and textures (mtllib, usemtl) are not read: the scene file says "
                                "what a shape is made of");
@@ -216,7 +225,9 @@ class ObjReader {
   }
 
   const std::string& path_;
+  const std::string* part_;
   std::string& bytes_;
+  std::string material_{kNoMaterial};  // of the faces that follow
   SourceMesh mesh_;
   VertexCheck check_;
   std::vector<std::size_t> joined_;  // offsets of the newlines taken out
@@ -231,11 +242,15 @@ class ObjReader {
 };
 
 SourceMesh read_obj(const std::string& path, std::string& bytes) {
-  return ObjReader(path, bytes).run();
+  return ObjReader(path, nullptr, bytes).run();
+}
+
+SourceMesh read_material(const std::string& path, const std::string& part, std::string& bytes) {
+  return ObjReader(path, &part, bytes).run();
 }
 
 }  // namespace
 
-constinit const MeshFormat obj_format{".obj", read_obj};
+constinit const MeshFormat obj_format{.extension = ".obj", .read = read_obj, .read_part = read_material};
 
 }  // namespace opaline

@@ -126,6 +126,6 @@ SourceMesh read_off(const std::string& path, std::string& bytes) {
 
 }  // namespace
 
-constinit const MeshFormat off_format{".off", read_off};
+constinit const MeshFormat off_format{.extension = ".off", .read = read_off};
 
 }  // namespace opaline

@@ -246,6 +246,6 @@ SourceMesh read_ply(const std::string& path, std::string& bytes) {
 
 }  // namespace
 
-constinit const MeshFormat ply_format{".ply", read_ply};
+constinit const MeshFormat ply_format{.extension = ".ply", .read = read_ply};
 
 }  // namespace opaline

@@ -164,6 +164,7 @@ std::uintmax_t announced_length(std::istream& file) {
 
 }  // namespace
 
-constinit const MeshFormat stl_format{".stl", read_stl, announced_length};
+constinit const MeshFormat stl_format{
+    .extension = ".stl", .read = read_stl, .announced_length = announced_length};
 
 }  // namespace opaline

@@ -30,6 +30,14 @@ class TextCursor {
     return text_.substr(first, offset_ - first);
   }
 
+  /// What stands between here and the end of this line, without blanks around it.
+  std::string_view rest_of_line() {
+    std::string_view rest = text_.substr(offset_, line_end() - offset_);
+    while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
+    while (!rest.empty() && is_blank(rest.back())) rest.remove_suffix(1);
+    return rest;
+  }
+
   /// The next word of this line or a later one; empty at the end of the text.
   std::string_view word_across_lines() {
     for (;;) {

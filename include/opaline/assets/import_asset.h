@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From an asset as other programs write it (GLB, glTF 2.0, OBJ with MTL) to the text of a scene file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace opaline {
+
+struct ImportedAsset {
+  std::string text;                      ///< a scene file, see scenes/README.md
+  std::vector<std::string> translated;   ///< what became of its values, a line each
+  std::vector<std::string> not_carried;  ///< what the scene lacks of the asset, a line each
+  std::string summary;                   ///< one line
+};
+
+/// Whether a file's name ends as an asset's does, in upper or lower case.
+bool is_asset_name(const std::string& path);
+
+/// in    path: an asset; mesh_path: how the scene file calls it, relative to its own folder; material: a MaterialX
+///       file in place of the asset's materials, "skin.mtlx" or "skin.mtlx#name" of a surface or material in it
+/// out   a scene that is valid and shows something: with a camera and lights, the asset's or default ones
+/// error Error{bad_input} naming the file and the record: not there, broken, or without a triangle
+ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,
+                           const std::string& material = {});
+
+}  // namespace opaline

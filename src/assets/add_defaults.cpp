@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The camera and the lights of a scene that has none.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "assets/asset_scene.h"
+
+namespace opaline {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180;
+
+// A three-quarter view: glTF assets face +z.
+constexpr double kAzimuth = 35, kElevation = 20, kFieldOfView = 30;  // degrees
+constexpr double kMargin = 1.05;                                     // of the sphere that the picture holds
+constexpr int kSamplesPerPixel = 4;
+
+/// A ball that lights the asset: where, in units along the picture's right, the world's up and towards the camera;
+/// its radius over that of the asset; and the radiance of a white matte surface at the asset's centre that faces it.
+struct DefaultLight {
+  const char* name;
+  Vec3d direction;
+  double radius, white;
+};
+
+// Where the asset comes nearest to a light it is 1.8 times as bright: white stays below 1 there, too. The rim lies
+// outside the picture.
+constexpr std::array<DefaultLight, 3> kLights{
+    {{"key", {-.7, .7, .7}, .8, .52}, {"fill", {.9, .2, .8}, 1.2, .16}, {"rim", {.3, 1, -.8}, .6, .35}}};
+constexpr double kLightDistance = 4;  // over the asset's radius
+constexpr double kWhite = .8;         // of a surface under the asset's own lights
+
+// Where the PNG must be darkened by more stops than this, highlights may be beyond the largest half, 65504.
+constexpr double kHalfExposure = -8;
+
+Vec3d towards_camera() {
+  const double azimuth = kAzimuth * kRadians, elevation = kElevation * kRadians;
+  return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+          std::cos(azimuth) * std::cos(elevation)};
+}
+
+void add_camera(AssetScene& scene) {
+  const double distance = kMargin * scene.radius / std::sin(kFieldOfView * kRadians / 2);
+  scene.camera = {{"position", triple_json(scene.center + towards_camera() * distance)},
+                  {"look_at", triple_json(scene.center)},
+                  {"field_of_view", kFieldOfView}};
+  scene.translated.push_back("no camera: a default one frames the asset");
+}
+
+void add_lights(AssetScene& scene) {
+  if (!scene.lights.empty()) scene.not_carried.push_back("its lights: they are dark");
+  scene.lights = Json::array();
+  const Vec3d forward = normalized(towards_camera()), up{0, 1, 0}, right = normalized(cross(up, forward));
+  for (const DefaultLight& light : kLights) {
+    const Vec3d& d = light.direction;
+    const Vec3d direction = normalized(right * d.x + up * d.y + forward * d.z);
+    const double ratio = kLightDistance / light.radius;
+    scene.lights.push_back(
+        {{"type", "sphere"},
+         {"name", light.name},
+         {"center", triple_json(scene.center + direction * (kLightDistance * scene.radius))},
+         {"radius", light.radius * scene.radius},
+         {"radiance", light.white * ratio * ratio}});
+  }
+  scene.translated.push_back("no lights: default ones, called key, fill and rim, are put around the asset");
+}
+
+/// White, facing all lights at the asset's centre, comes out as kWhite in the PNG.
+void add_exposure(AssetScene& scene) {
+  const double stops = std::log2(kWhite * std::numbers::pi / scene.center_irradiance);
+  const double exposure = std::clamp(std::round(stops * 100) / 100, -100., 100.);
+  scene.film["exposure"] = exposure;
+  if (exposure < kHalfExposure) scene.film["pixel_type"] = "float";
+  scene.translated.push_back(fmt::format(
+      "exposure {:.2f} stops: a white surface at the asset's centre comes out as {}", exposure, kWhite));
+}
+
+}  // namespace
+
+void add_defaults(AssetScene& scene) {
+  if (!scene.film.contains("resolution")) scene.film["resolution"] = {512, 512};
+  scene.film["samples_per_pixel"] = kSamplesPerPixel;
+  if (scene.camera.is_null()) add_camera(scene);
+  if (scene.center_irradiance > 0)
+    add_exposure(scene);
+  else
+    add_lights(scene);
+}
+
+}  // namespace opaline

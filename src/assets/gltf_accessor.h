@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers of a glTF accessor.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "assets/gltf_model.h"
+#include "opaline/core/vec3.h"
+
+namespace opaline {
+
+/// in    index: of an accessor that is there
+/// out   its vectors, sparse ones put in place, normalized integers as glTF says
+/// error Error{bad_input}: it is no VEC3, or reaches beyond its buffer view
+std::vector<Vec3d> read_vectors(const GltfModel& gltf, int index);
+
+/// The same of unsigned scalars.
+std::vector<std::uint32_t> read_indices(const GltfModel& gltf, int index);
+
+}  // namespace opaline

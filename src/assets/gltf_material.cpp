@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Volumes, scattering and colours of glTF materials. The scattering extensions are drafts with two spellings,
+// KHR_materials_volume_scatter and KHR_materials_scatter.
+#include "assets/gltf_material.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+#include <optional>
+
+namespace opaline {
+namespace {
+
+constexpr double kMillimetres = 1000;  // in glTF's metre
+// Attenuation of a channel that light crosses without loss, or not at all, over the attenuation distance.
+constexpr double kDarkest = 1e-6, kClearest = .999;
+constexpr double kMostAnisotropy = .99;
+constexpr double kLeastIor = .1, kMostIor = 10;
+
+/// The values of one extension of a material; those that are not there have defaults.
+class ExtensionValues {
+ public:
+  ExtensionValues(const GltfModel& gltf, std::string place, const tinygltf::Value& values)
+      : gltf_(gltf), place_(std::move(place)), values_(values) {}
+
+  double number(const char* key, double otherwise) const {
+    if (!values_.Has(key)) return otherwise;
+    const tinygltf::Value& value = values_.Get(key);
+    if (!value.IsNumber()) fail_at(gltf_.path, place_ + '.' + key, "is of the wrong type", "a number");
+    return value.GetNumberAsDouble();
+  }
+
+  Vec3d color(const char* key, const Vec3d& otherwise) const {
+    if (!values_.Has(key)) return otherwise;
+    const tinygltf::Value& value = values_.Get(key);
+    Vec3d color;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (value.ArrayLen() != 3 || !value.Get(int(i)).IsNumber())
+        fail_at(gltf_.path, place_ + '.' + key, "is of the wrong type", "three numbers");
+      color[i] = std::clamp(value.Get(int(i)).GetNumberAsDouble(), 0., 1.);
+    }
+    return color;
+  }
+
+  /// The names of its textures.
+  std::vector<std::string> textures() const {
+    std::vector<std::string> names;
+    for (const std::string& key : values_.Keys())
+      if (key.ends_with("Texture")) names.push_back(key);
+    return names;
+  }
+
+ private:
+  const GltfModel& gltf_;
+  std::string place_;
+  const tinygltf::Value& values_;
+};
+
+/// How light scatters in a volume, in either spelling of the draft.
+struct Scatter {
+  Vec3d multiscatter_color;  ///< times the strength
+  double anisotropy;
+};
+
+/// sigma_a and sigma_s over sigma_t.
+struct Shares {
+  double absorbed, scattered;
+};
+
+/// The single-scattering albedo whose half space reflects `color` (Kulla & Conty 2017, with the anisotropy of
+/// van de Hulst's similarity), for an index-matched boundary as the glTF draft has it.
+Shares single_scattering(double color, double g) {
+  const double s = 4.09712 + 4.20863 * color - std::sqrt(9.59217 + 41.6808 * color + 17.7126 * color * color);
+  const double square = std::clamp(s * s, 0., 1.), scale = 1 / (1 - g * square);
+  return {square * (1 - g) * scale, (1 - square) * scale};
+}
+
+class MaterialTranslator {
+ public:
+  MaterialTranslator(const GltfModel& gltf, int index, AssetScene& scene)
+      : gltf_(gltf),
+        material_(gltf.model.materials[std::size_t(index)]),
+        place_(record_name("materials", std::size_t(index))),
+        label_(material_label(gltf, index)),
+        scene_(scene) {}
+
+  SurfaceTranslation run() {
+    SurfaceTranslation surface;
+    const std::vector<double>& base = material_.pbrMetallicRoughness.baseColorFactor;
+    if (base.size() == 4)
+      for (std::size_t i = 0; i < 3; ++i) surface.reflectance[i] = std::clamp(base[i], 0., 1.);
+    if (const std::optional<Scatter> scatter = read_scatter()) surface.medium = make_medium(*scatter);
+    if (surface.medium.is_null())
+      translated(
+          fmt::format("baseColorFactor -> reflectance {} (opaque)", short_triple(surface.reflectance)));
+    else if (surface.reflectance != Vec3d(1))
+      not_carried(fmt::format("baseColorFactor {} of a translucent body", short_triple(surface.reflectance)));
+    tell_losses(!surface.medium.is_null());
+    return surface;
+  }
+
+ private:
+  void translated(const std::string& text) { scene_.translated.push_back(label_ + ": " + text); }
+  void not_carried(const std::string& text) { scene_.not_carried.push_back(label_ + ": " + text); }
+
+  bool has(const char* extension) const { return material_.extensions.contains(extension); }
+
+  ExtensionValues values(const char* extension) const {
+    static const tinygltf::Value none;
+    const auto found = material_.extensions.find(extension);
+    return {gltf_, place_ + ".extensions." + extension,
+            found == material_.extensions.end() ? none : found->second};
+  }
+
+  std::optional<Scatter> read_scatter() const {
+    if (has("KHR_materials_scatter")) {
+      const ExtensionValues scatter = values("KHR_materials_scatter");
+      const double strength = std::clamp(scatter.number("scatterStrengthFactor", 1), 0., 1.);
+      return Scatter{scatter.color("multiscatterColorFactor", Vec3d(1)) * strength,
+                     scatter.number("scatterAnisotropy", 0)};
+    }
+    if (!has("KHR_materials_volume_scatter")) return std::nullopt;
+    const ExtensionValues scatter = values("KHR_materials_volume_scatter");
+    return Scatter{scatter.color("multiscatterColor", Vec3d(0)), scatter.number("scatterAnisotropy", 0)};
+  }
+
+  double index_of_refraction() {
+    constexpr double of_gltf = 1.5;
+    const double ior = values("KHR_materials_ior").number("ior", of_gltf);
+    if (ior >= kLeastIor && ior <= kMostIor) return ior;
+    not_carried(
+        fmt::format("ior {:.4g}, which is outside {} to {}: {} is taken", ior, kLeastIor, kMostIor, of_gltf));
+    return of_gltf;
+  }
+
+  /// Null where nothing attenuates light.
+  Json make_medium(const Scatter& scatter) {
+    const ExtensionValues volume = values("KHR_materials_volume");
+    const double distance = volume.number("attenuationDistance", std::numeric_limits<double>::infinity());
+    const Vec3d color = volume.color("attenuationColor", Vec3d(1));
+    if (!(distance > 0) || !std::isfinite(distance) || color == Vec3d(1) ||
+        scatter.multiscatter_color == Vec3d()) {
+      not_carried(
+          "its scattering: without attenuationDistance, attenuationColor below 1 and a multiscatter colour "
+          "nothing scatters; taken as opaque");
+      return {};
+    }
+    if (color != clamped(color))
+      not_carried(fmt::format("attenuationColor {} beyond {} to {}: {} is taken", short_triple(color),
+                              kDarkest, kClearest, short_triple(clamped(color))));
+    const double g = std::clamp(scatter.anisotropy, -kMostAnisotropy, kMostAnisotropy);
+    Vec3d sigma_a, sigma_s;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double sigma_t = -std::log(clamped(color)[i]) / (distance * kMillimetres);
+      const Shares shares = single_scattering(scatter.multiscatter_color[i], g);
+      sigma_a[i] = shares.absorbed * sigma_t;
+      sigma_s[i] = shares.scattered * sigma_t;
+    }
+    const double ior = index_of_refraction();
+    translated(fmt::format(
+        "attenuationColor {} over {:.4g} mm, multiscatter colour {}, anisotropy {:.3g}, ior {:.4g} "
+        "-> sigma_a {}, sigma_s {} 1/mm, g {:.3g}, specular_ior {:.4g}",
+        short_triple(color), distance * kMillimetres, short_triple(scatter.multiscatter_color),
+        scatter.anisotropy, ior, short_triple(sigma_a), short_triple(sigma_s), g, ior));
+    tell_of_entry(volume);
+    return {{"sigma_a", triple_json(sigma_a)},
+            {"sigma_s", triple_json(sigma_s)},
+            {"g", g},
+            {"specular_ior", ior}};
+  }
+
+  static Vec3d clamped(const Vec3d& color) {
+    return component_min(component_max(color, Vec3d(kDarkest)), Vec3d(kClearest));
+  }
+
+  /// A translucent body takes in all light that its boundary lets through, wherever it is thick.
+  void tell_of_entry(const ExtensionValues& volume) {
+    const double thickness = volume.number("thicknessFactor", 0);
+    if (thickness > 0)
+      translated(
+          fmt::format("thicknessFactor {:.4g} mm -> the mesh's own thickness", thickness * kMillimetres));
+    else
+      not_carried("thicknessFactor 0 (thin-walled): the mesh is taken as a body");
+    const double clear = values("KHR_materials_transmission").number("transmissionFactor", 0);
+    const ExtensionValues diffuse = values("KHR_materials_diffuse_transmission");
+    const double share = diffuse.number("diffuseTransmissionFactor", 0);
+    const Vec3d tint = diffuse.color("diffuseTransmissionColorFactor", Vec3d(1));
+    if (clear < 1 && share < 1)
+      not_carried(
+          fmt::format("transmissionFactor {:.3g} and diffuseTransmissionFactor {:.3g}: all light enters that "
+                      "the boundary does not reflect",
+                      clear, share));
+    if (tint != Vec3d(1)) not_carried("diffuseTransmissionColorFactor " + short_triple(tint));
+  }
+
+  void tell_losses(bool is_translucent) {
+    const tinygltf::PbrMetallicRoughness& pbr = material_.pbrMetallicRoughness;
+    std::vector<std::string> textures;
+    const auto add = [&](int index, const char* name) {
+      if (index >= 0) textures.emplace_back(name);
+    };
+    add(pbr.baseColorTexture.index, "baseColorTexture");
+    add(pbr.metallicRoughnessTexture.index, "metallicRoughnessTexture");
+    add(material_.normalTexture.index, "normalTexture");
+    add(material_.occlusionTexture.index, "occlusionTexture");
+    add(material_.emissiveTexture.index, "emissiveTexture");
+    for (const auto& [extension, unused] : material_.extensions)
+      for (std::string& name : values(extension.c_str()).textures()) textures.push_back(std::move(name));
+    for (const std::string& name : textures) not_carried("texture " + name);
+    if (pbr.metallicFactor > 0 && !is_translucent)
+      not_carried(fmt::format("metallicFactor {:.3g}: shaded as matte paint", pbr.metallicFactor));
+    if (material_.values.contains("roughnessFactor"))
+      not_carried(fmt::format("roughnessFactor {:.3g}: {}", pbr.roughnessFactor,
+                              is_translucent ? "the boundary is smooth" : "shaded as matte paint"));
+    if (material_.emissiveFactor != std::vector<double>{0, 0, 0} && !material_.emissiveFactor.empty())
+      not_carried("emissiveFactor: it does not glow");
+    if (material_.alphaMode != "OPAQUE")
+      not_carried("alphaMode " + in_quotes(material_.alphaMode) + ": shown whole");
+    tell_extensions(is_translucent);
+  }
+
+  void tell_extensions(bool is_translucent) {
+    constexpr std::array<std::string_view, 3> of_volume{"KHR_materials_transmission", "KHR_materials_volume",
+                                                        "KHR_materials_diffuse_transmission"};
+    constexpr std::array<std::string_view, 3> read{"KHR_materials_ior", "KHR_materials_volume_scatter",
+                                                   "KHR_materials_scatter"};
+    for (const auto& [name, unused] : material_.extensions) {
+      if (std::ranges::find(read, name) != read.end()) continue;
+      if (std::ranges::find(of_volume, name) == of_volume.end())
+        not_carried(name);
+      else if (!is_translucent)
+        not_carried(name + ": nothing scatters in it, and clear bodies are not rendered; taken as opaque");
+    }
+  }
+
+  const GltfModel& gltf_;
+  const tinygltf::Material& material_;
+  std::string place_, label_;
+  AssetScene& scene_;
+};
+
+}  // namespace
+
+SurfaceTranslation translate_material(const GltfModel& gltf, int index, AssetScene& scene) {
+  if (index >= 0) return MaterialTranslator(gltf, index, scene).run();
+  scene.translated.push_back("no material -> reflectance 1 (opaque)");
+  return {};
+}
+
+std::string material_label(const GltfModel& gltf, int index) {
+  const std::string& name = gltf.model.materials[std::size_t(index)].name;
+  return name.empty() ? record_name("materials", std::size_t(index)) : "material " + in_quotes(name);
+}
+
+}  // namespace opaline

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/assets/gltf_part.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+#include "assets/gltf_accessor.h"
+#include "assets/gltf_triangles.h"
+
+namespace opaline {
+namespace {
+
+constexpr double coordinate_limit = 1e18;
+
+struct PartIndex {
+  std::size_t mesh, primitive;
+};
+
+std::string known_parts(const tinygltf::Model& model) {
+  std::string text;
+  std::size_t parts = 0;
+  constexpr std::size_t most = 8;
+  for (std::size_t m = 0; m < model.meshes.size(); ++m)
+    for (std::size_t p = 0; p < model.meshes[m].primitives.size(); ++p)
+      if (parts++ < most)
+        text += (text.empty() ? "\"" : ", \"") + std::to_string(m) + '/' + std::to_string(p) + '"';
+  if (parts > most) text += " and " + std::to_string(parts - most) + " more";
+  return text.empty() ? "a file with meshes" : text;
+}
+
+/// The whole text as a number; -1: it is none.
+std::int64_t whole_number(std::string_view text) {
+  std::int64_t value = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? value : -1;
+}
+
+PartIndex find_part(const GltfModel& gltf, const std::string& part) {
+  const std::size_t slash = part.find('/');
+  const std::string_view text = part;
+  if (slash != part.npos) {
+    const std::int64_t mesh = whole_number(text.substr(0, slash)),
+                       primitive = whole_number(text.substr(slash + 1));
+    if (mesh >= 0 && std::size_t(mesh) < gltf.model.meshes.size() && primitive >= 0 &&
+        std::size_t(primitive) < gltf.model.meshes[std::size_t(mesh)].primitives.size())
+      return {std::size_t(mesh), std::size_t(primitive)};
+  }
+  throw bad_file(gltf.path,
+                 part.empty() ? "which part of the asset is meant is not said" : "has no such part",
+                 "\"part\" as \"mesh/primitive\": " + known_parts(gltf.model), '"' + part + '"');
+}
+
+/// The corners of all triangles, in the order of the vertices.
+class TriangleList {
+ public:
+  TriangleList(const GltfModel& gltf, const tinygltf::Primitive& primitive, std::string place)
+      : gltf_(gltf), primitive_(primitive), place_(std::move(place)) {}
+
+  void read(GltfPart& part) {
+    if (primitive_.indices >= 0) {
+      indices_ = read_indices(gltf_, primitive_.indices);
+      check(part.positions.size());
+    } else {
+      indices_.resize(part.positions.size());
+      for (std::size_t i = 0; i < indices_.size(); ++i) indices_[i] = std::uint32_t(i);
+    }
+    const int mode = primitive_.mode;
+    if (mode == TINYGLTF_MODE_TRIANGLES)
+      list(part);
+    else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
+      strip(part);
+    else
+      fan(part);
+  }
+
+ private:
+  void check(std::size_t vertices) const {
+    for (std::size_t i = 0; i < indices_.size(); ++i)
+      if (indices_[i] >= vertices)
+        fail_at(gltf_.path, place_ + ".indices: " + record_name("accessors", std::size_t(primitive_.indices)),
+                "element " + std::to_string(i) + " points at no vertex", "below " + std::to_string(vertices),
+                std::to_string(indices_[i]));
+  }
+
+  void list(GltfPart& part) const {
+    for (std::size_t i = 0; i + 2 < indices_.size(); i += 3)
+      part.triangles.push_back({indices_[i], indices_[i + 1], indices_[i + 2]});
+    if (const std::size_t rest = indices_.size() % 3; rest > 0)
+      part.warnings.push_back(gltf_.path + ": " + place_ + ": the last " + std::to_string(rest) +
+                              " corners make no triangle and are left out");
+  }
+
+  /// Every other triangle of a strip is wound the other way.
+  void strip(GltfPart& part) const {
+    for (std::size_t i = 0; i + 2 < indices_.size(); ++i)
+      part.triangles.push_back({indices_[i], indices_[i + 1 + i % 2], indices_[i + 2 - i % 2]});
+  }
+
+  void fan(GltfPart& part) const {
+    for (std::size_t i = 1; i + 1 < indices_.size(); ++i)
+      part.triangles.push_back({indices_[i], indices_[i + 1], indices_[0]});
+  }
+
+  const GltfModel& gltf_;
+  const tinygltf::Primitive& primitive_;
+  std::string place_;
+  std::vector<std::uint32_t> indices_;
+};
+
+void check_positions(const GltfModel& gltf, int accessor, const std::vector<Vec3d>& positions) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3d& p = positions[i];
+    if (std::abs(p.x) < coordinate_limit && std::abs(p.y) < coordinate_limit &&
+        std::abs(p.z) < coordinate_limit)
+      continue;
+    char got[160];
+    std::snprintf(got, sizeof got, "(%g, %g, %g)", p.x, p.y, p.z);
+    fail_at(gltf.path, record_name("accessors", std::size_t(accessor)),
+            "element " + std::to_string(i) + " is no place", "finite coordinates below 1e18", got);
+  }
+}
+
+void read_normals(const GltfModel& gltf, const tinygltf::Primitive& primitive, GltfPart& part) {
+  const auto found = primitive.attributes.find("NORMAL");
+  if (found == primitive.attributes.end()) return;
+  const std::vector<Vec3d> normals = read_vectors(gltf, found->second);
+  if (normals.size() != part.positions.size())
+    fail_at(
+        gltf.path, record_name("accessors", std::size_t(found->second)), "has a normal too many or too few",
+        std::to_string(part.positions.size()) + ", as there are positions", std::to_string(normals.size()));
+  part.normals.reserve(normals.size());
+  for (const Vec3d& n : normals) {
+    const bool usable = is_finite(n) && dot(n, n) < coordinate_limit;
+    part.normals.push_back(usable ? Vec3f(n) : Vec3f());
+  }
+}
+
+}  // namespace
+
+GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name) {
+  const PartIndex index = find_part(gltf, name);
+  const tinygltf::Primitive& primitive = gltf.model.meshes[index.mesh].primitives[index.primitive];
+  const std::string place =
+      record_name("meshes", index.mesh) + '.' + record_name("primitives", index.primitive);
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+    fail_at(gltf.path, place, "has no triangles", "a mode of 4, 5 or 6", std::to_string(primitive.mode));
+  const auto positions = primitive.attributes.find("POSITION");
+  if (positions == primitive.attributes.end())
+    fail_at(gltf.path, place, "has no positions", "the attribute POSITION");
+  GltfPart part;
+  part.positions = read_vectors(gltf, positions->second);
+  check_positions(gltf, positions->second, part.positions);
+  read_normals(gltf, primitive, part);
+  TriangleList(gltf, primitive, place).read(part);
+  if (part.triangles.empty())
+    fail_at(gltf.path, place, "has no triangles", "at least three corners", "fewer");
+  return part;
+}
+
+GltfPart read_gltf_part(const std::string& path, const std::string& part) {
+  return read_gltf_part(*load_gltf(path), part);
+}
+
+std::string gltf_contents(const std::string& path) {
+  return load_gltf(path)->contents;
+}
+
+}  // namespace opaline

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "assets/gltf_model.h"
+#include "opaline/assets/gltf_part.h"
+
+namespace opaline {
+
+/// The part of an asset that is read already, see read_gltf_part.
+GltfPart read_gltf_part(const GltfModel& gltf, const std::string& part);
+
+}  // namespace opaline

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/assets/import_asset.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "assets/asset_scene.h"
+#include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+enum class AssetKind { none, gltf, obj };
+
+AssetKind kind_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  if (extension == ".glb" || extension == ".gltf") return AssetKind::gltf;
+  return extension == ".obj" ? AssetKind::obj : AssetKind::none;
+}
+
+std::string summary_of(const AssetScene& scene, bool own_camera, bool own_lights) {
+  std::string text = fmt::format("{} translucent {}, {} camera, {} lights", scene.media.size(),
+                                 scene.media.size() == 1 ? "medium" : "media", own_camera ? "its" : "default",
+                                 own_lights ? "its" : "default");
+  if (const std::size_t lost = scene.not_carried.size(); lost > 0)
+    text += fmt::format("; {} {} not carried over: opaline import lists them", lost,
+                        lost == 1 ? "thing" : "things");
+  return text;
+}
+
+/// Within what a scene file may hold, with room for a camera and lights.
+void check_extent(const std::string& path, const AssetScene& scene) {
+  constexpr double limit = 1e15;
+  const double farthest = max_component(component_max(scene.center, -scene.center)) + scene.radius;
+  if (!(farthest < limit))
+    throw bad_file(path, "reaches too far out", fmt::format("coordinates below {:.0e}", limit),
+                   fmt::format("{:.3g}", farthest));
+}
+
+void replace_materials(AssetScene& scene, const std::string& material) {
+  scene.translated.push_back("all materials of the asset -> " + in_quotes(material));
+  const SurfaceTranslation surface = translate_materialx(material, scene);
+  constexpr const char* name = "material";
+  scene.media = Json::object();
+  if (!surface.medium.is_null()) scene.media[name] = surface.medium;
+  for (Json& shape : scene.shapes) {
+    for (const char* key : {"medium", "reflectance", "group"}) shape.erase(key);
+    if (surface.medium.is_null())
+      shape["reflectance"] = triple_json(surface.reflectance);
+    else
+      shape["medium"] = name;
+    if (!surface.medium.is_null() && scene.is_one_mesh && scene.shapes.size() > 1) shape["group"] = name;
+  }
+}
+
+}  // namespace
+
+bool is_asset_name(const std::string& path) {
+  return kind_of(path) != AssetKind::none;
+}
+
+ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,
+                           const std::string& material) {
+  AssetScene scene =
+      kind_of(path) == AssetKind::gltf ? import_gltf(path, mesh_path) : import_obj(path, mesh_path);
+  const bool own_camera = !scene.camera.is_null(), own_lights = scene.center_irradiance > 0;
+  check_extent(path, scene);
+  if (!material.empty()) replace_materials(scene, material);
+  add_defaults(scene);
+  try {
+    std::string text = scene_text(scene, std::filesystem::path(path).filename().string());
+    std::string summary = summary_of(scene, own_camera, own_lights);
+    return {std::move(text), std::move(scene.translated), std::move(scene.not_carried), std::move(summary)};
+  } catch (const Json::exception&) {
+    throw bad_file(path, "a scene file cannot hold a name in it", "names in UTF-8");
+  }
+}
+
+}  // namespace opaline

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wavefront OBJ and its material libraries (MTL): a shape for the faces of each material.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "assets/asset_bytes.h"
+#include "assets/asset_scene.h"
+#include "opaline/assets/obj_material.h"
+#include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+constexpr Vec3d kGrey{.5, .5, .5};
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\v\f");
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\v\f") + 1 - first);
+}
+
+/// Takes the first word off a line.
+std::string_view next_word(std::string_view& line) {
+  line = trimmed(line);
+  const std::string_view word = line.substr(0, line.find_first_of(" \t\r\v\f"));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+template <class Visit>
+void for_each_line(std::string_view text, const Visit& visit) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    visit(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+}
+
+/// Three finite numbers; none: the line has fewer.
+std::optional<Vec3d> three_numbers(std::string_view line) {
+  Vec3d value;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string_view word = next_word(line);
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value[i]);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value[i]))
+      return std::nullopt;
+  }
+  return value;
+}
+
+/// What an OBJ file says beside its faces.
+struct ObjOutline {
+  std::vector<Vec3d> vertices;
+  std::vector<std::string> libraries, materials;  ///< materials that have faces, in the order of the file
+};
+
+ObjOutline read_outline(const std::string& text) {
+  ObjOutline outline;
+  std::string material(kNoMaterial);
+  std::set<std::string> used;
+  for_each_line(text, [&](std::string_view line) {
+    const std::string_view keyword = next_word(line);
+    if (keyword == "v") {
+      const auto position = three_numbers(line);  // where they are none, the reader of the mesh says so
+      if (position && max_component(component_max(*position, -*position)) < 1e18)
+        outline.vertices.push_back(*position);
+    } else if (keyword == "mtllib") {
+      outline.libraries.emplace_back(trimmed(line));
+    } else if (keyword == "usemtl") {
+      material = obj_material_name(trimmed(line));
+    } else if (keyword == "f" && used.insert(material).second) {
+      outline.materials.push_back(material);
+    }
+  });
+  return outline;
+}
+
+class ObjImporter {
+ public:
+  ObjImporter(const std::string& path, std::string mesh_path)
+      : path_(path), mesh_path_(std::move(mesh_path)) {}
+
+  AssetScene run() {
+    const ObjOutline outline = read_outline(read_asset_bytes(path_));
+    if (outline.materials.empty()) throw bad_file(path_, "shows nothing", "a mesh with faces");
+    enclose(scene_, [&](const auto& visit) { std::ranges::for_each(outline.vertices, visit); });
+    scene_.is_one_mesh = true;
+    scene_.translated.push_back("OBJ has no unit: lengths are taken for millimetres");
+    for (const std::string& library : outline.libraries) read_libraries(library);
+    for (const std::string& material : outline.materials) add_shape(material);
+    return std::move(scene_);
+  }
+
+ private:
+  /// One file, whose name may have blanks in it, or several names.
+  void read_libraries(const std::string& names) {
+    const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(folder / names, ignored))
+      return read_library((folder / names).string());
+    std::string_view rest = names;
+    for (std::string_view name = next_word(rest); !name.empty(); name = next_word(rest)) {
+      if (std::filesystem::is_regular_file(folder / name, ignored))
+        read_library((folder / name).string());
+      else
+        scene_.not_carried.push_back("material library " + in_quotes(name) + ": there is no such file");
+    }
+  }
+
+  void read_library(const std::string& path) {
+    std::string material;
+    for_each_line(read_asset_bytes(path), [&](std::string_view line) {
+      const std::string keyword(next_word(line));
+      if (keyword == "newmtl") {
+        material = obj_material_name(trimmed(line));
+        colors_.try_emplace(material, kGrey);
+      } else if (keyword == "Kd" && !material.empty()) {
+        if (const auto color = three_numbers(line))
+          colors_[material] = component_min(component_max(*color, Vec3d(0)), Vec3d(1));
+        else
+          lost_[material].insert("Kd " + in_quotes(trimmed(line)));
+      } else if (is_lost(keyword, line)) {
+        lost_[material].insert(keyword);
+      }
+    });
+  }
+
+  /// Whether a value changes what a matte surface looks like: black highlights and full opacity do not.
+  static bool is_lost(const std::string& keyword, std::string_view line) {
+    if (keyword.starts_with("map_") || keyword == "bump" || keyword == "disp" || keyword == "refl")
+      return true;
+    const std::string_view value = trimmed(line);
+    if (keyword == "Ks" || keyword == "Ke") return three_numbers(line).value_or(Vec3d(1)) != Vec3d();
+    if (keyword == "d") return value.find_first_not_of("1.0") != value.npos || !value.starts_with('1');
+    return keyword == "Tr" && value.find_first_not_of("0.") != value.npos;
+  }
+
+  void add_shape(const std::string& material) {
+    const std::string name = names_.take(material == kNoMaterial ? "" : material, "shape");
+    const auto color = colors_.find(material);
+    const Vec3d reflectance = color == colors_.end() ? kGrey : color->second;
+    scene_.shapes.push_back({{"name", name},
+                             {"file", mesh_path_},
+                             {"part", material},
+                             {"reflectance", triple_json(reflectance)}});
+    if (color != colors_.end())
+      scene_.translated.push_back(fmt::format("material {}: Kd -> reflectance {} (opaque)",
+                                              in_quotes(material), short_triple(reflectance)));
+    else if (material != kNoMaterial)
+      scene_.not_carried.push_back("material " + in_quotes(material) + ": no library has it; taken as grey");
+    for (const std::string& keyword : lost_[material])
+      scene_.not_carried.push_back("material " + in_quotes(material) + ": " + keyword);
+  }
+
+  const std::string& path_;
+  std::string mesh_path_;
+  AssetScene scene_;
+  UniqueNames names_;
+  std::map<std::string, Vec3d> colors_;                // Kd, by material
+  std::map<std::string, std::set<std::string>> lost_;  // keywords without a counterpart, by material
+};
+
+}  // namespace
+
+AssetScene import_obj(const std::string& path, const std::string& mesh_path) {
+  return ObjImporter(path, mesh_path).run();
+}
+
+}  // namespace opaline

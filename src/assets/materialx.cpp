@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Constants of MaterialX's open_pbr_surface and standard_surface. Both describe a translucent body by the colour that
+// comes out and the mean free paths inside, which is how the artist's medium of a scene file does: nothing is inverted.
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <pugixml.hpp>
+
+#include "assets/asset_bytes.h"
+#include "assets/asset_scene.h"
+#include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+constexpr double kMostAnisotropy = .99, kLeastIor = .1, kMostIor = 10;
+
+/// What a surface model calls its values, and those it has where nothing is given.
+struct SurfaceModel {
+  const char *node, *base_weight, *base_color, *weight, *color, *radius, *scale, *anisotropy, *ior;
+  Vec3d default_color, default_scale;
+};
+
+// OpenPBR 1.1; Autodesk Standard Surface 1.0.1.
+constexpr std::array<SurfaceModel, 2> models{
+    {{"open_pbr_surface",
+      "base_weight",
+      "base_color",
+      "subsurface_weight",
+      "subsurface_color",
+      "subsurface_radius",
+      "subsurface_radius_scale",
+      "subsurface_scatter_anisotropy",
+      "specular_ior",
+      Vec3d(.8),
+      {1, .5, .25}},
+     {"standard_surface", "base", "base_color", "subsurface", "subsurface_color", "subsurface_radius",
+      "subsurface_scale", "subsurface_anisotropy", "specular_IOR", Vec3d(1), Vec3d(1)}}};
+
+const SurfaceModel* find_model(const pugi::xml_node& node) {
+  const auto found = std::ranges::find_if(
+      models, [&](const SurfaceModel& model) { return node.name() == std::string_view(model.node); });
+  return found == models.end() ? nullptr : &*found;
+}
+
+double linear_of_srgb(double value) {
+  return value <= .04045 ? value / 12.92 : std::pow((value + .055) / 1.055, 2.4);
+}
+
+/// ACEScg (AP1, D60) to Rec.709 (D65), adapted by Bradford's method.
+Vec3d rec709_of_acescg(const Vec3d& c) {
+  return {1.70505 * c.x - .62179 * c.y - .08326 * c.z, -.13026 * c.x + 1.14080 * c.y - .01055 * c.z,
+          -.02400 * c.x - .12897 * c.y + 1.15297 * c.z};
+}
+
+class SurfaceReader {
+ public:
+  SurfaceReader(const std::string& file, const pugi::xml_node& node, const SurfaceModel& model,
+                AssetScene& scene)
+      : file_(file),
+        node_(node),
+        model_(model),
+        scene_(scene),
+        label_("material " + in_quotes(node.attribute("name").value())) {}
+
+  SurfaceTranslation run() {
+    SurfaceTranslation surface;
+    const Vec3d base = color(model_.base_color, Vec3d(.8)) * number(model_.base_weight, 1, 0, 1);
+    const double weight = number(model_.weight, 0, 0, 1);
+    if (weight > 0) {
+      surface.medium = make_medium();
+      if (weight < 1)
+        scene_.not_carried.push_back(
+            fmt::format("{}: {} {:.3g}: the body is translucent as a whole, without its base "
+                        "colour",
+                        label_, model_.weight, weight));
+    } else {
+      surface.reflectance = base;
+      scene_.translated.push_back(fmt::format("{}: {} 0, base colour -> reflectance {} (opaque)", label_,
+                                              model_.weight, short_triple(base)));
+    }
+    tell_losses();
+    return surface;
+  }
+
+ private:
+  Json make_medium() {
+    const Vec3d reflected = color(model_.color, model_.default_color);
+    const Vec3d radius = lengths(model_.radius, Vec3d(1)) * lengths(model_.scale, model_.default_scale);
+    const Vec3d radius_mm = radius * scene_.mm_per_unit;
+    const double g = number(model_.anisotropy, 0, -kMostAnisotropy, kMostAnisotropy);
+    const double ior = number(model_.ior, 1.5, kLeastIor, kMostIor);
+    scene_.translated.push_back(
+        fmt::format("{}: {} {}, {} times {} {} scene units -> subsurface_color, subsurface_radius {} mm, "
+                    "anisotropy {:.3g}, "
+                    "specular_ior {:.4g}",
+                    label_, model_.color, short_triple(reflected), model_.radius, model_.scale,
+                    short_triple(radius), short_triple(radius_mm), g, ior));
+    return {{"subsurface_color", triple_json(reflected)},
+            {"subsurface_radius", triple_json(radius_mm)},
+            {"subsurface_scatter_anisotropy", g},
+            {"specular_ior", ior}};
+  }
+
+  pugi::xml_node input(const char* name) {
+    read_.insert(name);
+    return node_.find_child_by_attribute("input", "name", name);
+  }
+
+  /// The input's numbers; none where it has no value of its own.
+  std::vector<double> numbers(const char* name) {
+    const pugi::xml_node found = input(name);
+    if (!found) return {};
+    if (!found.attribute("value")) {
+      scene_.not_carried.push_back(label_ + ": what " + name + " is connected to: its default is taken");
+      return {};
+    }
+    std::vector<double> values;
+    const std::string_view text = found.attribute("value").value();
+    for (std::size_t at = 0; at <= text.size();) {
+      const std::size_t comma = std::min(text.find(',', at), text.size());
+      std::string_view word = text.substr(at, comma - at);
+      while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
+      while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
+      double value = 0;
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+      if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) fail(name, text);
+      values.push_back(value);
+      at = comma + 1;
+    }
+    if (values.size() != 1 && values.size() != 3) fail(name, text);
+    return values;
+  }
+
+  [[noreturn]] void fail(const char* name, std::string_view got) const {
+    throw bad_file(file_, label_ + ": bad input " + in_quotes(name),
+                   "one number, or three with commas between", in_quotes(got));
+  }
+
+  double number(const char* name, double otherwise, double low, double high) {
+    const std::vector<double> values = numbers(name);
+    if (values.empty()) return otherwise;
+    if (values.size() != 1 || values[0] < low || values[0] > high)
+      throw bad_file(file_, label_ + ": bad input " + in_quotes(name),
+                     fmt::format("a number from {} to {}", low, high), fmt::format("{}", values[0]));
+    return values[0];
+  }
+
+  Vec3d triple(const char* name, const Vec3d& otherwise) {
+    const std::vector<double> values = numbers(name);
+    if (values.empty()) return otherwise;
+    return values.size() == 1 ? Vec3d(values[0]) : Vec3d(values[0], values[1], values[2]);
+  }
+
+  Vec3d lengths(const char* name, const Vec3d& otherwise) {
+    return component_max(triple(name, otherwise), Vec3d(0));
+  }
+
+  Vec3d color(const char* name, const Vec3d& otherwise) {
+    return component_min(component_max(to_rec709(name, triple(name, otherwise)), Vec3d(0)), Vec3d(1));
+  }
+
+  /// By the nearest colour space that is said: the input's, the surface's, the file's.
+  Vec3d to_rec709(const char* name, const Vec3d& color) {
+    const pugi::xml_node own = input(name);
+    std::string space;
+    for (pugi::xml_node at = own ? own : node_; at && space.empty(); at = at.parent())
+      space = at.attribute("colorspace").value();
+    if (!own || space.empty() || space == "lin_rec709" || space == "none") return color;
+    if (space == "srgb_texture")
+      return {linear_of_srgb(color.x), linear_of_srgb(color.y), linear_of_srgb(color.z)};
+    if (space == "acescg" || space == "lin_ap1") return rec709_of_acescg(color);
+    scene_.not_carried.push_back(label_ + ": the colour space " + in_quotes(space) + " of " + name);
+    return color;
+  }
+
+  void tell_losses() {
+    for (const pugi::xml_node& other : node_.children("input")) {
+      const std::string name = other.attribute("name").value();
+      if (!read_.contains(name)) scene_.not_carried.push_back(label_ + ": " + name);
+    }
+  }
+
+  const std::string& file_;
+  pugi::xml_node node_;
+  const SurfaceModel& model_;
+  AssetScene& scene_;
+  std::string label_;
+  std::set<std::string> read_;
+};
+
+/// The surface itself, or that of the material of this name; without a name the first of the file.
+pugi::xml_node find_surface(const pugi::xml_node& root, const std::string& name) {
+  pugi::xml_node material = root.find_child_by_attribute("surfacematerial", "name", name.c_str());
+  const pugi::xml_node shader = material.find_child_by_attribute("input", "name", "surfaceshader");
+  const std::string wanted = shader ? shader.attribute("nodename").value() : name;
+  return root.find_child([&](const pugi::xml_node& node) {
+    return find_model(node) != nullptr && (wanted.empty() || node.attribute("name").value() == wanted);
+  });
+}
+
+std::string surface_names(const pugi::xml_node& root) {
+  std::string names;
+  for (const pugi::xml_node& node : root.children())
+    if (find_model(node) != nullptr)
+      names += (names.empty() ? "" : ", ") + in_quotes(node.attribute("name").value());
+  return names.empty() ? "a file with an open_pbr_surface or standard_surface" : "one of " + names;
+}
+
+}  // namespace
+
+SurfaceTranslation translate_materialx(const std::string& file_and_name, AssetScene& scene) {
+  const std::size_t hash = file_and_name.rfind('#');
+  const std::string file = file_and_name.substr(0, hash);
+  const std::string name = hash == file_and_name.npos ? "" : file_and_name.substr(hash + 1);
+  const std::string bytes = read_asset_bytes(file);
+  pugi::xml_document document;
+  const pugi::xml_parse_result result = document.load_buffer(bytes.data(), bytes.size());
+  if (!result) {
+    const auto line =
+        1 + std::count(bytes.begin(),
+                       bytes.begin() + std::min<std::ptrdiff_t>(result.offset, std::ssize(bytes)), '\n');
+    throw Error(ErrorKind::bad_input, file, int(line), 0, std::string("is no XML: ") + result.description());
+  }
+  const pugi::xml_node root = document.child("materialx");
+  if (!root) throw bad_file(file, "is no MaterialX file", "the element materialx");
+  const pugi::xml_node surface = find_surface(root, name);
+  if (!surface)
+    throw bad_file(file, "has no such surface", surface_names(root), name.empty() ? "" : in_quotes(name));
+  return SurfaceReader(file, surface, *find_model(surface), scene).run();
+}
+
+}  // namespace opaline

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "opaline/assets/import_asset.h"
+#include "opaline/core/atomic_file.h"
+#include "opaline/core/error.h"
+#include "opaline/scene/load_scene.h"
+
+namespace opaline {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// As the scene file calls it: relative to its folder, but for another disk's.
+std::string path_from(const std::string& scene, const std::string& asset) {
+  const fs::path folder = fs::absolute(scene).parent_path();
+  std::error_code error;
+  const fs::path relative = fs::relative(fs::absolute(asset), folder, error);
+  return error || relative.empty() ? fs::absolute(asset).string() : relative.string();
+}
+
+}  // namespace
+
+void import_command(const ImportArguments& arguments) {
+  const ImportedAsset asset =
+      import_asset(arguments.asset, path_from(arguments.scene, arguments.asset), arguments.material);
+  for (const std::string& line : asset.translated) write_line(stderr, line);
+  for (const std::string& line : asset.not_carried) write_line(stderr, "not carried over: " + line);
+  parse_scene(asset.text, arguments.scene);
+  write_file(arguments.scene, asset.text);
+  write_line(stdout, arguments.scene + ": " + asset.summary);
+  if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
+}
+
+}  // namespace opaline

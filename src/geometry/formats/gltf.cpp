@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// GLB and glTF 2.0: a primitive of a mesh, without the nodes it stands at.
+#include <utility>
+
+#include "mesh_format.h"
+#include "opaline/assets/gltf_part.h"
+
+namespace opaline {
+namespace {
+
+SourceMesh read_primitive(const std::string& path, const std::string& part, std::string&) {
+  GltfPart primitive = read_gltf_part(path, part);
+  SourceMesh mesh;
+  mesh.positions = std::move(primitive.positions);
+  mesh.normals = std::move(primitive.normals);
+  mesh.triangles.reserve(primitive.triangles.size());
+  for (const Triangle& triangle : primitive.triangles) {
+    const auto& [a, b, c] = triangle;
+    if (a == b || b == c || c == a)
+      ++mesh.collapsed;
+    else
+      mesh.triangles.push_back(triangle);
+  }
+  mesh.warnings = std::move(primitive.warnings);
+  return mesh;
+}
+
+SourceMesh read_without_part(const std::string& path, std::string& bytes) {
+  return read_primitive(path, "", bytes);
+}
+
+}  // namespace
+
+constinit const MeshFormat glb_format{
+    .extension = ".glb", .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
+constinit const MeshFormat gltf_format{
+    .extension = ".gltf", .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
+
+}  // namespace opaline

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <functional>
+
+#include "asset_test.h"
+
+namespace opaline::asset_test {
+namespace {
+
+struct Mistake {
+  std::function<void(Json&)> make;
+  const char* said;
+};
+
+// Claim: what is wrong in an asset is named by file, record and index, with what was expected; nothing is read out of
+// bounds. Source: glTF 2.0, section 3. Fails if one of ReferenceCheck, AccessorReader or NodeWalk looks away.
+TEST(GltfBadInput, IsNamed) {
+  const std::vector<Mistake> mistakes{
+      {[](Json& j) { j["asset"]["version"] = "1.0"; },
+       "test.gltf: asset.version is not one that is read (expected 2.0, got 1.0)"},
+      {[](Json& j) { j["accessors"][0]["bufferView"] = 9; },
+       "test.gltf: accessors[0].bufferView points at nothing (expected 0 to 2, got 9)"},
+      {[](Json& j) { j["accessors"][0]["count"] = 1000; },
+       "test.gltf: accessors[0] reaches beyond bufferViews[0] (expected within 288 bytes, got 1000 elements, "
+       "12 bytes "
+       "apart, from 0)"},
+      {[](Json& j) { j["accessors"][0]["count"] = 0x1p62; }, "test.gltf: accessors[0]"},
+      {[](Json& j) { j["accessors"][0]["byteOffset"] = 0xfffffffffffffff0u; },
+       "test.gltf: accessors[0] reaches beyond"},
+      {[](Json& j) { j["accessors"][0]["type"] = "VEC2"; }, "test.gltf: accessors[0] is of the wrong type"},
+      {[](Json& j) { j["accessors"][0]["type"] = "VEC9"; },
+       "test.gltf: accessors[0]: cannot be read as glTF 2.0"},
+      {[](Json& j) { j["accessors"][0]["componentType"] = 5130; },
+       "test.gltf: accessors[0] has a componentType that is none of glTF"},
+      {[](Json& j) { j["accessors"][0].erase("bufferView"), j["accessors"][0]["count"] = 1000000000; },
+       "test.gltf: accessors[0] has no bufferView: its elements are 0 (expected at most 1048576 of them, got "
+       "1000000000)"},
+      {[](Json& j) { j["accessors"][1]["count"] = 23; },
+       "test.gltf: accessors[1] has a normal too many or too few (expected 24, as there are positions, got "
+       "23)"},
+      {[](Json& j) { j["accessors"][2]["componentType"] = 5126; },
+       "test.gltf: accessors[2] cannot hold indices"},
+      {[](Json& j) { j["accessors"][0]["count"] = 4; },
+       "test.gltf: accessors[1] has a normal too many or too few (expected 4"},
+      {[](Json& j) { j["accessors"][0]["count"] = j["accessors"][1]["count"] = 4; },
+       "test.gltf: meshes[0].primitives[0].indices: accessors[2] element 6 points at no vertex (expected "
+       "below 4, got "
+       "4)"},
+      {[](Json& j) { j["bufferViews"][1]["byteLength"] = 100000; },
+       "test.gltf: bufferViews[1] reaches beyond its buffer (expected within 648 bytes, got 100000 from "
+       "288)"},
+      {[](Json& j) { j["bufferViews"][1]["buffer"] = 3; },
+       "test.gltf: bufferViews[1].buffer points at nothing"},
+      {[](Json& j) { j["buffers"][0]["byteLength"] = 7; },
+       "test.gltf: buffers[0]: cannot be read as glTF 2.0"},
+      {[](Json& j) { j["buffers"][0]["uri"] = "gone.bin"; },
+       "test.gltf: buffers[0]: cannot be read as glTF 2.0: File not found : gone.bin"},
+      {[](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 7; },
+       "test.gltf: meshes[0].primitives[0].attributes.POSITION points at nothing"},
+      {[](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 0; },
+       "test.gltf: meshes[0].primitives[0].material points at nothing (expected nothing: there is none, got "
+       "0)"},
+      {[](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 1; }, "test.gltf: shows nothing"},
+      {[](Json& j) { j["nodes"][0]["mesh"] = 5; }, "test.gltf: nodes[0].mesh points at nothing"},
+      {[](Json& j) { j["nodes"][0]["children"] = {0}; },
+       "test.gltf: nodes[0] has two parents, or is its own"},
+      {[](Json& j) { j["nodes"][0]["children"] = {1}; }, "test.gltf: nodes[0].children points at nothing"},
+      {[](Json& j) {
+         j["nodes"][0]["matrix"] = {1, 2, 3};
+       },
+       "test.gltf: nodes[0].matrix is of the wrong length (expected 16 numbers, got 3)"},
+      {[](Json& j) {
+         j["nodes"][0]["scale"] = {1e17, 1, 1};
+       },
+       "test.gltf: reaches too far out"},
+      {[](Json& j) {
+         j["nodes"][0]["rotation"] = {0, 0, 0, 0};
+       },
+       "test.gltf: nodes[0].rotation is no rotation"},
+      {[](Json& j) { j["scenes"][0]["nodes"] = {4}; }, "test.gltf: scenes[0].nodes points at nothing"},
+      {[](Json& j) { j["scene"] = 2; }, "test.gltf: scene points at nothing (expected 0 to 0, got 2)"},
+      {[](Json& j) { j["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
+       "test.gltf: its meshes are compressed by KHR_draco_mesh_compression, which is not read"},
+      {[](Json& j) {
+         j["materials"] =
+             Json::array({{{"extensions", {{"KHR_materials_scatter", {{"scatterAnisotropy", "x"}}}}}}});
+         j["meshes"][0]["primitives"][0]["material"] = 0;
+       },
+       "test.gltf: materials[0].extensions.KHR_materials_scatter.scatterAnisotropy is of the wrong type "
+       "(expected a "
+       "number)"},
+  };
+  const Json good = Json::parse(cube_asset().gltf());
+  EXPECT_EQ(error_of(good.dump()), "");
+  for (const Mistake& mistake : mistakes) {
+    Json bad = good;
+    mistake.make(bad);
+    const std::string error = error_of(bad.dump());
+    EXPECT_TRUE(error.starts_with(mistake.said)) << "said     " << error << "\nexpected " << mistake.said;
+  }
+}
+
+// Claim: coordinates that are no numbers are refused, with their accessor and element; normals that are none are
+// left out. Fails if they reach the ray tracer.
+TEST(GltfBadInput, NotANumberIsNoPlace) {
+  Asset asset = cube_asset();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(asset.buffer.data() + 12 * 5 + 4, &nan, 4);
+  EXPECT_TRUE(error_of(asset.gltf()).starts_with("test.gltf: accessors[0] element 5 is no place"))
+      << error_of(asset.gltf());
+  Asset normals = cube_asset();
+  std::memcpy(normals.buffer.data() + 288 + 4, &nan, 4);
+  EXPECT_EQ(error_of(normals.gltf()), "");
+}
+
+// Claim: files that are no glTF, cut off, or nested to exhaust a parser's stack are refused by name. Fails if
+// prepare_gltf_json does not count levels, or a GLB chunk is trusted about its length.
+TEST(GltfBadInput, BrokenFilesAreNamed) {
+  const std::string glb = cube_asset().glb();
+  for (const std::size_t length : {1u, 12u, 19u, 20u, 100u, 700u, unsigned(glb.size()) - 1})
+    EXPECT_TRUE(error_of(glb.substr(0, length), "a.glb").starts_with("a.glb: ")) << length;
+  EXPECT_EQ(error_of("", "a.glb"), "a.glb: the file is empty");
+  EXPECT_TRUE(error_of("{\"asset\": ").starts_with("test.gltf: "));
+  EXPECT_TRUE(error_of(std::string(1 << 20, '[')).starts_with("test.gltf: its JSON is nested too deep"));
+  std::string lying = glb;  // the last chunk claims 8 bytes more than there are
+  const std::size_t chunk = lying.find(std::string("BIN\0", 4)) - 4;
+  lying[chunk] = char(lying[chunk] + 8);
+  EXPECT_NO_FATAL_FAILURE(error_of(lying, "a.glb"));
+}
+
+// Claim: mistakes in what no picture of ours shows (images, animations) cost nothing. Fails if they are read.
+TEST(GltfBadInput, ImagesAndAnimationsAreNotRead) {
+  Asset asset = cube_asset();
+  asset.json["images"] = Json::array({{{"bufferView", 77}}, {{"uri", "data:image/png;base64,"}}});
+  asset.json["animations"] = Json::array({{{"channels", Json::array({Json::object()})}}});
+  asset.json["skins"] = Json::array({Json::object()});
+  EXPECT_EQ(error_of(asset.gltf()), "");
+  const std::vector<std::string> lines = imported(asset).not_carried;
+  EXPECT_TRUE(has(lines, "animations (1)"));
+  EXPECT_TRUE(has(lines, "skins (1)"));
+}
+
+}  // namespace
+}  // namespace opaline::asset_test

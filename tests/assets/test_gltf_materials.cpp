@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "asset_test.h"
+
+namespace opaline::asset_test {
+namespace {
+
+/// The scene of a cube of this material.
+Asset cube_of(Json material) {
+  Asset asset = cube_asset();
+  asset.material(std::move(material));
+  asset.json["meshes"][0]["primitives"][0]["material"] = 0;
+  return asset;
+}
+
+const Json kVolume{
+    {"attenuationColor", {.9, .5, .2}}, {"attenuationDistance", .004}, {"thicknessFactor", .02}};
+
+/// 1/mm of the volume above, in each channel.
+Vec3d sigma_t() {
+  return {-std::log(.9) / 4, -std::log(.5) / 4, -std::log(.2) / 4};
+}
+
+/// The albedo whose half space of an index-matched boundary reflects rho, by the formula that the draft gives.
+double albedo(double rho, double g) {
+  const double s = 4.09712 + 4.20863 * rho - std::sqrt(9.59217 + 41.6808 * rho + 17.7126 * rho * rho);
+  return (1 - s * s) / (1 - g * s * s);
+}
+
+void expect_medium(const Medium& medium, const Vec3d& rho, double g, double eta) {
+  const auto& physical = std::get<PhysicalMedium>(medium.coefficients);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double sigma_s = albedo(rho[i], g) * sigma_t()[i];
+    EXPECT_NEAR(physical.sigma_s_prime[i], (1 - g) * sigma_s, 1e-9 * sigma_t()[i]) << i;
+    EXPECT_NEAR(physical.sigma_a[i], sigma_t()[i] - sigma_s, 1e-9 * sigma_t()[i]) << i;
+  }
+  EXPECT_EQ(medium.scatter_anisotropy, g);
+  EXPECT_EQ(medium.eta, eta);
+}
+
+// Claim: a volume that scatters becomes sigma_a and sigma_s in 1/mm by the draft's inversion, in either of its two
+// spellings; a metre is 1000 mm. Source: KHR_materials_volume, KHR_materials_volume_scatter,
+// KHR_materials_scatter; Kulla & Conty 2017. Fails if: metres are taken for mm, or (1 - g) counts twice.
+TEST(GltfMaterials, ScatteringVolumesAreMedia) {
+  const Json draft = {
+      {"name", "wax"},
+      {"extensions",
+       {{"KHR_materials_volume", kVolume},
+        {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+        {"KHR_materials_ior", {{"ior", 1.4}}},
+        {"KHR_materials_volume_scatter", {{"multiscatterColor", {.8, .6, .1}}, {"scatterAnisotropy", .3}}}}}};
+  const Scene scene = scene_of(cube_of(draft).glb(), "a.glb");
+  ASSERT_EQ(scene.media.size(), 1u);
+  EXPECT_EQ(scene.media[0].name, "wax");
+  EXPECT_EQ(scene.shapes.at(0).medium, 0u);
+  expect_medium(scene.media[0], {.8, .6, .1}, .3, 1.4);
+  EXPECT_TRUE(imported(cube_of(draft)).not_carried.empty());
+
+  const Json other = {{"extensions",
+                       {{"KHR_materials_volume", kVolume},
+                        {"KHR_materials_diffuse_transmission", {{"diffuseTransmissionFactor", 1}}},
+                        {"KHR_materials_scatter",
+                         {{"scatterStrengthFactor", .5}, {"multiscatterColorFactor", {.8, .6, .1}}}}}}};
+  expect_medium(scene_of(cube_of(other).glb(), "a.glb").media.at(0), {.4, .3, .05}, 0, 1.5);
+}
+
+// Claim: an albedo of 1 absorbs nothing and one of 0 scatters nothing. Fails if the inversion is not held to [0, 1].
+TEST(GltfMaterials, TheInversionEndsAtItsEnds) {
+  const Json material = {{"extensions",
+                          {{"KHR_materials_volume", kVolume},
+                           {"KHR_materials_volume_scatter", {{"multiscatterColor", {1, 0, .5}}}}}}};
+  const auto& medium =
+      std::get<PhysicalMedium>(scene_of(cube_of(material).glb(), "a.glb").media.at(0).coefficients);
+  EXPECT_NEAR(medium.sigma_a.x, 0, 1e-9);
+  EXPECT_NEAR(medium.sigma_s_prime.y, 0, 1e-5);
+  EXPECT_GT(medium.sigma_a.x, -1e-30);
+  EXPECT_GT(medium.sigma_s_prime.y, -1e-30);
+}
+
+// Claim: a material that does not scatter is opaque, of its base colour, and says what it loses; glTF's default is
+// white. Fails if clear volumes become media.
+TEST(GltfMaterials, OthersAreOpaque) {
+  const Json material = {
+      {"name", "glass"},
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {.1, .2, .3, .5}},
+        {"baseColorTexture", {{"index", 0}}},
+        {"roughnessFactor", .25}}},
+      {"alphaMode", "BLEND"},
+      {"emissiveFactor", {1, 0, 0}},
+      {"extensions",
+       {{"KHR_materials_volume", kVolume},
+        {"KHR_materials_transmission", {{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 0}}}}},
+        {"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}}}}};
+  const Asset asset = cube_of(material);
+  const Scene scene = scene_of(asset.glb(), "a.glb");
+  EXPECT_TRUE(scene.media.empty());
+  EXPECT_EQ(scene.shapes.at(0).medium, std::nullopt);
+  EXPECT_EQ(scene.shapes.at(0).reflectance, Rgb(.1, .2, .3));
+  const std::vector<std::string> lines = imported(asset).not_carried;
+  for (const char* line :
+       {"material 'glass': texture baseColorTexture", "texture transmissionTexture", "metallicFactor 1",
+        "roughnessFactor 0.25", "emissiveFactor", "alphaMode 'BLEND'",
+        "KHR_materials_volume: nothing scatters in it", "KHR_materials_transmission: nothing scatters in it",
+        "material 'glass': KHR_materials_clearcoat"})
+    EXPECT_TRUE(has(lines, line)) << line;
+  EXPECT_EQ(scene_of(cube_asset().glb(), "a.glb").shapes.at(0).reflectance, Rgb(1, 1, 1));
+}
+
+// Claim: values that leave nothing to scatter, or lie outside of what a medium may have, are replaced and said. Fails if
+// one of them makes a scene file that is refused.
+TEST(GltfMaterials, ValuesOutOfRangeAreSaid) {
+  Json material = {
+      {"extensions",
+       {{"KHR_materials_volume", kVolume},
+        {"KHR_materials_ior", {{"ior", 0}}},
+        {"KHR_materials_volume_scatter", {{"multiscatterColor", {2, .5, -1}}, {"scatterAnisotropy", -1}}}}}};
+  Json& volume = material["extensions"]["KHR_materials_volume"];
+  volume["attenuationColor"] = {1, 0, .5};
+  volume["thicknessFactor"] = 0;
+  const std::vector<std::string> lines = imported(cube_of(material)).not_carried;
+  for (const char* line : {"attenuationColor [1, 0, 0.5] beyond", "ior 0, which is outside",
+                           "thicknessFactor 0", "transmissionFactor 0 and diffuseTransmissionFactor 0"})
+    EXPECT_TRUE(has(lines, line)) << line;
+  EXPECT_EQ(scene_of(cube_of(material).glb(), "a.glb").media.at(0).eta, 1.5);
+  volume.erase("attenuationDistance");
+  EXPECT_TRUE(scene_of(cube_of(material).glb(), "a.glb").media.empty());
+  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "nothing scatters; taken as opaque"));
+}
+
+// Claim: primitives of one mesh that share a medium are one body, those of another node another. Fails if light stops
+// where a primitive ends.
+TEST(GltfMaterials, PrimitivesOfOneMediumAreOneBody) {
+  Asset asset = cube_of({{"extensions",
+                          {{"KHR_materials_volume", kVolume},
+                           {"KHR_materials_volume_scatter", {{"multiscatterColor", {.5, .5, .5}}}}}}});
+  auto& primitives = asset.json["meshes"][0]["primitives"];
+  primitives.push_back(primitives[0]);
+  asset.root(asset.node({{"mesh", 0}}));
+  const Scene scene = scene_of(asset.glb(), "a.glb");
+  ASSERT_EQ(scene.shapes.size(), 4u);
+  EXPECT_FALSE(scene.shapes[0].group.empty());
+  EXPECT_EQ(scene.shapes[0].group, scene.shapes[1].group);
+  EXPECT_NE(scene.shapes[0].group, scene.shapes[2].group);
+}
+
+}  // namespace
+}  // namespace opaline::asset_test

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "asset_test.h"
+
+namespace opaline::asset_test {
+namespace {
+
+constexpr const char* kOpenPbr = R"(<?xml version="1.0"?>
+<materialx version="1.39" colorspace="lin_rec709">
+  <open_pbr_surface name="SR_skin" type="surfaceshader">
+    <input name="subsurface_weight" type="float" value="1" />
+    <input name="subsurface_color" type="color3" value="0.8, 0.5, 0.3" />
+    <input name="subsurface_radius" type="float" value="2.5" />
+    <input name="subsurface_scatter_anisotropy" type="float" value="0.25" />
+    <input name="specular_ior" type="float" value="1.4" />
+    <input name="coat_weight" type="float" value="0.5" />
+  </open_pbr_surface>
+  <standard_surface name="SR_wax" type="surfaceshader">
+    <input name="subsurface" type="float" value="0.5" />
+    <input name="subsurface_radius" type="color3" value="3, 2, 1" />
+    <input name="subsurface_scale" type="float" value="0.1" />
+    <input name="subsurface_color" type="color3" nodegraph="NG_wax" output="out" />
+  </standard_surface>
+  <standard_surface name="SR_paint" type="surfaceshader">
+    <input name="base" type="float" value="0.5" />
+    <input name="base_color" type="color3" value="0.5, 0.2, 1" colorspace="srgb_texture" />
+  </standard_surface>
+  <surfacematerial name="wax" type="material">
+    <input name="surfaceshader" type="surfaceshader" nodename="SR_wax" />
+  </surfacematerial>
+</materialx>
+)";
+
+struct MaterialFolder : ScratchFolder {
+  explicit MaterialFolder(const std::string& material = kOpenPbr) {
+    put_bytes(file("cube.glb"), cube_asset().glb());
+    put_bytes(file("tetrahedron.obj"),
+              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nusemtl a\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    put_bytes(file("a.mtlx"), material);
+  }
+
+  ImportedAsset import(const std::string& asset, const std::string& name = "") const {
+    return import_asset(file(asset), file(asset), file("a.mtlx") + name);
+  }
+
+  std::string error(const std::string& name = "") const {
+    try {
+      import("cube.glb", name);
+    } catch (const Error& failure) {
+      EXPECT_EQ(failure.kind, ErrorKind::bad_input);
+      return std::string(failure.what()).substr(path.string().size() + 1);
+    }
+    return {};
+  }
+};
+
+void expect_artist(const Medium& medium, const Rgb& color, const Vec3d& radius, double g, double eta) {
+  const auto& artist = std::get<ArtistMedium>(medium.coefficients);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(artist.subsurface_color[i], color[i], 1e-12);
+    EXPECT_NEAR(artist.subsurface_radius[i], radius[i], 1e-9 * radius[i]);
+  }
+  EXPECT_EQ(artist.anisotropy, g);
+  EXPECT_EQ(medium.eta, eta);
+}
+
+// Claim: OpenPBR's subsurface colour and radius times scale are the artist's medium, lengths in the asset's unit, and
+// what is not given has OpenPBR's defaults; other inputs are said to be left out. Source: OpenPBR 1.1. Fails if the
+// colour is inverted as glTF's, the scale's default is 1, or the unit does not count.
+TEST(MaterialX, OpenPbrIsTheArtistsMedium) {
+  const MaterialFolder folder;
+  for (const auto& [asset, unit] : {std::pair{"tetrahedron.obj", 1.}, {"cube.glb", 1000.}}) {
+    const ImportedAsset import = folder.import(asset);
+    const Scene scene = parse_scene(import.text, "a.json");
+    ASSERT_EQ(scene.media.size(), 1u);
+    expect_artist(scene.media[0], {.8, .5, .3}, Vec3d(2.5, 1.25, .625) * unit, .25, 1.4);
+    for (const Shape& shape : scene.shapes) EXPECT_EQ(shape.medium, 0u);
+    EXPECT_TRUE(has(import.not_carried, "material 'SR_skin': coat_weight"));
+  }
+}
+
+// Claim: shapes of an OBJ that share the medium are one body. Fails if the tetrahedron falls into two open ones.
+TEST(MaterialX, PartsOfAnObjAreOneBody) {
+  const Scene scene = parse_scene(MaterialFolder().import("tetrahedron.obj").text, "a.json");
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  EXPECT_FALSE(scene.shapes[0].group.empty());
+  EXPECT_EQ(scene.shapes[0].group, scene.shapes[1].group);
+}
+
+// Claim: a standard surface, found by its material's name, has a radius of a colour times a scale; a weight between 0
+// and 1 and what is connected to an input are said. Source: Autodesk Standard Surface 1.0.1. Fails if a name leads to
+// the first surface.
+TEST(MaterialX, StandardSurfaceIsFoundByName) {
+  const MaterialFolder folder;
+  for (const char* name : {"#wax", "#SR_wax"}) {
+    const ImportedAsset import = folder.import("tetrahedron.obj", name);
+    expect_artist(parse_scene(import.text, "a.json").media.at(0), {1, 1, 1}, {.3, .2, .1}, 0, 1.5);
+    EXPECT_TRUE(has(import.not_carried, "what subsurface_color is connected to: its default is taken"));
+    EXPECT_TRUE(has(import.not_carried, "subsurface 0.5: the body is translucent as a whole"));
+  }
+}
+
+// Claim: without scattering below the surface it is opaque, of base times base colour, sRGB made linear, ACEScg made
+// Rec.709. Source: MaterialX's colour spaces; ACEScg white is Rec.709 white. Fails if colours are taken as they stand.
+TEST(MaterialX, OthersAreOpaque) {
+  const Scene scene = parse_scene(MaterialFolder().import("tetrahedron.obj", "#SR_paint").text, "a.json");
+  EXPECT_TRUE(scene.media.empty());
+  const Rgb color = scene.shapes.at(0).reflectance;
+  EXPECT_NEAR(color.x, .5 * .21404, 1e-5);
+  EXPECT_NEAR(color.y, .5 * .033105, 1e-5);
+  EXPECT_NEAR(color.z, .5, 1e-12);
+  const auto gray = [](const char* value) {
+    const MaterialFolder folder(
+        R"(<materialx colorspace="acescg"><standard_surface name="s" type="surfaceshader">
+      <input name="base_color" type="color3" value=")" +
+        std::string(value) + R"("/></standard_surface></materialx>)");
+    return parse_scene(folder.import("tetrahedron.obj").text, "a.json").shapes.at(0).reflectance;
+  };
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(gray("0.5, 0.5, 0.5")[i], .5, 1e-4);
+  EXPECT_GT(gray("0.5, 0.25, 0.25").x, .6);  // Rec.709's red is less saturated
+}
+
+// Claim: what is wrong is named by file, surface and input. Fails if a broken value becomes 0.
+TEST(MaterialX, MistakesAreNamed) {
+  const auto surface = [](const std::string& input) {
+    return "<materialx>\n<open_pbr_surface name=\"s\"><input name=\"subsurface_weight\" value=\"1\"/>" +
+           input + "</open_pbr_surface></materialx>";
+  };
+  EXPECT_EQ(MaterialFolder().error("#blood"),
+            "a.mtlx: has no such surface (expected one of 'SR_skin', 'SR_wax', 'SR_paint', got 'blood')");
+  EXPECT_EQ(MaterialFolder("<materialx>\n<a>").error().substr(0, 19), "a.mtlx:2: is no XML");
+  EXPECT_EQ(MaterialFolder("<usd/>").error(),
+            "a.mtlx: is no MaterialX file (expected the element materialx)");
+  EXPECT_EQ(MaterialFolder("<materialx/>").error(),
+            "a.mtlx: has no such surface (expected a file with an open_pbr_surface or standard_surface)");
+  EXPECT_EQ(MaterialFolder(surface("<input name=\"subsurface_color\" value=\"1, x, 1\"/>")).error(),
+            "a.mtlx: material 's': bad input 'subsurface_color' (expected one number, or three with commas "
+            "between, got "
+            "'1, x, 1')");
+  EXPECT_EQ(MaterialFolder(surface("<input name=\"specular_ior\" value=\"99\"/>")).error(),
+            "a.mtlx: material 's': bad input 'specular_ior' (expected a number from 0.1 to 10, got 99)");
+}
+
+}  // namespace
+}  // namespace opaline::asset_test

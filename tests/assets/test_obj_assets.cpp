@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "asset_test.h"
+
+namespace opaline::asset_test {
+namespace {
+
+constexpr const char* kObj = R"(mtllib two words.mtl gone.mtl
+v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+f 1 2 3
+usemtl red  
+f 1 2 4
+f 2 3 4
+usemtl no such
+f 1 3 4
+usemtl red
+f 4 3 1
+)";
+
+struct ObjFolder : ScratchFolder {
+  std::string obj = file("a.obj");
+  ObjFolder() {
+    put_bytes(obj, kObj);
+    put_bytes(file("two words.mtl"), "newmtl black\nKd 0 0 0\n");
+    put_bytes(
+        file("words.mtl"),
+        "newmtl red\nKa 1 1 1\nKd 0.8 0.1 2\nKs 0 0 0\nNs 10\nd 1.0\nmap_Kd red.png\nnewmtl unused\nd 0.5\n");
+  }
+};
+
+// Claim: an OBJ file becomes a shape for each material that has faces, of its Kd; a shape holds the faces of its
+// material alone, wherever they stand in the file. Fails if usemtl does not end a part, or Kd is not read.
+TEST(ObjAssets, EachMaterialIsAShape) {
+  const ObjFolder folder;
+  put_bytes(folder.obj, "mtllib words.mtl\n" + std::string(kObj).substr(std::string(kObj).find('\n')));
+  const Scene scene = load_scene(folder.obj);
+  ASSERT_EQ(scene.shapes.size(), 3u);
+  const std::size_t triangles[] = {1, 3, 1};
+  const char* names[] = {"shape", "red", "no such"};
+  const Rgb colors[] = {Rgb(.5), {.8, .1, 1}, Rgb(.5)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(scene.shapes[i].name, names[i]);
+    EXPECT_EQ(scene.shapes[i].reflectance, colors[i]) << i;
+    EXPECT_EQ(make_mesh(scene.shapes[i]).mesh.triangles.size(), triangles[i]) << i;
+  }
+  EXPECT_EQ(scene.mm_per_unit, 1);
+  const ImportedAsset import = import_asset(folder.obj, "a.obj");
+  EXPECT_TRUE(has(import.not_carried, "material 'red': map_Kd"));
+  EXPECT_TRUE(has(import.not_carried, "material 'no such': no library has it; taken as grey"));
+  EXPECT_EQ(import.not_carried.size(), 2u);
+}
+
+// Claim: a library's name may have blanks in it, or stand beside others; one that is not there is said. Fails if the
+// line is one word.
+TEST(ObjAssets, LibrariesAreFoundByTheirNames) {
+  const ObjFolder folder;
+  EXPECT_EQ(import_asset(folder.obj, "a.obj").not_carried.size(), 4u);  // two and gone.mtl, red.png, no such
+  EXPECT_TRUE(has(import_asset(folder.obj, "a.obj").not_carried,
+                  "material library 'gone.mtl': there is no such file"));
+  put_bytes(folder.obj, "mtllib two words.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl black\nf 1 2 3\n");
+  EXPECT_EQ(load_scene(folder.obj).shapes.at(0).reflectance, Rgb(0));
+}
+
+// Claim: names that are not UTF-8 are taken for Latin-1, and are found again as parts. Fails if the two readers of
+// an OBJ file take a name differently.
+TEST(ObjAssets, NamesMayBeLatin1) {
+  const ObjFolder folder;
+  put_bytes(folder.obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl gr\xfcn\nf 1 2 3\nusemtl\nf 1 3 2\n");
+  const Scene scene = load_scene(folder.obj);
+  EXPECT_EQ(scene.shapes.at(0).name, "gr\xc3\xbcn");
+  EXPECT_EQ(make_mesh(scene.shapes[0]).mesh.triangles.size(), 1u);
+  EXPECT_EQ(std::get<MeshFile>(scene.shapes.at(1).source).part, "(none)");
+}
+
+// Claim: a mesh without faces is refused, as is a part that is not there. Fails if an empty scene is rendered.
+TEST(ObjAssets, NothingToSeeIsNamed) {
+  EXPECT_EQ(error_of("v 0 0 0\n", "a.obj"), "a.obj: shows nothing (expected a mesh with faces)");
+  const ObjFolder folder;
+  EXPECT_THROW(mesh_of(folder.obj, "blue"), Error);
+  EXPECT_EQ(mesh_of(folder.obj, "").mesh.triangles.size(), 4u);  // of the five two are the same
+}
+
+}  // namespace
+}  // namespace opaline::asset_test

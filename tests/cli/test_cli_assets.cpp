@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Assets of other programs, as the program's commands meet them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "../assets/asset_test.h"
+#include "opaline/image/image.h"
+#include "run_program.h"
+
+namespace opaline {
+namespace {
+
+using asset_test::Asset;
+
+/// A translucent cube of 4 cm and a white opaque one, one of them mirrored.
+std::string two_cubes() {
+  Asset asset = asset_test::cube_mesh();
+  asset.material(
+      {{"name", "wax"},
+       {"extensions",
+        {{"KHR_materials_volume", {{"attenuationColor", {.5, .3, .1}}, {"attenuationDistance", .002}}},
+         {"KHR_materials_volume_scatter", {{"multiscatterColor", {.9, .7, .4}}}}}}});
+  asset.json["meshes"].push_back(asset.json["meshes"][0]);
+  asset.json["meshes"][0]["primitives"][0]["material"] = 0;
+  asset.root(asset.node({{"mesh", 0}, {"scale", {.02, .02, .02}}}));
+  asset.root(asset.node({{"mesh", 1}, {"scale", {-.02, .02, .02}}, {"translation", {.05, 0, 0}}}));
+  return asset.glb();
+}
+
+struct AssetFolder : ScratchFolder {
+  AssetFolder() {
+    put_bytes(file("cubes.glb"), two_cubes());
+    std::filesystem::create_directory(file("scenes"));
+  }
+};
+
+// Claim: `opaline render asset.glb -o a.png` is enough, and the scene file that `import` writes into another folder
+// makes the same bytes; `info` and `bench`'s hash of a scene take the asset too. Fails if the two go different ways.
+TEST(CliAssets, ImportedScenesMakeTheSamePicture) {
+  const AssetFolder folder;
+  const Outcome direct = run_program({"render", "cubes.glb", "-o", "a.png"}, folder.path);
+  ASSERT_EQ(direct.exit_code, 0) << direct.err;
+  EXPECT_TRUE(contains(direct.out,
+                       "asset       1 translucent medium, default camera, default lights; 2 things not "
+                       "carried over: opaline import lists them"))
+      << direct.out;
+  const Outcome import = run_program({"import", "cubes.glb", "-o", "scenes/cubes.json"}, folder.path);
+  ASSERT_EQ(import.exit_code, 0) << import.err;
+  EXPECT_TRUE(contains(import.err, "material 'wax': attenuationColor [0.5, 0.3, 0.1] over 2 mm"))
+      << import.err;
+  EXPECT_TRUE(contains(import.err, "not carried over: material 'wax': thicknessFactor 0")) << import.err;
+  const Outcome edited = run_program({"render", "scenes/cubes.json", "-o", "b.png"}, folder.path);
+  ASSERT_EQ(edited.exit_code, 0) << edited.err;
+  EXPECT_EQ(bytes_of(folder.file("a.png")), bytes_of(folder.file("b.png")));
+  const Outcome info = run_program({"info", "cubes.glb", "--set", "media.wax.specular_ior=1.4"}, folder.path);
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_TRUE(contains(info.out, "1 translucent medium")) << info.out;
+}
+
+// Claim: the default lights show white matte paint between .6 and 1 of the PNG's range, and not above. Fails if their
+// brightness does not follow from their size and distance.
+TEST(CliAssets, DefaultLightsShowWhiteAsWhite) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("white.glb"), asset_test::cube_asset().glb());
+  const Outcome outcome = run_program({"render", "white.glb", "-o", "a.png"}, folder.path);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Image image = read_image(folder.file("a.png"));
+  float brightest = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    if (i % image.channels.size() < 3) brightest = std::max(brightest, image.pixels[i]);
+  EXPECT_GT(brightest, .32);  // .6 in sRGB
+  EXPECT_LT(brightest, .99);
+}
+
+// Claim: an asset that is broken, or is none, ends with code 2, its name, and without a scene file. Fails if the file
+// is written before it is checked.
+TEST(CliAssets, BrokenAssetsAreNamed) {
+  const AssetFolder folder;
+  put_bytes(folder.file("bad.gltf"), "{}");
+  put_bytes(folder.file("wax.txt"), "wax");
+  const struct {
+    std::vector<std::string> words;
+    const char* said;
+  } cases[] = {
+      {{"import", "bad.gltf", "-o", "a.json"}, "bad.gltf: cannot be read as glTF 2.0"},
+      {{"render", "bad.gltf", "-o", "a.png"}, "bad.gltf: cannot be read as glTF 2.0"},
+      {{"import", "gone.glb", "-o", "a.json"}, "gone.glb: no such file"},
+      {{"import", "cubes.glb", "--material", "gone.mtlx", "-o", "a.json"}, "gone.mtlx: no such file"},
+      {{"import", "wax.txt", "-o", "a.json"}, "is no asset that can be imported"},
+      {{"import", "cubes.glb", "-o", "a.gltf"}, "a name that ends in .json"},
+      {{"render", "cubes.glb", "-o", "a.png", "--set", "media.wix.g=0"}, "did you mean 'wax'"}};
+  for (const auto& c : cases) {
+    const Outcome outcome = run_program(c.words, folder.path);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, c.said)) << outcome.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.file("a.json")));
+}
+
+}  // namespace
+}  // namespace opaline

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A GLB or glTF asset, from its bytes to a scene and its triangles.
+#include "../assets/asset_test.h"
+#include "fuzz_target.h"
+
+namespace opaline::fuzz {
+
+std::vector<std::string> seeds() {
+  asset_test::Asset asset = asset_test::cube_asset();
+  asset.material(
+      {{"name", "wax"},
+       {"extensions",
+        {{"KHR_materials_volume", {{"attenuationColor", {.5, .3, .1}}, {"attenuationDistance", .002}}},
+         {"KHR_materials_scatter", {{"multiscatterColorFactor", {.9, .7, .4}}}}}}});
+  asset.json["meshes"][0]["primitives"][0]["material"] = 0;
+  asset.json["accessors"][0]["sparse"] = {{"count", 1},
+                                          {"indices", {{"bufferView", 2}, {"componentType", 5123}}},
+                                          {"values", {{"bufferView", 1}}}};
+  asset.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", .5}, {"znear", .1}}}}};
+  asset.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}},
+                                                               {{"type", "directional"}}};
+  asset.root(asset.node(
+      {{"camera", 0}, {"scale", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
+  return {asset.gltf(), asset.glb()};
+}
+
+std::vector<std::string> words() {
+  return {"\"bufferView\":",
+          "\"byteOffset\":",
+          "\"byteStride\":",
+          "\"count\":",
+          "\"indices\":",
+          "\"mode\":5",
+          "\"componentType\":5121",
+          "\"SCALAR\"",
+          "\"children\":[",
+          "\"mesh\":",
+          "\"matrix\":[",
+          "\"rotation\":[",
+          "\"uri\":\"",
+          "data:application/octet-stream;base64,",
+          "\"KHR_materials_volume_scatter\":{",
+          "1e300",
+          "-1",
+          "4294967295",
+          "null",
+          "{}",
+          "[]",
+          "\"spot\":{",
+          "\"type\":\"spot\""};
+}
+
+}  // namespace opaline::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace opaline;
+  static const fuzz::ScratchFile file("gltf");
+  file.put({reinterpret_cast<const char*>(data), size});
+  fuzz::try_input([&] {
+    for (const Shape& shape : load_scene(file.path()).shapes)
+      fuzz::expect(!make_mesh(shape).mesh.triangles.empty(), "triangles");
+  });
+  return 0;
+}
