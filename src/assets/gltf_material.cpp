@@ -158,16 +158,19 @@ class MaterialTranslator {
       sigma_s[i] = shares.scattered * sigma_t;
     }
     const double ior = index_of_refraction();
+    const double roughness = std::clamp(material_.pbrMetallicRoughness.roughnessFactor, 0., 1.);
     translated(fmt::format(
-        "attenuationColor {} over {:.4g} mm, multiscatter colour {}, anisotropy {:.3g}, ior {:.4g} "
-        "-> sigma_a {}, sigma_s {} 1/mm, g {:.3g}, specular_ior {:.4g}",
+        "attenuationColor {} over {:.4g} mm, multiscatter colour {}, anisotropy {:.3g}, ior {:.4g}, "
+        "roughnessFactor "
+        "{:.3g} -> sigma_a {}, sigma_s {} 1/mm, g {:.3g}, specular_ior {:.4g}, specular_roughness {:.3g}",
         short_triple(color), distance * kMillimetres, short_triple(scatter.multiscatter_color),
-        scatter.anisotropy, ior, short_triple(sigma_a), short_triple(sigma_s), g, ior));
+        scatter.anisotropy, ior, roughness, short_triple(sigma_a), short_triple(sigma_s), g, ior, roughness));
     tell_of_entry(volume);
     return {{"sigma_a", triple_json(sigma_a)},
             {"sigma_s", triple_json(sigma_s)},
             {"g", g},
-            {"specular_ior", ior}};
+            {"specular_ior", ior},
+            {"specular_roughness", roughness}};
   }
 
   static Vec3d clamped(const Vec3d& color) {
@@ -210,9 +213,8 @@ class MaterialTranslator {
     for (const std::string& name : textures) not_carried("texture " + name);
     if (pbr.metallicFactor > 0 && !is_translucent)
       not_carried(fmt::format("metallicFactor {:.3g}: shaded as matte paint", pbr.metallicFactor));
-    if (material_.values.contains("roughnessFactor"))
-      not_carried(fmt::format("roughnessFactor {:.3g}: {}", pbr.roughnessFactor,
-                              is_translucent ? "the boundary is smooth" : "shaded as matte paint"));
+    if (material_.values.contains("roughnessFactor") && !is_translucent)
+      not_carried(fmt::format("roughnessFactor {:.3g}: shaded as matte paint", pbr.roughnessFactor));
     if (material_.emissiveFactor != std::vector<double>{0, 0, 0} && !material_.emissiveFactor.empty())
       not_carried("emissiveFactor: it does not glow");
     if (material_.alphaMode != "OPAQUE")

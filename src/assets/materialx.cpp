@@ -21,6 +21,7 @@ constexpr double kMostAnisotropy = .99, kLeastIor = .1, kMostIor = 10;
 struct SurfaceModel {
   const char *node, *base_weight, *base_color, *weight, *color, *radius, *scale, *anisotropy, *ior;
   Vec3d default_color, default_scale;
+  double default_roughness;
 };
 
 // OpenPBR 1.1; Autodesk Standard Surface 1.0.1.
@@ -35,9 +36,10 @@ constexpr std::array<SurfaceModel, 2> models{
       "subsurface_scatter_anisotropy",
       "specular_ior",
       Vec3d(.8),
-      {1, .5, .25}},
+      {1, .5, .25},
+      .3},
      {"standard_surface", "base", "base_color", "subsurface", "subsurface_color", "subsurface_radius",
-      "subsurface_scale", "subsurface_anisotropy", "specular_IOR", Vec3d(1), Vec3d(1)}}};
+      "subsurface_scale", "subsurface_anisotropy", "specular_IOR", Vec3d(1), Vec3d(1), .2}}};
 
 const SurfaceModel* find_model(const pugi::xml_node& node) {
   const auto found = std::ranges::find_if(
@@ -92,16 +94,17 @@ class SurfaceReader {
     const Vec3d radius_mm = radius * scene_.mm_per_unit;
     const double g = number(model_.anisotropy, 0, -kMostAnisotropy, kMostAnisotropy);
     const double ior = number(model_.ior, 1.5, kLeastIor, kMostIor);
+    const double roughness = number("specular_roughness", model_.default_roughness, 0, 1);
     scene_.translated.push_back(
         fmt::format("{}: {} {}, {} times {} {} scene units -> subsurface_color, subsurface_radius {} mm, "
-                    "anisotropy {:.3g}, "
-                    "specular_ior {:.4g}",
+                    "anisotropy {:.3g}, specular_ior {:.4g}, specular_roughness {:.3g}",
                     label_, model_.color, short_triple(reflected), model_.radius, model_.scale,
-                    short_triple(radius), short_triple(radius_mm), g, ior));
+                    short_triple(radius), short_triple(radius_mm), g, ior, roughness));
     return {{"subsurface_color", triple_json(reflected)},
             {"subsurface_radius", triple_json(radius_mm)},
             {"subsurface_scatter_anisotropy", g},
-            {"specular_ior", ior}};
+            {"specular_ior", ior},
+            {"specular_roughness", roughness}};
   }
 
   pugi::xml_node input(const char* name) {
