@@ -53,7 +53,8 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
   const std::vector<SurfaceHits> all_hits = shade_diffuse({rays, keys, out}, light_samples_, pass, held);
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
     if (all_hits[f].points.empty()) continue;
-    if (fields_.all[f]->eta() > 0) add_specular(all_hits[f], {rays, keys, out}, pass);
+    const float eta = fields_.all[f]->eta();
+    if (eta > 0 && eta != 1) add_specular(all_hits[f], {rays, keys, out}, pass);
     if (fields_.all[f]->asks_samples()) queries += all_hits[f].points.size();
   }
   return queries;

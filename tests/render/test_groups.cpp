@@ -20,7 +20,7 @@ Scene two_spheres(const std::string& group) {
 double light_of_right_half(const Image& image) {
   double sum = 0;
   for (int y = 0; y < image.height; ++y)
-    for (int x = image.width / 2; x < image.width; ++x) sum += channel(image, x, y, "G");
+    for (int x = image.width / 2; x < image.width; ++x) sum += channel(image, x, y, "diffuse.G");
   return sum;
 }
 

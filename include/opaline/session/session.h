@@ -99,7 +99,7 @@ class Session {
   void expect_pictures(std::size_t pictures);
 
   /// Whether to keep what the camera sees, and how the lights reach it, for later pictures. After an edit of
-  /// colours or media neither is then traced again. Costs memory (HeldView). Off by default.
+  /// colours or media neither is then traced again, but what boundaries mirror is. Costs memory (HeldView). Off by default.
   /// mix_lights: a picture that differs from earlier ones only by its lights' colours may then be a sum of
   /// pictures (LightMix). Beside shadow edges it traces no rays where an earlier picture did. So its last
   /// bits, and its noise at those edges, depend on the pictures before it.
