@@ -11,7 +11,7 @@ root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 # The lists are for the scripts that source this file.
 # shellcheck disable=SC2034
 build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev libopenexr-dev libpng-dev
-  libopenimageio-dev openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhdf5-dev libxxhash-dev)
+  libopenimageio-dev openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhdf5-dev libxxhash-dev libboost-dev)
 # shellcheck disable=SC2034
 test_packages=(libgtest-dev parallel clang-format)
 # The report's page is tested in a browser, 98 MB to fetch and 300 MB on the disk: the slow tier alone needs it.

@@ -81,6 +81,16 @@ void share_triangles(std::vector<Shape>& shapes) {
   for_each_curved([&](int& of_shape) { of_shape = fineness; });
 }
 
+Document merged_document(std::string_view text, const std::string& file,
+                         std::span<const std::string> overrides, int frame) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    throw bad_file(file, "the scene file is empty", "a JSON object {...}");
+  Document document{file, text, {overrides.begin(), overrides.end()}, {}, frame, line_starts_of(text)};
+  document.root = parse_tree(document, text);
+  if (document.root.kind == Node::Kind::object) apply_overrides(document);
+  return document;
+}
+
 Scene read_scene(const Document& document) {
   static const KeyInfo root{"", "scene"};
   const ObjectReader reader(Value(document, document.root, "", root), "scene");
@@ -112,8 +122,12 @@ Scene read_scene(const Document& document) {
 }  // namespace
 
 Scene load_scene(const std::string& path, std::span<const std::string> overrides, int frame) {
+  return parse_scene(read_scene_text(path), path, overrides, frame);
+}
+
+std::string read_scene_text(const std::string& path) {
   check_is_no_mesh(path);
-  return parse_scene(read_text(path), path, overrides, frame);
+  return read_text(path);
 }
 
 std::string with_frame(const std::string& path, int frame) {
@@ -127,19 +141,22 @@ std::string with_frame(const std::string& path, int frame) {
 
 Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides,
                   int frame) {
-  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
-    throw bad_file(file, "the scene file is empty", "a JSON object {...}");
-  Document document{file, text, {overrides.begin(), overrides.end()}, {}, frame, line_starts_of(text)};
-  document.root = parse_tree(document, text);
+  Document document = merged_document(text, file, overrides, frame);
   std::size_t camera_frames = 1;
   if (document.root.kind == Node::Kind::object) {
-    apply_overrides(document);
     camera_frames = count_camera_frames(document);
     resolve_keyed_values(document);
   }
   Scene scene = read_scene(document);
   scene.camera_frames = camera_frames;
   return scene;
+}
+
+std::string merged_scene(std::string_view text, const std::string& file,
+                         std::span<const std::string> overrides, std::optional<int> frame) {
+  Document document = merged_document(text, file, overrides, frame.value_or(1));
+  if (frame && document.root.kind == Node::Kind::object) resolve_keyed_values(document);
+  return to_json(document.root) + '\n';
 }
 
 Medium parse_medium(std::string_view text, const std::string& file) {
