@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "view/view_server.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -56,6 +57,11 @@ Address address_of(const ViewOptions& options) {
     throw Error(ErrorKind::bad_input, {}, 0, 0, "--listen", "an IP address such as 127.0.0.1",
                 "'" + printable(options.address) + "'");
   return {address, options.port};
+}
+
+/// A process that renders a file must not keep the server's sockets open.
+void close_in_children(int socket) {
+  ::fcntl(socket, F_SETFD, FD_CLOEXEC);
 }
 
 /// "127.0.0.1:8080" or "[::1]:8080".
@@ -128,6 +134,7 @@ ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, Vie
   const Address wanted = address_of(options);
   try {
     acceptor.open(wanted.protocol());
+    close_in_children(acceptor.native_handle());
     acceptor.set_option(asio::socket_base::reuse_address(true));
     acceptor.bind(wanted);
     acceptor.listen();
@@ -154,6 +161,7 @@ void ViewServer::State::accept() {
     if (error == asio::error::operation_aborted) return;
     accept();
     if (error) return hooks.refused("a connection: " + error.message());
+    close_in_children(socket.native_handle());
     error_code no_peer;
     const Address peer = socket.remote_endpoint(no_peer);
     const std::string from = host_text(peer.address().to_string(), peer.port());

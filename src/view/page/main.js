@@ -122,7 +122,7 @@ function keyCamera(event) {
 }
 
 function tell(text, isGood = true) {
-  one("told").textContent = text;
+  one("told").textContent = one("told").title = text;
   one("told").classList.toggle("is-bad", !isGood);
 }
 
@@ -208,6 +208,7 @@ const takes = {
   report: (message) => {
     if (message.revision !== plan.revision) return;
     report = message;
+    one("error").dataset.revision = message.revision;
     one("error").textContent = message.error > 0 ? `error about ${(100 * message.error).toPrecision(2)} %` : "";
     showPlan();
   },
@@ -235,7 +236,7 @@ const connection = new Connection({
   },
 });
 const set = (values, stroke) => connection.set(values, stroke);
-const knobs = new Knobs(one("panel"), set, (text) => { one("help").textContent = text; });
+const knobs = new Knobs(one("panel"), set, (text) => { one("help").textContent = text; one("told").textContent = ""; });
 const overlay = new Overlay(one("overlay"), state, set, (name, index) => knobs.pathOf(name, index));
 
 function setExposure(stops) {
