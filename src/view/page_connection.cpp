@@ -13,7 +13,7 @@ namespace websocket = beast::websocket;
 
 constexpr std::size_t kLongestMessage = 1 << 16;  // bytes
 constexpr std::size_t kMostAnswers = 16, kMostFrames = 2;
-constexpr std::chrono::seconds kSilence{20};  // then the page is gone; half of it without a word is a ping
+constexpr std::chrono::seconds kSilence{60};  // then the page is gone; half of it without a word is a ping
 
 }  // namespace
 

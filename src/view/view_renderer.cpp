@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kFrame = 1.0 / 30, kDraft = .022;  // s: a picture that follows the hand, its rays
 constexpr double kLongFinal = .25;                  // s: worth a sharper picture before
-constexpr std::chrono::milliseconds kPause{20};     // without a change, before more work is begun
 constexpr int kCoarsest = 16;
 
 std::unique_ptr<Session> new_session() {
@@ -90,11 +89,6 @@ std::optional<ViewRenderer::Wanted> ViewRenderer::next() {
   return std::exchange(wanted_, {});
 }
 
-bool ViewRenderer::is_superseded_soon() {
-  std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, kPause, [&] { return stopped_ || wanted_; });
-}
-
 void ViewRenderer::run() {
   while (const std::optional<Wanted> wanted = next()) {
     try {
@@ -131,7 +125,6 @@ void ViewRenderer::draw(const Wanted& wanted) {
   const bool is_direct = wanted.scene.settings.method == Method::direct;
   const bool is_quick = spent.prepare < kFrame && !is_direct;
   if (!is_quick) publish(wanted, PictureStep::moving, session_->first_light());
-  if (!is_quick && is_superseded_soon()) return;
   const Clock::time_point start = Clock::now();
   session_->prepare(is_quick ? nullptr : &monitor_);
   spent.prepare = seconds_since(start);
@@ -139,10 +132,11 @@ void ViewRenderer::draw(const Wanted& wanted) {
   if (is_direct) return draw_direct(wanted);
   if (is_quick && spent.final < kFrame) return draw_final(wanted, spent, nullptr);
   draw_draft(wanted, draft_stride(wanted.scene.film), PictureStep::moving, nullptr);
-  if (!is_superseded_soon()) refine(wanted, spent);
+  refine(wanted, spent);
 }
 
 void ViewRenderer::refine(const Wanted& wanted, Spent& spent) {
+  advance(&monitor_, 0);
   const int stride = draft_stride(wanted.scene.film);
   const double sharper = seconds_per_pixel_ * pixels_of(wanted.scene.film) * 4 / (stride * stride);
   if (stride > 1 && spent.final > kLongFinal && sharper < spent.final / 2)

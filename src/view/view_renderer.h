@@ -80,7 +80,6 @@ class ViewRenderer {
 
   void run();
   std::optional<Wanted> next();
-  bool is_superseded_soon();
   void draw(const Wanted& wanted);
   void refine(const Wanted& wanted, Spent& spent);
   void draw_final(const Wanted& wanted, Spent& spent, Monitor* monitor);

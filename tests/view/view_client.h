@@ -161,18 +161,32 @@ class ViewClient {
 
   /// Reads one message; false where none comes within a minute, or the server has closed.
   bool read() {
-    beast::flat_buffer buffer;
-    std::optional<beast::error_code> result;
-    socket_.async_read(buffer, [&](beast::error_code error, std::size_t) { result = error; });
+    if (read_within(std::chrono::minutes(1))) return true;
+    beast::get_lowest_layer(socket_).close();
     io_.restart();
-    io_.run_for(std::chrono::minutes(1));
-    if (!result) {
-      beast::get_lowest_layer(socket_).close();
-      io_.run();
+    io_.run();
+    return false;
+  }
+
+  /// The same within a time, after which reading may go on.
+  bool read_within(std::chrono::milliseconds time) {
+    if (!is_reading_) {
+      is_reading_ = true;
+      result_.reset();
+      socket_.async_read(in_, [this](beast::error_code error, std::size_t) {
+        result_ = error;
+        is_reading_ = false;
+      });
     }
+    io_.restart();
+    io_.run_one_for(std::chrono::milliseconds(0));
+    const auto end = std::chrono::steady_clock::now() + time;
+    while (!result_ && std::chrono::steady_clock::now() < end) io_.run_one_until(end);
     close_code = socket_.reason().code;
-    if (!result || *result) return false;
-    const std::string bytes = beast::buffers_to_string(buffer.data());
+    if (!result_ || *result_) return false;
+    const std::string bytes = beast::buffers_to_string(in_.data());
+    in_.consume(in_.size());
+    result_.reset();
     if (socket_.got_text()) {
       const Json text = Json::parse(bytes);
       texts[text.at("is")] = text;
@@ -219,6 +233,9 @@ class ViewClient {
  private:
   asio::io_context io_;
   beast::websocket::stream<beast::tcp_stream> socket_;
+  beast::flat_buffer in_;
+  std::optional<beast::error_code> result_;
+  bool is_reading_ = false;
 };
 
 /// The picture that `opaline render` makes, R G B A as bits of halves.

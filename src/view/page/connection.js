@@ -2,6 +2,7 @@
 // The socket: tries again when the server is gone, and brings a new server to the edits of this page.
 
 const kFirstWait = 250, kLongestWait = 4000;  // ms
+export const kPause = 400;                    // ms, after which a change is a new one
 
 export class Connection {
   // handlers: {text(message), frame(buffer), lost(), found()}
@@ -67,3 +68,14 @@ export class Connection {
 }
 
 export const newStroke = () => 1 + Math.floor(Math.random() * 2 ** 52);
+
+// One stroke for turns of a wheel or presses of a key that follow each other.
+export function pausedStroke() {
+  let stroke = 0, end = 0;
+  return () => {
+    stroke ||= newStroke();
+    clearTimeout(end);
+    end = setTimeout(() => { stroke = 0; }, kPause);
+    return stroke;
+  };
+}

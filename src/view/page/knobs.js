@@ -131,7 +131,7 @@ export class Knobs {
     const inputs = this.inputs(knob, (now, stroke = newStroke()) => this.set({[path]: now}, stroke));
     const range = kNumbers.concat(kColours).includes(row.type) && Math.abs(row.range[1]) < 1e29 ? `, ${row.range[0]} to ${row.range[1]}` : "";
     const help = `${key}: ${plain(row.meaning)}${row.unit ? ` [${row.unit}]` : ""}${range}${row.default ? `; default ${plain(row.default)}` : ""}`;
-    knob.root = make("div", {className: "knob", title: help}, make("span", {className: "name", textContent: key}), inputs);
+    knob.root = make("div", {className: "knob", title: help}, make("span", {className: "name"}, ...key.split(/(?<=_)/).flatMap((word) => [word, make("wbr")])), inputs);
     knob.root.role = "group";
     knob.root.setAttribute("aria-label", `${path}, ${row.unit}`);
     if (row.unit && row.unit.length < 14) inputs.append(make("span", {className: "unit", textContent: row.unit}));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: what the server tells goes to the picture, the knobs and the lines below; what a person does goes back.
 import {cameraOf, cameraValues, dolly, orbit, pan} from "./camera.js";
-import {Connection, newStroke} from "./connection.js";
+import {Connection, kPause, newStroke, pausedStroke} from "./connection.js";
 import {Knobs} from "./knobs.js";
 import {Overlay} from "./overlay.js";
 import {draw, parseFrame, valuesAt} from "./picture.js";
@@ -76,8 +76,17 @@ function inspect() {
 
 // ---- what a person does -------------------------------------------------------------------------------------
 
+// Its own camera goes before the server's until a moment after the last turn: what comes in may be older.
+let isTurning = false, turnEnd = 0;
 function turn(change, stroke) {
   state.camera = change(state.camera);
+  isTurning = true;
+  clearTimeout(turnEnd);
+  turnEnd = setTimeout(() => {
+    isTurning = false;
+    state.camera = cameraOf(state.scene);
+    overlay.update();
+  }, kPause);
   connection.set(cameraValues(state.camera), stroke);
   overlay.update();
 }
@@ -104,13 +113,10 @@ function dragCamera(event) {
   for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, end);
 }
 
-let wheelStroke = 0, wheelEnd = 0;
+const wheelStroke = pausedStroke(), keyStroke = pausedStroke();
 function wheelCamera(event) {
   event.preventDefault();
-  wheelStroke ||= newStroke();
-  clearTimeout(wheelEnd);
-  wheelEnd = setTimeout(() => { wheelStroke = 0; }, 400);
-  turn((camera) => dolly(camera, kKeyDolly ** Math.sign(event.deltaY)), wheelStroke);
+  turn((camera) => dolly(camera, kKeyDolly ** Math.sign(event.deltaY)), wheelStroke());
 }
 
 function keyCamera(event) {
@@ -118,7 +124,7 @@ function keyCamera(event) {
   const nearer = {"+": 1 / kKeyDolly, "=": 1 / kKeyDolly, "-": kKeyDolly}[event.key];
   if (!(x || y || nearer) || event.ctrlKey) return;
   event.preventDefault();
-  turn((camera) => nearer ? dolly(camera, nearer) : event.shiftKey ? pan(camera, kKeyPan * x, kKeyPan * y) : orbit(camera, -kKeyTurn * x, -kKeyTurn * y), newStroke());
+  turn((camera) => nearer ? dolly(camera, nearer) : event.shiftKey ? pan(camera, kKeyPan * x, kKeyPan * y) : orbit(camera, -kKeyTurn * x, -kKeyTurn * y), keyStroke());
 }
 
 function tell(text, isGood = true) {
@@ -155,7 +161,7 @@ function pin() {
 function takeScene(message) {
   const isFirst = !state.scene;
   Object.assign(state, {scene: message.scene, revision: message.revision, edits: message.edits, command: message.command});
-  if (!isDragging) state.camera = cameraOf(message.scene);
+  if (!isTurning) state.camera = cameraOf(message.scene);
   takeFilm();
   document.title = `${message.file} · opaline view`;
   one("file").textContent = message.file;
@@ -182,7 +188,7 @@ let plan = {groups: [], stages: [], warnings: [], memory: ""}, report = null;
 
 function showPlan() {
   one("warnings").replaceChildren(...list([...plan.warnings, ...sizeWarnings(plan.groups), ...(report?.warnings || [])]));
-  const lines = [...plan.groups.map((group) => group.text), ...plan.stages, plan.memory].map(paragraph);
+  const words = [...plan.groups.map((group) => group.text), ...plan.stages, plan.memory].map(paragraph), lines = [];
   if (report) {
     const table = document.createElement("table");
     table.innerHTML = "<tr><th>stage<th>wall<th>CPU</tr>";
@@ -193,7 +199,7 @@ function showPlan() {
     }
     lines.push(table, ...report.reused.map(paragraph));
   }
-  one("plan").replaceChildren(...lines);
+  one("plan").replaceChildren(...lines, ...words);
 }
 
 const takes = {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Over the picture: lights to drag, a ruler in millimetres, and the edge of the wipe.
 import {add, basis, heightAt, project, rounded, scale, sub} from "./camera.js";
-import {newStroke} from "./connection.js";
+import {newStroke, pausedStroke} from "./connection.js";
 
 const kInset = .03;  // of a handle whose light is outside, in shares of the picture
 const kStep = .02;   // of the camera's distance, for a key
@@ -32,11 +32,11 @@ const lengthText = (mm) => mm >= 1000 ? `${rounded(mm / 1000)} m` : mm >= 1 || !
 export class Overlay {
   // state: {scene, camera, film, wipe}; set(values, stroke): changes the scene; pathOf(list, index): "lights.key"
   constructor(root, state, set, pathOf) {
-    Object.assign(this, {root, state, set, pathOf});
+    Object.assign(this, {root, state, set, pathOf, wheelStroke: pausedStroke(), keyStroke: pausedStroke()});
     this.handles = new Map();
     this.lights = svg("g", {role: "group", "aria-label": "Lights"});
     this.ruler = svg("g", {});
-    this.edge = svg("line", {class: "edge", y1: "0", y2: "100%"});
+    this.edge = svg("line", {class: "edge", y1: "0", y2: "100%", hidden: ""});
     root.append(this.lights, this.ruler, this.edge);
   }
 
@@ -60,7 +60,10 @@ export class Overlay {
       const seen = this.state.film.place(project(this.state.camera, this.state.film.aspect, place.middle));
       const inside = (v) => Math.max(kInset, Math.min(1 - kInset, v));
       const x = inside(seen.x) * this.size.width, y = inside(seen.y) * this.size.height;
-      this.handles.get(path).setAttribute("transform", `translate(${x} ${y})`);
+      const handle = this.handles.get(path), isRight = x > .75 * this.size.width;
+      handle.setAttribute("transform", `translate(${x} ${y})`);
+      handle.lastChild.setAttribute("x", isRight ? -12 : 12);
+      handle.lastChild.setAttribute("text-anchor", isRight ? "end" : "start");
     });
     for (const [path, handle] of this.handles)
       if (!shown.has(path)) {
@@ -73,13 +76,13 @@ export class Overlay {
     const name = path.slice("lights.".length);
     const handle = svg("g", {class: "light", tabindex: "0", role: "button", "data-path": path,
       "aria-label": `Light ${name}: arrow keys move it, plus and minus change its brightness`});
-    const text = svg("text", {x: 10, y: 4});
+    const text = svg("text", {y: 4});
     text.textContent = name;
     handle.append(svg("circle", {r: 7}), svg("path", {d: "M-11 0H-8M8 0H11M0-11V-8M0 8V11"}), text);
     handle.addEventListener("pointerdown", (event) => this.drag(event, handle, path, index));
     handle.addEventListener("wheel", (event) => {
       event.preventDefault();
-      this.brighten(path, index, 1.1 ** -Math.sign(event.deltaY));
+      this.brighten(path, index, 1.1 ** -Math.sign(event.deltaY), this.wheelStroke());
     });
     handle.addEventListener("keydown", (event) => this.key(event, path, index));
     this.handles.set(path, handle);
@@ -107,18 +110,18 @@ export class Overlay {
     };
   }
 
-  brighten(path, index, factor) {
+  brighten(path, index, factor, stroke) {
     const light = this.state.scene.lights[index], key = brightnessKey(light);
     if (typeof light[key] === "string") return;
     const value = rounded(Array.isArray(light[key]) ? scale(light[key], factor) : light[key] * factor);
-    this.set({[`${path}.${key}`]: value}, newStroke());
+    this.set({[`${path}.${key}`]: value}, stroke);
   }
 
   key(event, path, index) {
     const by = {ArrowLeft: [-kStep, 0], ArrowRight: [kStep, 0], ArrowUp: [0, -kStep], ArrowDown: [0, kStep]}[event.key];
     const factor = {"+": 1.1, "=": 1.1, "-": 1 / 1.1}[event.key];
-    if (by) this.move(path, index, this.state.scene.lights[index], ...by, newStroke());
-    if (factor) this.brighten(path, index, factor);
+    if (by) this.move(path, index, this.state.scene.lights[index], ...by, this.keyStroke());
+    if (factor) this.brighten(path, index, factor, this.keyStroke());
     if (by || factor) event.preventDefault();
   }
 
