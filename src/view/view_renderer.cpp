@@ -17,6 +17,7 @@ namespace opaline {
 namespace {
 
 constexpr double kFrame = 1.0 / 30, kDraft = .022;  // s: a picture that follows the hand, its rays
+constexpr double kKnob = .06;                       // s: a picture that follows a knob
 constexpr double kLongFinal = .25;                  // s: worth a sharper picture before
 constexpr int kCoarsest = 16;
 
@@ -130,7 +131,8 @@ void ViewRenderer::draw(const Wanted& wanted) {
   spent.prepare = seconds_since(start);
   prepared_ = wanted.scene;
   if (is_direct) return draw_direct(wanted);
-  if (is_quick && spent.final < kFrame) return draw_final(wanted, spent, nullptr);
+  if (is_quick && spent.final < (change == camera ? kFrame : kKnob))
+    return draw_final(wanted, spent, nullptr);
   draw_draft(wanted, draft_stride(wanted.scene.film), PictureStep::moving, nullptr);
   refine(wanted, spent);
 }
