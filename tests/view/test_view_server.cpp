@@ -12,7 +12,7 @@ std::vector<std::string> edits_of(const ViewClient& page) {
 }
 
 // Claim: after each of a row of edits (and undo, redo, reset) the final picture has the bits of a new session's
-// picture of the scene with these edits. Source: the issue; the exactness of Session::match_new_session. Tolerance:
+// picture of the scene with these edits. Source: the help of view; the exactness of Session::match_new_session. Tolerance:
 // none. Fails if: samples are carried or stay denser than a new session's (moved shape, changed medium), lights are
 // mixed, or a picture is sent under another revision.
 TEST(ViewServer, FinalPicturesAreThoseOfRender) {
@@ -51,7 +51,7 @@ TEST(ViewServer, FinalPicturesAreThoseOfRender) {
 }
 
 // Claim: a scene that is saved after edits is the scene that is shown, and only new names beside it are taken.
-// Source: the issue. Tolerance: none. Fails if: numbers lose digits on the way, or a path leaves the folder.
+// Source: the help of view. Tolerance: none. Fails if: numbers lose digits on the way, or a path leaves the folder.
 TEST(ViewServer, SavesWhatItShows) {
   const ViewFolder folder;
   const RunningView view(folder.scene);
