@@ -188,13 +188,18 @@ export class Knobs {
 
   number(knob, box, set) {
     const {row} = knob;
-    let now = 0;
+    let now = 0, shown = null;  // what is being typed stays until it is done
     const input = make("input", {type: "number", ariaLabel: row.key, step: row.type === "whole_number" ? 1 : "any",
-      placeholder: plain(row.default).slice(0, 20), onchange: () => input.value !== "" && set(Number(input.value))});
+      placeholder: plain(row.default).slice(0, 20)});
+    input.onchange = () => {
+      shown = null;
+      if (input.value !== "") set(Number(input.value));
+    };
     const slider = this.slider(row, () => now, (value, stroke) => set(value, stroke));
     knob.show = (value) => {
       now = value ?? (row.key === "specular_ior" ? this.iorOf(knob) : defaultOf(row));
-      if (document.activeElement !== input || value !== undefined) input.value = now ?? "";
+      if (now !== shown) input.value = now ?? "";
+      shown = now;
       slider.show(now);
     };
     box.append(slider.input, input);

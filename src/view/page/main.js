@@ -63,7 +63,7 @@ function offerLayers() {
   if (names.join() === layers.join()) return;
   layers = names;
   one("channel").replaceChildren(...names.map((name) => new Option(name || "colour", name)));
-  one("channel").value = names.includes(display.channel) ? display.channel : "";
+  one("channel").value = display.channel = names.includes(display.channel) ? display.channel : "";
 }
 
 function inspect() {
