@@ -206,6 +206,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   CacheArguments cache;
   ProfileArguments profile;
   ImportArguments import;
+  ViewArguments view;
   Options options;
   CLI::App app("opaline renders translucent things fast, and says how accurate the picture is.", "opaline");
   app.get_formatter()->column_width(34);
@@ -214,6 +215,8 @@ Command parse_arguments(int argc, const char* const* argv) {
   app.require_subcommand(0, 1);  // none at all is answered below: CLI11 would hide a misspelt one behind it
   app.footer(kExamples);
   CLI::App& render_command = *app.add_subcommand("render", "render a scene to EXR and PNG files");
+  CLI::App& view_command =
+      *app.add_subcommand("view", "show a scene on a page, and what every change makes of it");
   CLI::App& precompute_command =
       *app.add_subcommand("precompute", "fill a cache with what rendering will ask for");
   CLI::App& info_command =
@@ -227,6 +230,7 @@ Command parse_arguments(int argc, const char* const* argv) {
       "profile", "measure how far diffusion models are from random walks, for one medium");
   CLI::App& cache_command = *app.add_subcommand("cache", "look after a folder of stage results (--cache)");
   add_render_options(render_command, render, options);
+  add_view_options(view_command, view, options);
   add_precompute_options(precompute_command, precompute, options);
   add_common_options(info_command, info.scene, options);
   add_picture_options(info_command, options);
@@ -244,7 +248,7 @@ Command parse_arguments(int argc, const char* const* argv) {
     throw parse_error(app, failure);
   }
   if (app.get_subcommands().empty())
-    throw usage_error("no command given: render, info, import, compare, bench, profile, cache or precompute" +
+    throw usage_error("no command given: render, view, info, import, compare, bench, profile, cache or precompute" +
                       hint(app));
   if (compare_command.parsed()) return checked(std::move(compare), options);
   if (import_command.parsed()) return checked(std::move(import));
@@ -265,8 +269,9 @@ Command parse_arguments(int argc, const char* const* argv) {
   render.program = argv[0];
   render.command_line = shell_quoted(render.program);
   for (int i = 1; i < argc; ++i) render.command_line += ' ' + shell_quoted(argv[i]);
-  info.log.format = render.log.format = precompute.log.format = format;
-  info.overrides = render.overrides = precompute.overrides = overrides_of(options);
+  info.log.format = render.log.format = precompute.log.format = view.log.format = format;
+  info.overrides = render.overrides = precompute.overrides = view.overrides = overrides_of(options);
+  if (view_command.parsed()) return view;
   if (!options.frames.empty()) render.frames = precompute.frames = *parse_frames(options.frames);
   if (precompute_command.parsed()) return precompute;
   if (info_command.parsed()) return info;

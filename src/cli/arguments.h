@@ -12,6 +12,7 @@
 #include "core/log.h"
 #include "opaline/cache/blob_cache.h"
 #include "opaline/image/picture_layers.h"
+#include "view/view_server.h"
 
 namespace opaline {
 
@@ -86,6 +87,15 @@ struct ProfileArguments {
   Log log;
 };
 
+/// A scene on a page.
+struct ViewArguments {
+  std::string scene;
+  std::vector<std::string> overrides;
+  ViewOptions options;
+  int threads = 0;  ///< 0: one for each core
+  Log log;
+};
+
 enum class CacheAction { list, verify, prune };
 
 struct CacheArguments {
@@ -101,7 +111,7 @@ struct ShowText {
 };
 
 using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments,
-                             CacheArguments, PrecomputeArguments, ProfileArguments, ImportArguments>;
+                             CacheArguments, PrecomputeArguments, ProfileArguments, ImportArguments, ViewArguments>;
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case

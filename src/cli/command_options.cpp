@@ -135,6 +135,24 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
   app.footer(kRenderNotes);
 }
 
+void add_view_options(CLI::App& app, ViewArguments& view, Options& options) {
+  add_common_options(app, view.scene, options);
+  app.add_option("--listen", view.options.address,
+                 "IP address to listen on (default 127.0.0.1: this machine alone; 0.0.0.0: every network)")
+      ->type_name("ADDRESS");
+  app.add_option("--port", view.options.port, "to listen on; default: any that is free")
+      ->transform(whole_number(kPorts))
+      ->type_name("N");
+  app.add_option(
+         "--token", view.options.token,
+         "word in the URL without which nothing is served, of 16 to 64 characters; default: a random one")
+      ->type_name("WORD");
+  add_threads(app, view.threads, "at most this many; default: one for each core");
+  app.add_flag("--quiet", view.log.quiet, "print the URL and errors only");
+  add_picture_options(app, options);
+  app.footer(kViewNotes);
+}
+
 void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options) {
   add_common_options(app, precompute.scene, options);
   app.add_option("--cache", precompute.cache, "the folder to fill")->required()->type_name("FOLDER");

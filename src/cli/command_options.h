@@ -36,6 +36,7 @@ void add_picture_options(CLI::App& app, Options& options);
 void add_render_options(CLI::App& app, RenderArguments& render, Options& options);
 void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options);
 void add_import_options(CLI::App& app, ImportArguments& import);
+void add_view_options(CLI::App& app, ViewArguments& view, Options& options);
 void add_compare_options(CLI::App& app, CompareArguments& compare, Options& options);
 void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options);
 void add_profile_options(CLI::App& app, ProfileArguments& profile, Options& options);

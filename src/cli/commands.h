@@ -29,6 +29,10 @@ int compare_command(const CompareArguments& arguments);
 ///       be written; Error{interrupted}: the old report stays
 void profile_command(const ProfileArguments& arguments);
 
+/// Serves the scene as a page until Ctrl-C.
+/// error as load_scene and ViewServer
+void view_command(const ViewArguments& arguments);
+
 /// Fills a cache with what rendering the scene, or frames of it, will ask for.
 /// error as render_command
 void precompute_command(const PrecomputeArguments& arguments);

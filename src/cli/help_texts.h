@@ -5,6 +5,7 @@
 namespace opaline {
 
 inline constexpr const char* kExamples = R"(Examples:
+  opaline view bunny.json
   opaline info bunny.json
   opaline render statue.glb -o statue.png
   opaline import statue.glb -o statue.json
@@ -68,6 +69,27 @@ Examples:
   opaline import bunny.obj --material skin.mtlx#SR_skin -o bunny.json
 
 Exit codes: 0 done, 2 the asset is broken, 3 the scene file cannot be written.)";
+
+inline constexpr const char* kViewNotes =
+    R"(Prints a URL; open it in a browser on this machine, in as many windows as you like: all see and edit the same.
+Nothing is installed or loaded from elsewhere. Every change shows a coarse picture at once, then a sharper one, and
+then the final one, with the bits of opaline render; a newer change cancels it. Ctrl-C ends the view.
+
+The scene file stays as it is: "save" writes another one beside it, "render" a picture, by names of your choice that
+are not taken. Mesh files are those of the scene.
+
+Who has the URL can edit, and write such files into the scene's folder. Other requests are refused, with a line on
+stderr: another token, Origin or host name, messages above 64 kB, more than 16 pages or 64 connections. What is
+sent is not encrypted: with --listen, trust the network, or use ssh -L 8080:127.0.0.1:8080 and --port 8080.
+A page that lost its server tries again; with --port and --token the next server is at the same URL, and takes over
+the page's edits.
+
+Examples:
+  opaline view bunny.json
+  opaline view bunny.json --set media.marble.eta=1.4 --resolution 1024x1024
+  opaline view bunny.json --port 8080 --token my-own-long-secret
+
+Exit codes: 0 ended by Ctrl-C, 2 bad input, 3 the port cannot be had.)";
 
 inline constexpr const char* kCompareNotes =
     R"(Figures are of the relative error (a - b) / max(|b|, floor), floor being 1e-3 of the p99 of |b|, over the

@@ -20,6 +20,7 @@ int run(const opaline::Command& command) {
     return opaline::bench_command(*bench);
   if (const auto* profile = std::get_if<opaline::ProfileArguments>(&command))
     opaline::profile_command(*profile);
+  if (const auto* view = std::get_if<opaline::ViewArguments>(&command)) opaline::view_command(*view);
   if (const auto* cache = std::get_if<opaline::CacheArguments>(&command))
     return opaline::cache_command(*cache);
   return 0;
@@ -32,6 +33,7 @@ opaline::Log log_of(const opaline::Command& command) {
   if (const auto* bench = std::get_if<opaline::BenchArguments>(&command)) return bench->log;
   if (const auto* profile = std::get_if<opaline::ProfileArguments>(&command)) return profile->log;
   if (const auto* cache = std::get_if<opaline::CacheArguments>(&command)) return cache->log;
+  if (const auto* view = std::get_if<opaline::ViewArguments>(&command)) return view->log;
   if (const auto* precompute = std::get_if<opaline::PrecomputeArguments>(&command)) return precompute->log;
   if (const auto* import = std::get_if<opaline::ImportArguments>(&command)) return import->log;
   return {};

@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-inline constexpr Range kThreads{1, 4096}, kRepeats{3, 1000}, kWalks{1, 1e9};
+inline constexpr Range kThreads{1, 4096}, kPorts{0, 65535}, kRepeats{3, 1000}, kWalks{1, 1e9};
 
 /// "640x480" -> "[640,480]", "0,0,16,16" -> "[0,0,16,16]"; empty if it is neither.
 std::string resolution_json(std::string_view text);

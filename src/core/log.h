@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The program's voice. Text: results on stdout, warnings and errors on stderr. JSON: one object a line on
 // stdout,
-// {"event": "frame" | "skipped" | "target" | "plan" | "reuse" | "warning" | "progress" | "stage" | "done" |
+// {"event": "view" | "frame" | "skipped" | "target" | "plan" | "reuse" | "warning" | "progress" | "stage" | "done" |
 // "error", ...}.
 #pragma once
 

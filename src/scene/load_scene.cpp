@@ -125,6 +125,16 @@ void take_thickness_of_plates(Scene& scene) {
   }
 }
 
+Document merged_document(std::string_view text, const std::string& file,
+                         std::span<const std::string> overrides, int frame) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    throw bad_file(file, "the scene file is empty", "a JSON object {...}");
+  Document document{file, text, {overrides.begin(), overrides.end()}, {}, frame, line_starts_of(text)};
+  document.root = parse_tree(document, text);
+  if (document.root.kind == Node::Kind::object) apply_overrides(document);
+  return document;
+}
+
 Scene read_scene(const Document& document) {
   static const KeyInfo root{"", "scene"};
   const ObjectReader reader(Value(document, document.root, "", root), "scene");
@@ -164,15 +174,18 @@ void forget_places(Scene& scene) {
 }  // namespace
 
 Scene load_scene(const std::string& path, std::span<const std::string> overrides, int frame) {
-  if (!is_asset_name(path)) {
-    check_is_no_mesh(path);
-    return parse_scene(read_text(path), path, overrides, frame);
-  }
+  if (!is_asset_name(path)) return parse_scene(read_scene_text(path), path, overrides, frame);
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
   Scene scene = parse_scene(asset.text, path, overrides, frame);
   scene.translation = asset.summary;
   forget_places(scene);
   return scene;
+}
+
+std::string read_scene_text(const std::string& path) {
+  if (is_asset_name(path)) return import_asset(path, std::filesystem::path(path).filename().string()).text;
+  check_is_no_mesh(path);
+  return read_text(path);
 }
 
 std::string with_frame(const std::string& path, int frame) {
@@ -186,19 +199,22 @@ std::string with_frame(const std::string& path, int frame) {
 
 Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides,
                   int frame) {
-  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
-    throw bad_file(file, "the scene file is empty", "a JSON object {...}");
-  Document document{file, text, {overrides.begin(), overrides.end()}, {}, frame, line_starts_of(text)};
-  document.root = parse_tree(document, text);
+  Document document = merged_document(text, file, overrides, frame);
   std::size_t camera_frames = 1;
   if (document.root.kind == Node::Kind::object) {
-    apply_overrides(document);
     camera_frames = count_camera_frames(document);
     resolve_keyed_values(document);
   }
   Scene scene = read_scene(document);
   scene.camera_frames = camera_frames;
   return scene;
+}
+
+std::string merged_scene(std::string_view text, const std::string& file,
+                         std::span<const std::string> overrides, std::optional<int> frame) {
+  Document document = merged_document(text, file, overrides, frame.value_or(1));
+  if (frame && document.root.kind == Node::Kind::object) resolve_keyed_values(document);
+  return to_json(document.root) + '\n';
 }
 
 Medium parse_medium(std::string_view text, const std::string& file) {

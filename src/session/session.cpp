@@ -26,6 +26,9 @@ void Session::hold_view(bool hold, bool mix_lights) {
 void Session::ready_light_mix(Monitor* monitor) {
   state_->ready_light_mix(monitor);
 }
+void Session::match_new_session(bool matches) {
+  state_->matches_new_ = matches;
+}
 void Session::expect_edits(bool edits) {
   state_->edits_ = edits;
 }

@@ -127,7 +127,7 @@ void Session::State::anchor(Scene scene, Monitor* monitor) {
 void Session::State::keep_spacing() {
   constexpr double kDensest = 2, kSparsest = 1.1;  // spacing asked for over the one at hand, and the inverse
   const Settings& settings = scene_.settings;
-  if (settings.samples) return;
+  if (settings.samples || matches_new_) return;
   for (GroupPlan& group : plan_.groups) {
     const auto body = std::ranges::find_if(bodies_, [&](const Body& b) { return b.plan.name == group.name; });
     if (body == bodies_.end()) continue;

@@ -56,7 +56,7 @@ void Session::State::update_samples(Body& body, BodyKeys& known, const Precomput
     known.samples_key = anew;
     return keep_samples(body, known);
   }
-  if (!is_from_this_plan(known.origin, input, group) ||
+  if (matches_new_ || !is_from_this_plan(known.origin, input, group) ||
       has_outgrown(known.origin, body.plan, input.scene.settings) ||
       !can_carry(*known.origin.world, known.origin.meshes, *world_, body.plan.meshes))
     return place_anew(body, known, input, group, anew);

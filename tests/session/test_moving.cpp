@@ -36,6 +36,26 @@ Scene moved_left(const Vec3d& by) {
   return scene;
 }
 
+// Claim: a session that matches a new one has its bits where others carry samples along or leave them denser: a moved
+// and a stretched object, a medium with a longer mean free path. Fails if one of them is still carried or kept.
+TEST(Moving, MatchesANewSession) {
+  Session session;
+  session.hold_view(true);
+  session.match_new_session(true);
+  Scene scene = two_balls();
+  scene.settings.samples.reset();
+  scene.settings.sample_spacing.reset();
+  picture_of(session, scene);
+  scene.shapes[0].to_world = shifted({1.5, .5, -2});
+  EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+  scene.shapes[0].to_world.x = {1.1, 0, 0};
+  EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+  scene.media[0].coefficients = PhysicalMedium{Rgb{.1, .1, .1}, Rgb{3, 3, 3}};
+  EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+  scene.media[0].coefficients = PhysicalMedium{Rgb{.1, .1, .1}, Rgb{2.4, 2.4, 2.4}};
+  EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+}
+
 // Claim: an object that moved takes its samples along; the other's samples stay, and the light that enters
 // them where no shadow of the moved one fell or falls. The other's pixels are a cold picture's, bit for bit,
 // but for what it mirrors; the moved one's differ by what two samplings of one surface differ, measured 1.2 %, and are the same

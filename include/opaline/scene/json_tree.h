@@ -57,6 +57,9 @@ const Node* find_member(const Node& object, std::string_view key);
 /// exceeded
 Node parse_tree(const Document& document, std::string_view text, int override_index = -1);
 
+/// The value as JSON, without its key; short lists and objects on one line. Numbers stay as they were written.
+std::string to_json(const Node& node);
+
 constexpr int max_depth = 64;
 constexpr std::size_t max_values = 1000000;
 

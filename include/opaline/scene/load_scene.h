@@ -2,6 +2,7 @@
 // From a scene file (JSON with comments) to a Scene; every key is described in scenes/README.md.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,17 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
 /// The same from text; `file` stands in messages and its folder in front of relative mesh paths.
 Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides = {},
                   int frame = 1);
+
+/// The text of a scene file.
+/// error Error{bad_input}: no such file, a folder, a mesh, more than 64 MiB
+std::string read_scene_text(const std::string& path);
+
+/// A scene's text with the overrides applied, as JSON: in a file of the same folder it is the scene that parse_scene
+/// reads of both. Comments are left out, numbers stay as they were written.
+/// frame: unless none, each value that changes is replaced by its value at this frame
+/// error as parse_scene, for what it checks before values
+std::string merged_scene(std::string_view text, const std::string& file,
+                         std::span<const std::string> overrides, std::optional<int> frame = {});
 
 /// The last run of two or more # in a path as the frame's number, with zeros in front to fill them:
 /// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths stay as they are.

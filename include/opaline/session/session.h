@@ -110,6 +110,10 @@ class Session {
   /// error as prepare
   void ready_light_mix(Monitor* monitor = nullptr);
 
+  /// Whether each picture has the bits of a new session's. Samples are then placed anew wherever a new session
+  /// would have others, neither carried along nor left denser than needed; lights must not be mixed. Default: false.
+  void match_new_session(bool matches);
+
   /// If no further edits follow, the session drops the data that only edits reuse. Default: true. No picture
   /// depends on it.
   void expect_edits(bool edits);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <csignal>
+#include <optional>
+
+#include "benchmark/child_process.h"
+#include "cli/commands.h"
+#include "cli/metadata.h"
+#include "opaline/core/error.h"
+#include "opaline/core/interrupt.h"
+#include "view/view_server.h"
+
+namespace opaline {
+namespace {
+
+/// A file by a process of its own, so that it is what `opaline render` writes and the view goes on meanwhile.
+void render_file(const ViewArguments& arguments, const std::vector<std::string>& overrides,
+                 const std::string& path, Monitor& monitor) {
+  std::vector<std::string> words{"render", arguments.scene, "-o", path, "--log", "json"};
+  for (const std::string& text : overrides) words.insert(words.end(), {"--set", text});
+  if (arguments.threads > 0) words.insert(words.end(), {"--threads", std::to_string(arguments.threads)});
+  const OwnChild child = run_own_child(words, monitor);
+  if (!child.failure.empty()) throw run_failed({}, child.failure);
+}
+
+}  // namespace
+
+void view_command(const ViewArguments& arguments) {
+  std::signal(SIGPIPE, SIG_IGN);  // a page that leaves must not end the others'
+  std::optional<tbb::global_control> threads;
+  if (arguments.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
+  Monitor monitor;
+  const InterruptHandler interrupt(monitor);
+  RenderArguments render;
+  render.scene = arguments.scene;
+  const ViewHooks hooks{[&](const std::string& text) {
+                          if (!arguments.log.quiet) print_warning(arguments.log, "refused " + text);
+                        },
+                        [&](const std::vector<std::string>& overrides) {
+                          render.overrides = overrides;
+                          return command_of(render);
+                        },
+                        [&](const std::vector<std::string>& overrides, const std::string& path,
+                            Monitor& stopped) { render_file(arguments, overrides, path, stopped); }};
+  ViewServer server(SceneEdits(arguments.scene, arguments.overrides), arguments.options, hooks);
+  print_event(arguments.log, "view", {{"url", server.url()}});
+  if (arguments.log.format == LogFormat::text) write_line(stdout, "view        " + server.url());
+  server.run(monitor);
+}
+
+}  // namespace opaline

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/http_connection.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "view/page_files.h"
+
+namespace opaline {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+
+constexpr std::size_t kLongestHeader = 8192;  // bytes
+constexpr std::chrono::seconds kPatience{10};
+
+/// In a time that does not tell how much of it is right.
+bool same_secret(std::string_view a, std::string_view b) {
+  unsigned difference = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) difference |= unsigned(a[i] ^ b[i]);
+  return difference == 0;
+}
+
+std::string text_of(beast::string_view view) {
+  return {view.data(), view.size()};
+}
+
+}  // namespace
+
+std::string allowed_path(const HttpRequest& request, const AccessRules& rules,
+                         std::optional<Refusal>& refusal) {
+  const std::string target = text_of(request.target()), host = text_of(request[http::field::host]);
+  const std::size_t slash = std::min(target.find('/', 1), target.size());
+  const auto refuse = [&](http::status status, const std::string& why) {
+    refusal = Refusal{status, why};
+    return std::string();
+  };
+  if (!rules.hosts.empty() && std::ranges::find(rules.hosts, host) == rules.hosts.end())
+    return refuse(http::status::forbidden, "another host's name");
+  if (!target.starts_with('/') || !same_secret(target.substr(1, slash - 1), rules.token))
+    return refuse(http::status::forbidden, "wrong token");
+  if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed, "no GET");
+  const std::string path = target.substr(slash);
+  const bool is_socket = beast::websocket::is_upgrade(request);
+  if (is_socket && text_of(request[http::field::origin]) != "http://" + host)
+    return refuse(http::status::forbidden, "foreign Origin");
+  if (is_socket != (path == "/socket")) return refuse(http::status::not_found, "no such path");
+  return path;
+}
+
+HttpConnection::HttpConnection(boost::asio::ip::tcp::socket&& socket, const AccessRules& rules, Events events,
+                               std::shared_ptr<void> slot)
+    : stream_(std::move(socket)),
+      rules_(rules),
+      events_(std::move(events)),
+      slot_(std::move(slot)),
+      in_(kLongestHeader) {
+  parser_.header_limit(kLongestHeader);
+  parser_.body_limit(0);
+}
+
+void HttpConnection::start() {
+  stream_.expires_after(kPatience);
+  http::async_read(stream_, in_, parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+    if (!error) return self->answer();
+    if (error != http::error::end_of_stream && error != beast::error::timeout)
+      self->events_.refused("no HTTP request: " + error.message());
+  });
+}
+
+void HttpConnection::answer() {
+  std::optional<Refusal> refusal;
+  const std::string path = allowed_path(parser_.get(), rules_, refusal);
+  if (refusal) {
+    events_.refused(refusal->why);
+    return respond(refusal->status, "text/plain", refusal->why + "\n");
+  }
+  if (path == "/socket") return events_.web_socket(std::move(stream_), parser_.get(), std::move(slot_));
+  for (const PageFile& file : page_files())
+    if (path == file.path) return respond(http::status::ok, file.type, file.text);
+  respond(http::status::not_found, "text/plain", "there is no such file\n");
+}
+
+void HttpConnection::respond(http::status status, const std::string& type, std::string body) {
+  response_ = {status, parser_.get().version()};
+  response_.set(http::field::content_type, type + "; charset=utf-8");
+  response_.set(http::field::cache_control, "no-store");
+  response_.set("Referrer-Policy", "no-referrer");
+  response_.set("X-Content-Type-Options", "nosniff");
+  response_.set(
+      "Content-Security-Policy",
+      "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; "
+      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+  response_.keep_alive(false);
+  response_.body() = std::move(body);
+  response_.prepare_payload();
+  http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+    if (!error) self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, error);
+  });
+}
+
+}  // namespace opaline

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One request: a file of the page, or the start of its WebSocket.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "view/page_connection.h"
+
+namespace opaline {
+
+/// Who may ask for what.
+struct AccessRules {
+  std::string token;               ///< first part of every path
+  std::vector<std::string> hosts;  ///< what the header Host may say; empty: anything
+};
+
+/// Why a request is refused; the status and a text.
+struct Refusal {
+  boost::beast::http::status status = boost::beast::http::status::ok;
+  std::string why;
+};
+
+/// The part of the request's path behind the token.
+/// refusal: why not; a WebSocket needs the page's own Origin
+std::string allowed_path(const HttpRequest& request, const AccessRules& rules,
+                         std::optional<Refusal>& refusal);
+
+class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
+ public:
+  struct Events {
+    std::function<void(boost::beast::tcp_stream&& stream, const HttpRequest& request,
+                       std::shared_ptr<void> slot)>
+        web_socket;
+    std::function<void(const std::string& why)> refused;
+  };
+
+  HttpConnection(boost::asio::ip::tcp::socket&& socket, const AccessRules& rules, Events events,
+                 std::shared_ptr<void> slot);
+
+  void start();
+
+ private:
+  void answer();
+  void respond(boost::beast::http::status status, const std::string& type, std::string body);
+
+  boost::beast::tcp_stream stream_;
+  const AccessRules& rules_;
+  Events events_;
+  std::shared_ptr<void> slot_;
+  boost::beast::flat_buffer in_;
+  boost::beast::http::request_parser<boost::beast::http::empty_body> parser_;
+  boost::beast::http::response<boost::beast::http::string_body> response_;
+};
+
+}  // namespace opaline

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The camera of a scene: how it is turned, and where it sees a point. Lengths in scene units.
+
+export const add = (a, b) => a.map((x, i) => x + b[i]);
+export const sub = (a, b) => a.map((x, i) => x - b[i]);
+export const scale = (a, s) => a.map((x) => x * s);
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const length = (a) => Math.sqrt(dot(a, a));
+const unit = (a) => scale(a, 1 / (length(a) || 1));
+
+// Few digits, that commands stay short.
+export const rounded = (x) => Array.isArray(x) ? x.map(rounded) : Number(x.toPrecision(6));
+
+export function cameraOf(scene) {
+  const given = scene.camera || {};
+  return {
+    position: given.position || [0, 0, 5],
+    look_at: given.look_at || [0, 0, 0],
+    up: given.up || [0, 1, 0],
+    field_of_view: given.field_of_view || 40,
+  };
+}
+
+// What turns a camera into values of the scene.
+export function cameraValues(camera) {
+  return {"camera.position": rounded(camera.position), "camera.look_at": rounded(camera.look_at)};
+}
+
+export function basis(camera) {
+  const forward = unit(sub(camera.look_at, camera.position));
+  const right = unit(cross(forward, camera.up));
+  return {forward, right, up: cross(right, forward), distance: length(sub(camera.look_at, camera.position))};
+}
+
+// About an axis through the origin, after Rodrigues.
+function turned(v, axis, angle) {
+  const c = Math.cos(angle), s = Math.sin(angle);
+  return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
+}
+
+// Angles in radians: around what it looks at, as on a turntable.
+export function orbit(camera, around, over) {
+  const {right} = basis(camera), up = unit(camera.up);
+  const from = sub(camera.position, camera.look_at);
+  const height = Math.acos(Math.max(-1, Math.min(1, dot(unit(from), up))));
+  const tilt = Math.max(.03, Math.min(Math.PI - .03, height + over)) - height;
+  return {...camera, position: add(camera.look_at, turned(turned(from, right, tilt), up, around))};
+}
+
+// Shares of the picture's height.
+export function pan(camera, x, y) {
+  const {right, up, distance} = basis(camera);
+  const size = 2 * distance * Math.tan(camera.field_of_view * Math.PI / 360);
+  const by = add(scale(right, -x * size), scale(up, y * size));
+  return {...camera, position: add(camera.position, by), look_at: add(camera.look_at, by)};
+}
+
+export function dolly(camera, factor) {
+  return {...camera, position: add(camera.look_at, scale(sub(camera.position, camera.look_at), factor))};
+}
+
+// Size of a picture's height at a depth.
+export const heightAt = (camera, depth) => 2 * depth * Math.tan(camera.field_of_view * Math.PI / 360);
+
+// Where a point is seen: x and y from 0 to 1 within the whole film, and its depth. What is behind the camera is put
+// on the side that it is on.
+export function project(camera, aspect, point) {
+  const {forward, right, up, distance} = basis(camera);
+  const to = sub(point, camera.position);
+  const depth = dot(to, forward), size = heightAt(camera, Math.max(depth, distance * .05));
+  return {x: .5 + dot(to, right) / (size * aspect), y: .5 - dot(to, up) / size, depth};
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The socket: tries again when the server is gone, and brings a new server to the edits of this page.
+
+const kFirstWait = 250, kLongestWait = 4000;  // ms
+export const kPause = 400;                    // ms, after which a change is a new one
+
+export class Connection {
+  // handlers: {text(message), frame(buffer), lost(), found()}
+  constructor(handlers) {
+    this.handlers = handlers;
+    this.wait = kFirstWait;
+    this.edits = [];
+    this.isNew = true;
+    this.waiting = {};
+    this.open();
+  }
+
+  open() {
+    const url = new URL("socket", location.href);
+    url.protocol = url.protocol.replace("http", "ws");
+    this.socket = new WebSocket(url);
+    this.socket.binaryType = "arraybuffer";
+    this.socket.onmessage = (event) => this.receive(event.data);
+    this.socket.onclose = () => {
+      this.handlers.lost();
+      this.isNew = true;
+      setTimeout(() => this.open(), this.wait);
+      this.wait = Math.min(2 * this.wait, kLongestWait);
+    };
+  }
+
+  receive(data) {
+    if (typeof data !== "string") return this.handlers.frame(data);
+    const message = JSON.parse(data);
+    if (message.is === "scene") {
+      if (this.isNew) {
+        this.isNew = false;
+        this.wait = kFirstWait;
+        this.handlers.found();
+        if (message.revision === 1 && this.edits.length) {
+          this.send({do: "restore", edits: this.edits});
+          this.edits = [];  // once: a server that refuses them has the say
+          return;
+        }
+      }
+      this.edits = message.edits;
+    }
+    this.handlers.text(message);
+  }
+
+  send(message) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  // Values of one stroke; those of a moment go together.
+  set(values, stroke) {
+    if (this.stroke !== stroke) this.flush();
+    this.stroke = stroke;
+    if (!Object.keys(this.waiting).length) requestAnimationFrame(() => this.flush());
+    Object.assign(this.waiting, values);
+  }
+
+  flush() {
+    const values = this.waiting;
+    this.waiting = {};
+    if (Object.keys(values).length) this.send({do: "set", values, stroke: this.stroke});
+  }
+}
+
+export const newStroke = () => 1 + Math.floor(Math.random() * 2 ** 52);
+
+// One stroke for turns of a wheel or presses of a key that follow each other.
+export function pausedStroke() {
+  let stroke = 0, end = 0;
+  return () => {
+    stroke ||= newStroke();
+    clearTimeout(end);
+    end = setTimeout(() => { stroke = 0; }, kPause);
+    return stroke;
+  };
+}

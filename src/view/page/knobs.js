@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A knob for each value of the scene, made of the server's table of keys.
+import {rounded} from "./camera.js";
+import {newStroke} from "./connection.js";
+
+// What says what a medium is, and the keys that go with it.
+const kForms = {
+  preset: {name: "preset", keys: ["preset", "scatter_anisotropy"]},
+  sigma_s_prime: {name: "reduced coefficients", keys: ["sigma_a", "sigma_s_prime", "scatter_anisotropy"]},
+  sigma_s: {name: "coefficients and g", keys: ["sigma_a", "sigma_s", "g"]},
+  subsurface_color: {name: "colour and radius",
+    keys: ["subsurface_color", "subsurface_radius", "subsurface_radius_scale", "subsurface_scatter_anisotropy"]},
+};
+const kNumbers = ["number", "whole_number", "length"], kThrees = ["point", "triple"];
+const kColours = ["color", "number_or_triple"];
+const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};
+const kWidestLinear = 1000, kDecade = 1;
+
+const make = (name, properties = {}, ...children) => {
+  const element = Object.assign(document.createElement(name), properties);
+  element.append(...children);
+  return element;
+};
+const plain = (markdown) => markdown.replace(/[`"]/g, "");
+const toLinear = (x) => x <= .04045 ? x / 12.92 : ((x + .055) / 1.055) ** 2.4;
+const toSrgb = (x) => x <= .0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - .055;
+const fromHex = (hex) => [1, 3, 5].map((i) => toLinear(parseInt(hex.slice(i, i + 2), 16) / 255));
+const toHex = (rgb) => "#" + rgb.map((x) => Math.round(255 * toSrgb(Math.max(0, Math.min(1, x)))).toString(16).padStart(2, "0")).join("");
+
+function defaultOf(row) {
+  const text = plain(row.default);
+  if (row.type === "choice") return text;
+  try {
+    return JSON.parse(text.replace(/ .*/, (rest) => text.startsWith("[") ? rest : ""));
+  } catch {
+    return undefined;
+  }
+}
+const threeOf = (value) =>
+  typeof value === "string" ? fromHex(value) : Array.isArray(value) ? value : [value, value, value];
+
+export class Knobs {
+  // set(values, stroke): changes the scene; help(text): shows a line
+  constructor(root, set, help) {
+    Object.assign(this, {root, set, help, knobs: [], shape: ""});
+  }
+
+  take(schema) {
+    this.rows = new Map(schema.rows.map((row) => [`${row.section}.${row.key}`, row]));
+    this.presets = new Map(schema.presets.map((preset) => [preset.name, preset]));
+    this.shape = "";
+  }
+
+  // The path of an element of a list, by its name where that can stand in a path.
+  pathOf(list, index) {
+    const name = this.scene[list][index].name;
+    return `${list}.${name && /^[\w-]+$/.test(name) ? name : index}`;
+  }
+
+  formOf(medium) {
+    return Object.keys(kForms).find((key) => key in medium) || "preset";
+  }
+
+  update(scene, edits) {
+    this.scene = scene;
+    if (!this.rows) return;
+    const media = scene.media || {}, lights = scene.lights || [], shapes = scene.shapes || [];
+    const shape = JSON.stringify([Object.entries(media).map(([name, m]) => [name, this.formOf(m), "eta" in m]),
+      lights.map((l) => [l.name, l.type]), shapes.map((s) => [s.name, "medium" in s])]);
+    if (shape !== this.shape) this.build(scene);
+    this.shape = shape;
+    for (const knob of this.knobs) {
+      knob.show(knob.value(scene));
+      knob.root.classList.toggle("is-edited", edits.some((text) => text.startsWith(knob.path + "=")));
+    }
+  }
+
+  build(scene) {
+    const open = new Set([...this.root.querySelectorAll("details[open]")].map((d) => d.dataset.group));
+    const first = !this.root.children.length;
+    this.knobs = [];
+    this.root.replaceChildren();
+    const group = (name, title, rows) => {
+      const details = make("details", {open: first ? /^(media|lights)/.test(name) : open.has(name)}, make("summary", {textContent: title}), ...rows);
+      details.dataset.group = name;
+      this.root.append(details);
+    };
+    for (const name of Object.keys(scene.media || {})) group(`media.${name}`, `Medium ${name}`, this.mediumRows(name));
+    (scene.lights || []).forEach((light, i) => group(`lights.${i}`, `Light ${light.name || i}`, this.rowsOf(`light.${light.type}`, this.pathOf("lights", i), (s) => s.lights[i], ["type", "name"])));
+    group("surroundings", "Surroundings", [this.knob("scene", "surroundings", "surroundings", (s) => s.surroundings)]);
+    (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`,
+      (("medium" in shape) ? ["medium", "normals"] : ["reflectance", "normals"]).map((key) =>
+        this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))));
+    group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera));
+    group("film", "Picture", this.rowsOf("film", "film", (s) => s.film));
+    group("settings", "Method", this.rowsOf("settings", "settings", (s) => s.settings));
+  }
+
+  rowsOf(section, path, owner, without = []) {
+    return [...this.rows.values()].filter((row) => row.section === section && !without.includes(row.key))
+      .map((row) => this.knob(section, row.key, `${path}.${row.key}`, (s) => (owner(s) || {})[row.key]));
+  }
+
+  mediumRows(name) {
+    const medium = this.scene.media[name], form = this.formOf(medium), path = `media.${name}`;
+    const select = make("select", {}, ...Object.entries(kForms).map(([key, {name: text}]) => make("option", {value: key, textContent: text})));
+    select.value = form;
+    select.onchange = () => this.set({[path]: this.converted(name, select.value)}, newStroke());
+    const ior = "eta" in medium ? "eta" : "specular_ior";
+    return [make("label", {className: "knob"}, make("span", {className: "name", textContent: "given by"}), select),
+      ...[...kForms[form].keys, ior, "profile"].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
+  }
+
+  // The same medium in another form, or where there is no telling one to start from.
+  converted(name, form) {
+    const medium = this.scene.media[name], preset = this.presets.get(medium.preset) || {};
+    const start = {sigma_a: preset.sigma_a || medium.sigma_a || .01};
+    const made = {
+      preset: {preset: "marble"},
+      sigma_s_prime: {...start, sigma_s_prime: preset.sigma_s_prime || medium.sigma_s || 2},
+      sigma_s: {...start, sigma_s: preset.sigma_s_prime || medium.sigma_s_prime || 2},
+      subsurface_color: {subsurface_color: [.8, .7, .6], subsurface_radius: 1},
+    }[form];
+    const ior = medium.specular_ior || medium.eta || preset.specular_ior;
+    return {...made, ...(ior && form !== "preset" ? {specular_ior: ior} : {}), ...(medium.profile ? {profile: medium.profile} : {})};
+  }
+
+  knob(section, key, path, value) {
+    const row = this.rows.get(`${section}.${key}`);
+    const knob = {path, row, value: (scene) => value(scene)};
+    const inputs = this.inputs(knob, (now, stroke = newStroke()) => this.set({[path]: now}, stroke));
+    const range = kNumbers.concat(kColours).includes(row.type) && Math.abs(row.range[1]) < 1e29 ? `, ${row.range[0]} to ${row.range[1]}` : "";
+    const help = `${key}: ${plain(row.meaning)}${row.unit ? ` [${row.unit}]` : ""}${range}${row.default ? `; default ${plain(row.default)}` : ""}`;
+    knob.root = make("div", {className: "knob", title: help}, make("span", {className: "name"}, ...key.split(/(?<=_)/).flatMap((word) => [word, make("wbr")])), inputs);
+    knob.root.role = "group";
+    knob.root.setAttribute("aria-label", `${path}, ${row.unit}`);
+    if (row.unit && row.unit.length < 14) inputs.append(make("span", {className: "unit", textContent: row.unit}));
+    knob.root.addEventListener("focusin", () => this.help(help));
+    knob.root.addEventListener("pointerenter", () => this.help(help));
+    this.knobs.push(knob);
+    return knob.root;
+  }
+
+  inputs(knob, set) {
+    const {row} = knob, box = make("span", {className: "inputs"});
+    if (row.type === "flag") this.flag(knob, box, set);
+    else if (row.type === "choice" || row.key === "medium") this.choice(knob, box, set);
+    else if (kNumbers.includes(row.type)) this.number(knob, box, set);
+    else if (kColours.includes(row.type)) this.colour(knob, box, set);
+    else this.list(knob, box, set, kThrees.includes(row.type) ? ["x", "y", "z"] : kLists[row.key]);
+    return box;
+  }
+
+  flag(knob, box, set) {
+    const input = make("input", {type: "checkbox", ariaLabel: knob.row.key, onchange: () => set(input.checked)});
+    knob.show = (value) => { input.checked = value ?? defaultOf(knob.row); };
+    box.append(input);
+  }
+
+  choice(knob, box, set) {
+    const words = knob.row.type === "choice" ? knob.row.choices : Object.keys(this.scene.media || {});
+    const select = make("select", {ariaLabel: knob.row.key, onchange: () => set(select.value)}, ...words.map((word) => make("option", {textContent: word})));
+    knob.show = (value) => { select.value = value ?? defaultOf(knob.row); };
+    box.append(select);
+  }
+
+  // Linear over a range that has ends, else over a decade to each side of the value that it is taken at.
+  slider(row, now, change) {
+    const isLinear = row.range[1] - row.range[0] <= kWidestLinear;
+    const input = make("input", {type: "range", ariaLabel: `${row.key}, slider`, step: "any",
+      min: isLinear ? row.range[0] : -kDecade, max: isLinear ? row.range[1] : kDecade});
+    let stroke = 0, base = 1;
+    const value = () => {
+      const x = isLinear ? Number(input.value) : base * 10 ** Number(input.value);
+      return row.type === "whole_number" ? Math.max(row.range[0], Math.round(x)) : rounded(x);
+    };
+    input.oninput = () => {
+      if (!stroke) [stroke, base] = [newStroke(), now() || 1e-3];
+      change(value(), stroke, base);
+    };
+    input.onchange = () => {
+      if (stroke) change(value(), stroke, base);
+      stroke = 0;
+      if (!isLinear) input.value = 0;
+    };
+    return {input, show: (x) => { if (!stroke) input.value = isLinear ? x ?? row.range[0] : 0; }};
+  }
+
+  number(knob, box, set) {
+    const {row} = knob;
+    let now = 0, shown = null;  // what is being typed stays until it is done
+    const input = make("input", {type: "number", ariaLabel: row.key, step: row.type === "whole_number" ? 1 : "any",
+      placeholder: plain(row.default).slice(0, 20)});
+    input.onchange = () => {
+      shown = null;
+      if (input.value !== "") set(Number(input.value));
+    };
+    const slider = this.slider(row, () => now, (value, stroke) => set(value, stroke));
+    knob.show = (value) => {
+      now = value ?? (row.key === "specular_ior" ? this.iorOf(knob) : defaultOf(row));
+      if (now !== shown) input.value = now ?? "";
+      shown = now;
+      slider.show(now);
+    };
+    box.append(slider.input, input);
+  }
+
+  iorOf(knob) {
+    const medium = this.scene.media[knob.path.split(".")[1]];
+    return this.presets.get(medium.preset)?.specular_ior ?? 1.3;
+  }
+
+  numbers(row, names, change) {
+    return names.map((name) => make("input", {type: "number", step: "any", ariaLabel: `${row.key} ${name}`, title: name, onchange: change}));
+  }
+
+  colour(knob, box, set) {
+    const {row} = knob;
+    let now = [0, 0, 0];
+    const inputs = this.numbers(row, ["red", "green", "blue"], () => set(inputs.map((i) => Number(i.value))));
+    const top = () => Math.max(...now) || 1;
+    const slider = this.slider({...row, type: "number"}, top, (value, stroke, base) => {
+      slider.from ||= now;
+      set(rounded(slider.from.map((x) => base === 1e-3 ? value : x * value / Math.max(...slider.from))), stroke);
+    });
+    slider.input.addEventListener("change", () => { slider.from = null; });
+    knob.show = (value) => {
+      now = threeOf(value ?? defaultOf(row) ?? 0);
+      now.forEach((x, i) => { inputs[i].value = rounded(x); });
+      slider.show(top());
+      if (row.type === "color") swatch.value = toHex(now.map((x) => x / Math.max(row.range[1] <= 1 ? 1 : top(), 1e-30)));
+    };
+    const swatch = make("input", {type: "color", ariaLabel: `${row.key}, colour`});
+    let stroke = 0;
+    swatch.oninput = () => set(rounded(fromHex(swatch.value).map((x) => x * (row.range[1] <= 1 ? 1 : top()))), stroke ||= newStroke());
+    swatch.onchange = () => { stroke = 0; };
+    box.append(slider.input, ...(row.type === "color" ? [swatch] : []), make("span", {className: "three"}, ...inputs));
+  }
+
+  list(knob, box, set, names) {
+    const inputs = this.numbers(knob.row, names, () => {
+      if (inputs.every((i) => i.value !== "")) set(inputs.map((i) => Number(i.value)));
+    });
+    knob.show = (value) => {
+      const now = value ?? defaultOf(knob.row) ?? [];
+      inputs.forEach((input, i) => { input.value = now[i] ?? ""; });
+    };
+    box.append(make("span", {className: "three"}, ...inputs));
+  }
+}

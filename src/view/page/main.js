@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page: what the server tells goes to the picture, the knobs and the lines below; what a person does goes back.
+import {cameraOf, cameraValues, dolly, orbit, pan} from "./camera.js";
+import {Connection, kPause, newStroke, pausedStroke} from "./connection.js";
+import {Knobs} from "./knobs.js";
+import {Overlay} from "./overlay.js";
+import {draw, parseFrame, valuesAt} from "./picture.js";
+
+const one = (id) => document.getElementById(id);
+const kTurn = 4, kKeyTurn = .1, kKeyPan = .05, kKeyDolly = 1.1;  // radians a height; a key
+const kLooksOpaque = 300;                                          // mean free paths through a body
+
+const film = {aspect: 1, shownHeight: 1, place: (seen) => seen};
+const state = {scene: null, camera: null, film, wipe: 0, revision: 0, edits: [], command: ""};
+const display = {exposure: 0, transform: "srgb", channel: ""};
+let frame = null, pinned = null, waiting = null, isDragging = false, layers = [];
+
+// ---- the picture --------------------------------------------------------------------------------------------
+
+function takeFilm() {
+  const given = state.scene.film || {}, [width, height] = given.resolution || [512, 512];
+  const [x0, y0, x1, y1] = given.crop || [0, 0, width, height];
+  film.aspect = width / height;
+  film.shownHeight = (y1 - y0) / height;
+  film.place = ({x, y, depth}) => ({x: (x * width - x0) / (x1 - x0), y: (y * height - y0) / (y1 - y0), depth});
+  film.shownAspect = (x1 - x0) / (y1 - y0);
+  film.pixels = [x1 - x0, y1 - y0];
+}
+
+function fit() {
+  const stage = one("stage").getBoundingClientRect(), aspect = film.shownAspect || 1;
+  const height = Math.max(1, Math.min(stage.height, stage.width / aspect));
+  Object.assign(one("frame").style, {width: `${height * aspect}px`, height: `${height}px`});
+  overlay.update();
+}
+
+function redraw() {
+  if (frame) draw(frame, one("picture"), display);
+  if (pinned) draw(pinned, one("pinned"), display);
+  one("pinned").style.clipPath = `inset(0 ${100 - state.wipe}% 0 0)`;
+  inspect();
+  overlay.update();
+}
+
+function showFrame() {
+  frame = waiting;
+  waiting = null;
+  if (frame.step === "final" && state.offersLayers !== frame.revision) offerLayers();
+  redraw();
+  connection.send({do: "shown", frame: frame.number});
+  one("step").textContent = one("step").dataset.step = frame.step;
+  one("step").dataset.revision = frame.revision;
+  one("timing").textContent = `${(1000 * frame.seconds).toFixed(0)} ms, ${frame.width} × ${frame.height}`;
+  if (frame.step === "final") one("live").textContent = "The picture is final.";
+}
+
+// What the method's pictures have.
+function offerLayers() {
+  const method = state.scene.settings?.method || "hierarchical";
+  const names = ["", "R", "G", "B", "A", "diffuse", "specular", "albedo", "N", "P", "Z", method === "direct" ? "variance" : "irradiance"];
+  if (!["lambert", "direct"].includes(method)) names.push("error");
+  state.offersLayers = frame.revision;
+  if (names.join() === layers.join()) return;
+  layers = names;
+  one("channel").replaceChildren(...names.map((name) => new Option(name || "colour", name)));
+  one("channel").value = display.channel = names.includes(display.channel) ? display.channel : "";
+}
+
+function inspect() {
+  if (!frame || one("x").value === "" || !film.pixels) return;
+  const [x, y] = ["x", "y"].map((id, i) => Math.floor(Number(one(id).value) * (i ? frame.height : frame.width) / film.pixels[i]));
+  const values = valuesAt(frame, x, y), text = (v) => Number(v.toPrecision(4)).toString();
+  one("values").textContent = values
+    ? `R G B A ${values.colour.map(text).join(" ")}${values.layer.length ? `; ${display.channel} ${values.layer.map(text).join(" ")}` : ""}` : "";
+}
+
+// ---- what a person does -------------------------------------------------------------------------------------
+
+// Its own camera goes before the server's until a moment after the last turn: what comes in may be older.
+let isTurning = false, turnEnd = 0;
+function turn(change, stroke) {
+  state.camera = change(state.camera);
+  isTurning = true;
+  clearTimeout(turnEnd);
+  turnEnd = setTimeout(() => {
+    isTurning = false;
+    state.camera = cameraOf(state.scene);
+    overlay.update();
+  }, kPause);
+  connection.set(cameraValues(state.camera), stroke);
+  overlay.update();
+}
+
+function dragCamera(event) {
+  if (event.button > 1 || !state.camera) return;
+  event.preventDefault();
+  const canvas = one("picture"), stroke = newStroke(), height = canvas.getBoundingClientRect().height;
+  canvas.focus();
+  canvas.setPointerCapture(event.pointerId);
+  isDragging = true;
+  let last = [event.clientX, event.clientY];
+  const move = (now) => {
+    const x = (now.clientX - last[0]) / height, y = (now.clientY - last[1]) / height;
+    last = [now.clientX, now.clientY];
+    turn((camera) => event.shiftKey ? pan(camera, x, y) : event.ctrlKey ? dolly(camera, Math.exp(2 * y)) : orbit(camera, -kTurn * x, -kTurn * y), stroke);
+  };
+  const end = () => {
+    isDragging = false;
+    canvas.removeEventListener("pointermove", move);
+    for (const name of ["pointerup", "pointercancel"]) canvas.removeEventListener(name, end);
+  };
+  canvas.addEventListener("pointermove", move);
+  for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, end);
+}
+
+const wheelStroke = pausedStroke(), keyStroke = pausedStroke();
+function wheelCamera(event) {
+  event.preventDefault();
+  turn((camera) => dolly(camera, kKeyDolly ** Math.sign(event.deltaY)), wheelStroke());
+}
+
+function keyCamera(event) {
+  const [x, y] = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key] || [0, 0];
+  const nearer = {"+": 1 / kKeyDolly, "=": 1 / kKeyDolly, "-": kKeyDolly}[event.key];
+  if (!(x || y || nearer) || event.ctrlKey) return;
+  event.preventDefault();
+  turn((camera) => nearer ? dolly(camera, nearer) : event.shiftKey ? pan(camera, kKeyPan * x, kKeyPan * y) : orbit(camera, -kKeyTurn * x, -kKeyTurn * y), keyStroke());
+}
+
+function tell(text, isGood = true) {
+  one("told").textContent = one("told").title = text;
+  one("told").classList.toggle("is-bad", !isGood);
+}
+
+async function copyCommand() {
+  try {
+    await navigator.clipboard.writeText(state.command);
+    tell("copied: " + state.command);
+  } catch {
+    tell(state.command);  // to be copied by hand
+  }
+}
+
+function chooseChannel() {
+  display.channel = one("channel").value;
+  connection.send({do: "layer", name: display.channel.length > 1 || "NPZ".includes(display.channel) ? display.channel : ""});
+  redraw();
+}
+
+function pin() {
+  pinned = pinned ? null : frame;
+  one("pinned").hidden = !pinned;
+  one("pin").setAttribute("aria-pressed", String(Boolean(pinned)));
+  one("wipe").disabled = !pinned;
+  one("wipe").value = state.wipe = pinned ? 50 : 0;
+  redraw();
+}
+
+// ---- what the server tells ------------------------------------------------------------------------------------
+
+function takeScene(message) {
+  const isFirst = !state.scene;
+  Object.assign(state, {scene: message.scene, revision: message.revision, edits: message.edits, command: message.command});
+  if (!isTurning) state.camera = cameraOf(message.scene);
+  takeFilm();
+  document.title = `${message.file} · opaline view`;
+  one("file").textContent = message.file;
+  if (isFirst) {
+    one("name").value = message.file.replace(/(\.json)?$/, "-edited");
+    setExposure(message.scene.film?.exposure || 0);
+  }
+  one("undo").disabled = !message.undo;
+  one("redo").disabled = !message.redo;
+  one("reset").disabled = !message.edits.length;
+  one("failed").hidden = true;
+  knobs.update(message.scene, message.edits);
+  fit();
+}
+
+function sizeWarnings(groups) {
+  return groups.filter((group) => group.thickness > kLooksOpaque * group.mean_free_path).map((group) =>
+    `${group.name} is ${group.thickness.toPrecision(3)} mm thick on average, ${Math.round(group.thickness / group.mean_free_path)} mean free paths of ${group.medium}: it looks like paint. Is its size right (mm_per_unit, fit_size)?`);
+}
+
+const list = (texts) => texts.map((text) => Object.assign(document.createElement("li"), {textContent: text}));
+const paragraph = (text) => Object.assign(document.createElement("p"), {textContent: text});
+let plan = {groups: [], stages: [], warnings: [], memory: ""}, report = null;
+
+function showPlan() {
+  one("warnings").replaceChildren(...list([...plan.warnings, ...sizeWarnings(plan.groups), ...(report?.warnings || [])]));
+  const words = [...plan.groups.map((group) => group.text), ...plan.stages, plan.memory].map(paragraph), lines = [];
+  if (report) {
+    const table = document.createElement("table");
+    table.innerHTML = "<tr><th>stage<th>wall<th>CPU</tr>";
+    for (const cost of report.costs) {
+      const row = table.insertRow();
+      row.insertCell().textContent = cost.stage;
+      for (const seconds of [cost.wall, cost.cpu]) Object.assign(row.insertCell(), {textContent: `${(1000 * seconds).toFixed(1)} ms`, className: "number"});
+    }
+    lines.push(table, ...report.reused.map(paragraph));
+  }
+  one("plan").replaceChildren(...lines, ...words);
+}
+
+const takes = {
+  schema: (message) => knobs.take(message),
+  scene: takeScene,
+  plan: (message) => {
+    plan = message;
+    report = null;
+    one("error").textContent = "";
+    showPlan();
+  },
+  report: (message) => {
+    if (message.revision !== plan.revision) return;
+    report = message;
+    one("error").dataset.revision = message.revision;
+    one("error").textContent = message.error > 0 ? `error about ${(100 * message.error).toPrecision(2)} %` : "";
+    showPlan();
+  },
+  work: ({stage, done, total}) => {
+    one("work").textContent = stage ? `${stage}${total ? ` ${Math.min(100, Math.floor(100 * done / total))} %` : ""}` : "";
+  },
+  failed: (message) => {
+    if (message.revision !== state.revision) return;
+    one("failed").textContent = message.text;
+    one("failed").hidden = false;
+  },
+  told: (message) => tell(message.text, message.good),
+};
+
+const connection = new Connection({
+  text: (message) => takes[message.is]?.(message),
+  frame: (buffer) => {
+    if (!waiting) requestAnimationFrame(showFrame);
+    waiting = parseFrame(buffer);
+  },
+  lost: () => { one("lost").hidden = false; },
+  found: () => {
+    one("lost").hidden = true;
+    if (display.channel) chooseChannel();
+  },
+});
+const set = (values, stroke) => connection.set(values, stroke);
+const knobs = new Knobs(one("panel"), set, (text) => { one("help").textContent = text; one("told").textContent = ""; });
+const overlay = new Overlay(one("overlay"), state, set, (name, index) => knobs.pathOf(name, index));
+
+function setExposure(stops) {
+  one("exposure").value = display.exposure = stops;
+  one("stops").textContent = stops;
+}
+
+for (const word of ["undo", "redo", "reset"]) one(word).onclick = () => connection.send({do: word});
+one("copy").onclick = copyCommand;
+one("save").onclick = () => connection.send({do: "save", name: one("name").value + ".json"});
+one("render").onclick = () => connection.send({do: "render", name: one("name").value + ".exr"});
+one("pin").onclick = pin;
+one("exposure").oninput = () => { setExposure(Number(one("exposure").value)); redraw(); };
+one("transform").onchange = () => { display.transform = one("transform").value; redraw(); };
+one("channel").onchange = chooseChannel;
+one("wipe").oninput = () => { state.wipe = Number(one("wipe").value); redraw(); };
+for (const id of ["x", "y"]) one(id).oninput = inspect;
+const canvas = one("picture");
+canvas.addEventListener("pointerdown", dragCamera);
+canvas.addEventListener("wheel", wheelCamera, {passive: false});
+canvas.addEventListener("keydown", keyCamera);
+canvas.addEventListener("pointermove", (event) => {
+  const box = canvas.getBoundingClientRect();
+  if (!film.pixels || isDragging) return;
+  one("x").value = Math.floor((event.clientX - box.left) / box.width * film.pixels[0]);
+  one("y").value = Math.floor((event.clientY - box.top) / box.height * film.pixels[1]);
+  inspect();
+});
+addEventListener("keydown", (event) => {
+  if (!event.ctrlKey || event.key.toLowerCase() !== "z" || event.target.matches("input[type=number], #name")) return;
+  event.preventDefault();
+  connection.send({do: event.shiftKey ? "redo" : "undo"});
+});
+new ResizeObserver(fit).observe(one("stage"));

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/page_message.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "opaline/core/error.h"
+#include "opaline/scene/json_tree.h"
+#include "opaline/scene/nearest_name.h"
+#include "opaline/scene/schema.h"
+
+namespace opaline {
+namespace {
+
+constexpr const char* kFile = "message";
+
+/// A message's members, each read once; what is left over is an error.
+class MessageReader {
+ public:
+  explicit MessageReader(const Document& document) : document_(document) {
+    if (document.root.kind != Node::Kind::object) fail(document.root, "is no object", "{\"do\": ...}");
+  }
+
+  [[noreturn]] void fail(const Node& node, const std::string& message, const std::string& expected) const {
+    throw error_at(document_, node.offset, -1, "'" + printable(node.key) + "' " + message, expected);
+  }
+  const Node& need(std::string_view key, Node::Kind kind, const std::string& expected) const {
+    const Node* node = find_member(document_.root, key);
+    if (node == nullptr)
+      throw error_at(document_, 0, -1, "lacks the key '" + std::string(key) + "'", expected);
+    if (node->kind != kind) fail(*node, "has the wrong type", expected);
+    return *node;
+  }
+  const std::string& text(std::string_view key) const {
+    return need(key, Node::Kind::string, "a string").text;
+  }
+  std::uint64_t whole(std::string_view key) const {
+    const Node& node = need(key, Node::Kind::number, "a whole number");
+    if (!node.whole) fail(node, "is no whole number", "a whole number");
+    return *node.whole;
+  }
+  void check_keys(std::span<const std::string_view> keys) const {
+    for (const Node& child : document_.root.children)
+      if (std::ranges::find(keys, child.key) == keys.end())
+        fail(child, "is an unknown key" + did_you_mean(child.key, keys), "one of " + join(keys));
+  }
+
+ private:
+  const Document& document_;
+};
+
+SetValues read_values(const MessageReader& reader) {
+  SetValues message{{}, reader.whole("stroke")};
+  for (const Node& child : reader.need("values", Node::Kind::object, "{\"path\": value}").children) {
+    if (child.key.empty() || child.key.find('=') != std::string::npos)
+      reader.fail(child, "is no path", "a path such as media.marble.eta");
+    message.values.push_back({child.key, to_json(child)});
+  }
+  return message;
+}
+
+Restore read_edits(const MessageReader& reader) {
+  Restore message;
+  for (const Node& child : reader.need("edits", Node::Kind::array, "[\"path=value\"]").children) {
+    if (child.kind != Node::Kind::string) reader.fail(child, "is no text", "path=value");
+    message.edits.push_back(child.text);
+  }
+  return message;
+}
+
+struct Kind {
+  std::string_view name;
+  std::vector<std::string_view> keys;
+  PageMessage (*read)(const MessageReader&);
+};
+
+const std::vector<Kind>& kinds() {
+  using Reader = const MessageReader&;
+  static const std::vector<Kind> table{
+      {"set", {"do", "values", "stroke"}, [](Reader r) -> PageMessage { return read_values(r); }},
+      {"undo", {"do"}, [](Reader) -> PageMessage { return Undo{}; }},
+      {"redo", {"do"}, [](Reader) -> PageMessage { return Redo{}; }},
+      {"reset", {"do"}, [](Reader) -> PageMessage { return Reset{}; }},
+      {"restore", {"do", "edits"}, [](Reader r) -> PageMessage { return read_edits(r); }},
+      {"save", {"do", "name"}, [](Reader r) -> PageMessage { return SaveScene{r.text("name")}; }},
+      {"render", {"do", "name"}, [](Reader r) -> PageMessage { return RenderFile{r.text("name")}; }},
+      {"layer", {"do", "name"}, [](Reader r) -> PageMessage { return ChooseLayer{r.text("name")}; }},
+      {"shown",
+       {"do", "frame"},
+       [](Reader r) -> PageMessage { return FrameShown{std::uint32_t(r.whole("frame"))}; }},
+  };
+  return table;
+}
+
+}  // namespace
+
+PageMessage parse_page_message(std::string_view text) {
+  Document document{kFile, text, {}, {}, 1, line_starts_of(text)};
+  document.root = parse_tree(document, text);
+  const MessageReader reader(document);
+  const std::string& name = reader.text("do");
+  std::vector<std::string_view> names;
+  for (const Kind& kind : kinds()) {
+    names.push_back(kind.name);
+    if (kind.name != name) continue;
+    reader.check_keys(kind.keys);
+    return kind.read(reader);
+  }
+  reader.fail(*find_member(document.root, "do"), "has no choice '" + printable(name) + "'",
+              "one of " + join(names));
+}
+
+}  // namespace opaline

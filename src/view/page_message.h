@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a page may ask for, as data.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace opaline {
+
+/// A value of the scene: a path as of `--set`, and JSON.
+struct Assignment {
+  std::string path, value;
+};
+
+/// stroke: changes of one number other than 0 are one step for undo, as those of a slider that is dragged.
+struct SetValues {
+  std::vector<Assignment> values;
+  std::uint64_t stroke = 0;
+};
+struct Undo {};
+struct Redo {};
+struct Reset {};
+/// Edits of a page whose server is new: as `--set` takes them.
+struct Restore {
+  std::vector<std::string> edits;
+};
+struct SaveScene {
+  std::string name;
+};
+struct RenderFile {
+  std::string name;
+};
+/// The layer that frames bring beside R G B A; empty: none.
+struct ChooseLayer {
+  std::string name;
+};
+/// The frame of this number is on the screen.
+struct FrameShown {
+  std::uint32_t frame = 0;
+};
+
+using PageMessage =
+    std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer, FrameShown>;
+
+/// in    text: {"do": "set", "values": {"media.marble.eta": 1.4}, "stroke": 7}, {"do": "undo"}, {"do": "redo"},
+///       {"do": "reset"}, {"do": "restore", "edits": ["media.marble.eta=1.4"]}, {"do": "save", "name": "a.json"},
+///       {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"} or {"do": "shown", "frame": 3}
+/// error Error{bad_input}: no such message, within the limits of json_tree.h
+PageMessage parse_page_message(std::string_view text);
+
+}  // namespace opaline

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/scene_edits.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "opaline/core/error.h"
+#include "opaline/scene/load_scene.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::size_t kMostSteps = 1000;
+
+std::vector<std::string> mesh_files(const Scene& scene) {
+  std::vector<std::string> files;
+  for (const Shape& shape : scene.shapes)
+    if (const auto* mesh = std::get_if<MeshFile>(&shape.source)) files.push_back(mesh->path);
+  return files;
+}
+
+void check_pixels(const Scene& scene) {
+  const Film& film = scene.film;
+  const auto [x0, y0, x1, y1] = film.crop.value_or(std::array{0, 0, film.resolution[0], film.resolution[1]});
+  const std::size_t pixels = std::size_t(x1 - x0) * std::size_t(y1 - y0);
+  if (pixels > kMostViewPixels)
+    throw bad_file(scene.file, "'film.resolution' is too large to be viewed",
+                   "at most " + std::to_string(kMostViewPixels) + " pixels, or a 'film.crop' of so many",
+                   std::to_string(pixels));
+}
+
+/// Whether an override is of the path, or of what is in it.
+bool is_within(const std::string& override, const std::string& path) {
+  return override.starts_with(path) && (override.at(path.size()) == '=' || override.at(path.size()) == '.');
+}
+
+}  // namespace
+
+SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given)
+    : file_(file), text_(read_scene_text(file)), given_(std::move(given)) {
+  scene_ = parse_scene(text_, file_, given_);
+  check_pixels(scene_);
+}
+
+Scene SceneEdits::parsed(const Edits& edits) const {
+  Edits all = given_;
+  all.insert(all.end(), edits.begin(), edits.end());
+  Scene scene = parse_scene(text_, file_, all);
+  check_pixels(scene);
+  if (mesh_files(scene) != mesh_files(scene_))
+    throw bad_file(file_, "a view does not change mesh files", "those of the scene that was opened");
+  return scene;
+}
+
+void SceneEdits::set(const SetValues& message) {
+  Edits edits = history_[at_];
+  for (const auto& [path, value] : message.values) {
+    std::erase_if(edits, [&](const std::string& text) { return is_within(text, path); });
+    edits.push_back(path + '=' + value);
+  }
+  if (edits == history_[at_]) return;
+  Scene scene = parsed(edits);
+  const bool goes_on = message.stroke != 0 && message.stroke == stroke_;
+  if (goes_on) {
+    history_[at_] = std::move(edits);
+  } else {
+    history_.resize(at_ + 1);
+    history_.push_back(std::move(edits));
+    if (history_.size() > kMostSteps) history_.erase(history_.begin());
+    at_ = history_.size() - 1;
+  }
+  stroke_ = message.stroke;
+  scene_ = std::move(scene);
+  ++revision_;
+}
+
+void SceneEdits::go_to(std::size_t place) {
+  scene_ = parsed(history_[place]);
+  at_ = place;
+  stroke_ = 0;
+  ++revision_;
+}
+
+void SceneEdits::undo() {
+  if (can_undo()) go_to(at_ - 1);
+}
+
+void SceneEdits::redo() {
+  if (can_redo()) go_to(at_ + 1);
+}
+
+void SceneEdits::reset() {
+  if (edits().empty()) return;
+  scene_ = parsed({});
+  history_.resize(at_ + 1);
+  history_.emplace_back();
+  ++at_;
+  stroke_ = 0;
+  ++revision_;
+}
+
+void SceneEdits::restore(const std::vector<std::string>& edits) {
+  if (revision_ > 1 || edits.empty()) return;
+  Scene scene = parsed(edits);
+  history_.push_back(edits);
+  ++at_;
+  scene_ = std::move(scene);
+  ++revision_;
+}
+
+std::vector<std::string> SceneEdits::overrides() const {
+  Edits all = given_;
+  all.insert(all.end(), edits().begin(), edits().end());
+  return all;
+}
+
+std::string SceneEdits::json() const {
+  return merged_scene(text_, file_, overrides(), 1);
+}
+
+std::string SceneEdits::file_text() const {
+  return merged_scene(text_, file_, overrides());
+}
+
+}  // namespace opaline

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene under edit: the file as it was opened, the values that were changed since, and the way back.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "opaline/scene/scene.h"
+#include "view/page_message.h"
+
+namespace opaline {
+
+/// A larger picture is refused, pixels.
+inline constexpr std::size_t kMostViewPixels = std::size_t(1) << 24;
+
+class SceneEdits {
+ public:
+  /// given: overrides of the command line, which no undo takes back
+  /// error as load_scene; Error{bad_input}: more than kMostViewPixels
+  SceneEdits(const std::string& file, std::vector<std::string> given);
+
+  // Each changes the scene or throws and changes nothing. What changes nothing does not count as a step.
+  // error as parse_scene; Error{bad_input}: more than kMostViewPixels, or other mesh files than the opened scene's
+  void set(const SetValues& message);
+  void undo();
+  void redo();
+  void reset();
+  /// Does nothing where the scene has been edited before.
+  void restore(const std::vector<std::string>& edits);
+
+  const Scene& scene() const { return scene_; }
+  const std::string& file() const { return file_; }
+  /// Counts changes, from 1.
+  std::uint32_t revision() const { return revision_; }
+  bool can_undo() const { return at_ > 0; }
+  bool can_redo() const { return at_ + 1 < history_.size(); }
+  /// As `--set` takes them, without those of the command line.
+  const std::vector<std::string>& edits() const { return history_[at_]; }
+  std::vector<std::string> overrides() const;
+
+  /// All of the scene's values as JSON, those that change as in the first frame.
+  std::string json() const;
+  /// A scene file with the edits in it.
+  std::string file_text() const;
+
+ private:
+  using Edits = std::vector<std::string>;
+  Scene parsed(const Edits& edits) const;
+  void go_to(std::size_t place);
+
+  std::string file_, text_;
+  Edits given_;
+  std::vector<Edits> history_{Edits{}};
+  std::size_t at_ = 0;
+  std::uint64_t stroke_ = 0;  // of the last step; 0: it is closed
+  std::uint32_t revision_ = 1;
+  Scene scene_;
+};
+
+}  // namespace opaline

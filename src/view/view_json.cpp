@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/view_json.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/log.h"
+#include "opaline/core/units.h"
+#include "opaline/scene/load_scene.h"
+#include "opaline/scene/schema.h"
+
+namespace opaline {
+namespace {
+
+std::string_view name_of(ValueType type) {
+  switch (type) {
+    case ValueType::number:
+      return "number";
+    case ValueType::whole_number:
+      return "whole_number";
+    case ValueType::length:
+      return "length";
+    case ValueType::point:
+      return "point";
+    case ValueType::triple:
+      return "triple";
+    case ValueType::number_or_triple:
+      return "number_or_triple";
+    case ValueType::color:
+      return "color";
+    case ValueType::flag:
+      return "flag";
+    case ValueType::choice:
+      return "choice";
+    case ValueType::text:
+      return "text";
+    case ValueType::list:
+      return "list";
+    case ValueType::object:
+      break;
+  }
+  return "object";
+}
+
+Json row_json(const KeyInfo& info) {
+  Json choices = Json::array();
+  for (const std::string_view choice : info.choices) choices.push_back(choice);
+  return {{"section", info.section},
+          {"key", info.key},
+          {"type", name_of(info.type)},
+          {"unit", info.unit},
+          {"range", {info.range.low, info.range.high}},
+          {"default", info.default_value},
+          {"meaning", info.meaning},
+          {"choices", choices}};
+}
+
+Json preset_json(std::string_view name) {
+  const Medium medium = parse_medium(fmt::format("{{\"preset\": \"{}\"}}", name), "preset");
+  const auto& physical = std::get<PhysicalMedium>(medium.coefficients);
+  const auto triple = [](const Rgb& c) { return Json{c.x, c.y, c.z}; };
+  return {{"name", name},
+          {"sigma_a", triple(physical.sigma_a)},
+          {"sigma_s_prime", triple(physical.sigma_s_prime)},
+          {"specular_ior", medium.eta}};
+}
+
+Json group_json(const Scene& scene, const GroupPlan& group) {
+  std::string text =
+      fmt::format("{} in {}: {:.4g} mm², mean free path {:.4g} mm (its smallest channel)", group.name,
+                  scene.media[group.medium].name, group.area, group.smallest_mean_free_path);
+  if (has_samples(scene.settings.method))
+    text +=
+        fmt::format("; {} samples, {:.4g} mm apart: {}", grouped(group.samples), group.spacing, group.reason);
+  return {{"name", group.name},
+          {"medium", scene.media[group.medium].name},
+          {"thickness", group.thickness},
+          {"mean_free_path", group.smallest_mean_free_path},
+          {"text", text}};
+}
+
+}  // namespace
+
+std::string schema_text() {
+  Json rows = Json::array(), presets = Json::array();
+  for (const KeyInfo& info : schema()) rows.push_back(row_json(info));
+  for (const std::string_view name : key_info("medium", "preset").choices)
+    presets.push_back(preset_json(name));
+  return compact({{"is", "schema"}, {"rows", rows}, {"presets", presets}, {"version", OPALINE_VERSION}});
+}
+
+std::string scene_text(const SceneEdits& edits, const std::string& command) {
+  return compact({{"is", "scene"},
+                  {"revision", edits.revision()},
+                  {"file", std::filesystem::path(edits.file()).filename().string()},
+                  {"scene", Json::parse(edits.json())},
+                  {"edits", edits.edits()},
+                  {"undo", edits.can_undo()},
+                  {"redo", edits.can_redo()},
+                  {"command", command}});
+}
+
+std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan) {
+  Json groups = Json::array();
+  for (const GroupPlan& group : plan.groups) groups.push_back(group_json(scene, group));
+  return compact({{"is", "plan"},
+                  {"revision", revision},
+                  {"groups", groups},
+                  {"stages", plan.stages},
+                  {"warnings", plan.warnings},
+                  {"memory", "about " + short_bytes(plan.bytes) + " at the peak"}});
+}
+
+std::string report_text(const ViewReport& report) {
+  Json costs = Json::array();
+  for (const StageCost& cost : report.costs)
+    costs.push_back({{"stage", cost.stage}, {"wall", cost.wall_seconds}, {"cpu", cost.cpu_seconds}});
+  return compact({{"is", "report"},
+                  {"revision", report.revision},
+                  {"error", report.error},
+                  {"costs", costs},
+                  {"reused", report.reused},
+                  {"warnings", report.warnings}});
+}
+
+std::string work_text(const Monitor& monitor) {
+  const char* stage = monitor.stage;
+  return compact({{"is", "work"},
+                  {"stage", stage != nullptr ? stage : ""},
+                  {"done", monitor.done.load()},
+                  {"total", monitor.total.load()}});
+}
+
+std::string failed_text(std::uint32_t revision, const std::string& why) {
+  return compact({{"is", "failed"}, {"revision", revision}, {"text", why}});
+}
+
+std::string told_text(bool good, const std::string& text) {
+  return compact({{"is", "told"}, {"good", good}, {"text", text}});
+}
+
+}  // namespace opaline

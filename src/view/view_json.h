@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the server tells its pages, each a JSON text with the member "is".
+#pragma once
+
+#include <string>
+
+#include "opaline/core/monitor.h"
+#include "view/scene_edits.h"
+#include "view/view_renderer.h"
+
+namespace opaline {
+
+/// "schema": the table of keys with unit, range, default, meaning and choices, and the presets of media: what
+/// knobs are made of.
+std::string schema_text();
+
+/// "scene": all values, the edits, and whether there is a way back. command: that renders the same.
+std::string scene_text(const SceneEdits& edits, const std::string& command);
+
+/// "plan": what the scene requires, in words.
+std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan);
+
+/// "report": of a final picture.
+std::string report_text(const ViewReport& report);
+
+/// "work": which stage is under way, and how much of it is done; the stage is empty while nothing is.
+std::string work_text(const Monitor& monitor);
+
+/// "failed": a change that has no picture. "told": an answer to one page; `good`: it did what it was asked.
+std::string failed_text(std::uint32_t revision, const std::string& why);
+std::string told_text(bool good, const std::string& text);
+
+}  // namespace opaline

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/view_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "opaline/core/error.h"
+#include "opaline/core/machine_memory.h"
+#include "opaline/core/stopwatch.h"
+#include "opaline/core/units.h"
+#include "opaline/render/direct.h"
+#include "opaline/render/picture_warnings.h"
+#include "opaline/render/walk_warnings.h"
+
+namespace opaline {
+namespace {
+
+constexpr double kFrame = 1.0 / 30, kDraft = .022;  // s: a picture that follows the hand, its rays
+constexpr double kKnob = .06;                       // s: a picture that follows a knob
+constexpr double kLongFinal = .25;                  // s: worth a sharper picture before
+constexpr int kCoarsest = 16;
+
+std::unique_ptr<Session> new_session() {
+  auto session = std::make_unique<Session>();
+  session->hold_view(true);
+  session->match_new_session(true);
+  return session;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void check_memory(const Plan& plan) {
+  const std::size_t taken = resident_memory(), left = available_memory();
+  if (plan.bytes > taken && plan.bytes - taken > left)
+    throw run_failed({}, "out of memory: the picture needs about " + short_bytes(plan.bytes) +
+                             ", and there are " + short_bytes(left + taken));
+}
+
+/// The same view in fewer pixels, of one ray each.
+Film coarse_film(Film film, int stride) {
+  for (int& side : film.resolution) side = (side + stride - 1) / stride;
+  if (film.crop) {
+    std::array<int, 4>& crop = *film.crop;
+    for (std::size_t i = 0; i < 2; ++i) {
+      crop[i] = std::min(crop[i] / stride, film.resolution[i] - 1);
+      crop[i + 2] = std::clamp((crop[i + 2] + stride - 1) / stride, crop[i] + 1, film.resolution[i]);
+    }
+  }
+  film.samples_per_pixel = 1;
+  return film;
+}
+
+double pixels_of(const Film& film) {
+  const Rectangle part = rendered_part(film);
+  return double(part.x1 - part.x0) * double(part.y1 - part.y0);
+}
+
+}  // namespace
+
+ViewRenderer::ViewRenderer(ViewEvents events)
+    : events_(std::move(events)), session_(new_session()), thread_([this] { run(); }) {}
+
+ViewRenderer::~ViewRenderer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    monitor_.cancelled = true;
+  }
+  changed_.notify_one();
+}
+
+void ViewRenderer::show(Scene scene, std::uint32_t revision) {
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_ = Wanted{std::move(scene), revision, Clock::now()};
+    monitor_.cancelled = true;
+  }
+  changed_.notify_one();
+}
+
+std::optional<ViewRenderer::Wanted> ViewRenderer::next() {
+  std::unique_lock lock(mutex_);
+  monitor_.begin(nullptr, 0);
+  changed_.wait(lock, [&] { return stopped_ || wanted_; });
+  if (stopped_) return {};
+  monitor_.cancelled = false;
+  return std::exchange(wanted_, {});
+}
+
+void ViewRenderer::run() {
+  while (const std::optional<Wanted> wanted = next()) {
+    try {
+      draw(*wanted);
+    } catch (const Error& failure) {
+      if (failure.kind != ErrorKind::interrupted) events_.failed(wanted->revision, failure.what());
+    } catch (const std::exception& failure) {
+      session_ = new_session();
+      prepared_.reset();
+      events_.failed(wanted->revision, dynamic_cast<const std::bad_alloc*>(&failure) != nullptr
+                                           ? "out of memory"
+                                           : failure.what());
+    }
+  }
+}
+
+void ViewRenderer::draw(const Wanted& wanted) {
+  Change change = anything;
+  if (prepared_) {
+    Scene before = std::move(*prepared_);
+    const auto is_enough = [&] { return before == wanted.scene; };
+    before.camera = wanted.scene.camera;
+    before.film.exposure = wanted.scene.film.exposure;
+    change = is_enough()                                          ? camera
+             : (before.lights = wanted.scene.lights, is_enough()) ? lights
+             : (before.media = wanted.scene.media, is_enough())   ? media
+                                                                  : anything;
+  }
+  prepared_.reset();
+  session_->edit(wanted.scene);
+  events_.planned(wanted.revision, wanted.scene, session_->plan());
+  check_memory(session_->plan());
+  Spent& spent = spent_[change];
+  const bool is_direct = wanted.scene.settings.method == Method::direct;
+  const bool is_quick = spent.prepare < kFrame && !is_direct;
+  if (!is_quick) publish(wanted, PictureStep::moving, session_->first_light());
+  const Clock::time_point start = Clock::now();
+  session_->prepare(is_quick ? nullptr : &monitor_);
+  spent.prepare = seconds_since(start);
+  prepared_ = wanted.scene;
+  if (is_direct) return draw_direct(wanted);
+  if (is_quick && spent.final < (change == camera ? kFrame : kKnob))
+    return draw_final(wanted, spent, nullptr);
+  draw_draft(wanted, draft_stride(wanted.scene.film), PictureStep::moving, nullptr);
+  refine(wanted, spent);
+}
+
+void ViewRenderer::refine(const Wanted& wanted, Spent& spent) {
+  advance(&monitor_, 0);
+  const int stride = draft_stride(wanted.scene.film);
+  const double sharper = seconds_per_pixel_ * pixels_of(wanted.scene.film) * 4 / (stride * stride);
+  if (stride > 1 && spent.final > kLongFinal && sharper < spent.final / 2)
+    draw_draft(wanted, std::max(1, stride / 2), PictureStep::sharper, &monitor_);
+  draw_final(wanted, spent, &monitor_);
+}
+
+int ViewRenderer::draft_stride(const Film& film) const {
+  const double stride = std::sqrt(pixels_of(film) * seconds_per_pixel_ / kDraft);
+  return int(std::ceil(std::clamp(stride, 1.0, double(kCoarsest))));
+}
+
+void ViewRenderer::draw_draft(const Wanted& wanted, int stride, PictureStep step, Monitor* monitor) {
+  Scene scene = wanted.scene;
+  scene.film = coarse_film(scene.film, stride);
+  const Clock::time_point start = Clock::now();
+  Image image = render({scene, session_->world(), session_->rays(), session_->bodies(), monitor}).image;
+  const double seconds = seconds_since(start);
+  seconds_per_pixel_ += .5 * (seconds / pixels_of(scene.film) - seconds_per_pixel_);
+  publish(wanted, step, std::move(image));
+}
+
+void ViewRenderer::draw_final(const Wanted& wanted, Spent& spent, Monitor* monitor) {
+  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
+  RenderResult result = session_->render(monitor);
+  spent.final = seconds_since(start);
+  StageCost shading = watch.cost("shading");
+  const auto picture = publish(wanted, PictureStep::final, std::move(result.image));
+  report(wanted, picture->image, estimated_relative_error(picture->image, result.translucent),
+         std::move(shading));
+}
+
+void ViewRenderer::draw_direct(const Wanted& wanted) {
+  const Stopwatch watch;
+  DirectState state;
+  DirectResult result =
+      render_direct({wanted.scene, session_->world(), session_->rays(), session_->plan(), &monitor_}, state);
+  StageCost shading = watch.cost("shading");
+  const auto picture = publish(wanted, PictureStep::final, std::move(result.picture.image));
+  report(wanted, picture->image, result.relative_error, std::move(shading));
+}
+
+std::shared_ptr<const ViewPicture> ViewRenderer::publish(const Wanted& wanted, PictureStep step,
+                                                         Image image) {
+  const auto picture = std::make_shared<const ViewPicture>(
+      ViewPicture{wanted.revision, step, seconds_since(wanted.since), std::move(image)});
+  events_.picture(picture);
+  return picture;
+}
+
+void ViewRenderer::report(const Wanted& wanted, const Image& image, double error, StageCost shading) {
+  ViewReport report{wanted.revision, error, session_->costs(), session_->decisions(), {}};
+  report.costs.push_back(std::move(shading));
+  report.warnings = picture_warnings(wanted.scene, session_->world(), image);
+  for (const Body& body : session_->bodies())
+    for (std::string& text : walk_warnings(body)) report.warnings.push_back(std::move(text));
+  events_.report(report);
+}
+
+}  // namespace opaline

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The newest scene as pictures: a coarse one at once, then sharper ones, on a thread of its own.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "opaline/core/monitor.h"
+#include "opaline/session/session.h"
+
+namespace opaline {
+
+/// moving: whatever is there within a thirtieth of a second; sharper: more pixels, the same samples; final: the bits
+/// of `opaline render`.
+enum class PictureStep : std::uint32_t { moving, sharper, final };
+
+struct ViewPicture {
+  std::uint32_t revision = 0;
+  PictureStep step = PictureStep::moving;
+  double seconds = 0;  ///< from the change to this picture
+  Image image;         ///< R G B A first
+};
+
+/// What is known once a final picture is there.
+struct ViewReport {
+  std::uint32_t revision = 0;
+  double error = 0;                 ///< estimated_relative_error, or `direct`'s noise
+  std::vector<StageCost> costs;     ///< of this change
+  std::vector<std::string> reused;  ///< Session::decisions
+  std::vector<std::string> warnings;
+};
+
+/// Called on the renderer's thread.
+struct ViewEvents {
+  std::function<void(std::uint32_t revision, const Scene& scene, const Plan& plan)> planned;
+  std::function<void(std::shared_ptr<const ViewPicture> picture)> picture;
+  std::function<void(const ViewReport& report)> report;
+  std::function<void(std::uint32_t revision, const std::string& why)> failed;
+};
+
+class ViewRenderer {
+ public:
+  explicit ViewRenderer(ViewEvents events);
+  /// Cancels what is under way and waits for its end.
+  ~ViewRenderer();
+  ViewRenderer(const ViewRenderer&) = delete;
+  ViewRenderer& operator=(const ViewRenderer&) = delete;
+
+  /// Takes the place of a scene that waits, and cancels the pictures of the one under way; what is on its way within
+  /// a frame's time is still shown, so that a knob that turns without pause shows pictures.
+  void show(Scene scene, std::uint32_t revision);
+
+  /// For whoever shows progress.
+  const Monitor& monitor() const { return monitor_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Wanted {
+    Scene scene;
+    std::uint32_t revision = 0;
+    Clock::time_point since;
+  };
+  /// What a scene differs by from the one before decides how much is computed again.
+  enum Change : std::size_t { camera, lights, media, anything, kChanges };
+  /// Of the last such change, s.
+  struct Spent {
+    double prepare = std::numeric_limits<double>::infinity();
+    double final = std::numeric_limits<double>::infinity();
+  };
+
+  void run();
+  std::optional<Wanted> next();
+  void draw(const Wanted& wanted);
+  void refine(const Wanted& wanted, Spent& spent);
+  void draw_final(const Wanted& wanted, Spent& spent, Monitor* monitor);
+  void draw_direct(const Wanted& wanted);
+  void draw_draft(const Wanted& wanted, int stride, PictureStep step, Monitor* monitor);
+  int draft_stride(const Film& film) const;
+  std::shared_ptr<const ViewPicture> publish(const Wanted& wanted, PictureStep step, Image image);
+  void report(const Wanted& wanted, const Image& image, double error, StageCost shading);
+
+  ViewEvents events_;
+  std::unique_ptr<Session> session_;
+  std::optional<Scene> prepared_;
+  std::array<Spent, kChanges> spent_;
+  double seconds_per_pixel_ = 2e-6;  // of drafts
+  Monitor monitor_;
+  std::mutex mutex_;  // of the next two
+  std::optional<Wanted> wanted_;
+  bool stopped_ = false;
+  std::condition_variable changed_;
+  std::jthread thread_;  // last: it uses the others
+};
+
+}  // namespace opaline

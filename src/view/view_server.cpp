@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/view_server.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/asio/ip/host_name.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "opaline/core/atomic_file.h"
+#include "opaline/core/error.h"
+#include "opaline/scene/json_tree.h"
+#include "view/http_connection.h"
+#include "view/view_frame.h"
+#include "view/view_json.h"
+
+namespace opaline {
+namespace {
+
+namespace asio = boost::asio;
+using boost::beast::error_code;
+using Address = asio::ip::tcp::endpoint;
+
+constexpr std::chrono::milliseconds kTick{100};
+constexpr std::size_t kShortestToken = 16, kLongestToken = 64, kLongestName = 200;
+
+std::string random_token() {
+  std::random_device random;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", random());
+  return token;
+}
+
+void check_token(const std::string& token) {
+  constexpr const char* kAllowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  if (token.size() < kShortestToken || token.size() > kLongestToken ||
+      token.find_first_not_of(kAllowed) != std::string::npos)
+    throw Error(ErrorKind::bad_input, {}, 0, 0, "--token",
+                fmt::format("{} to {} of the characters a-z A-Z 0-9 _ -", kShortestToken, kLongestToken),
+                "'" + printable(token) + "'");
+}
+
+Address address_of(const ViewOptions& options) {
+  error_code error;
+  const asio::ip::address address = asio::ip::make_address(options.address, error);
+  if (error)
+    throw Error(ErrorKind::bad_input, {}, 0, 0, "--listen", "an IP address such as 127.0.0.1",
+                "'" + printable(options.address) + "'");
+  return {address, options.port};
+}
+
+/// A process that renders a file must not keep the server's sockets open.
+void close_in_children(int socket) {
+  ::fcntl(socket, F_SETFD, FD_CLOEXEC);
+}
+
+/// "127.0.0.1:8080" or "[::1]:8080".
+std::string host_text(const std::string& host, std::uint16_t port) {
+  const bool is_v6 = host.find(':') != std::string::npos;
+  return fmt::format("{}{}{}:{}", is_v6 ? "[" : "", host, is_v6 ? "]" : "", port);
+}
+
+/// A file beside the scene. Only files that this server wrote are replaced.
+std::string path_beside(const std::string& scene, const std::string& name,
+                        const std::vector<std::string>& extensions, const std::set<std::string>& written) {
+  const std::filesystem::path file(name);
+  const bool is_plain = file.filename() == file && !name.starts_with('.') && name.size() <= kLongestName &&
+                        std::ranges::none_of(name, [](char c) { return (unsigned char)(c) < ' '; });
+  if (!is_plain || std::ranges::find(extensions, file.extension().string()) == extensions.end())
+    throw bad_file("", "this is no name for the file",
+                   fmt::format("a name without a folder that ends in {}", fmt::join(extensions, " or ")),
+                   "'" + printable(name) + "'");
+  const std::string path = (std::filesystem::path(scene).parent_path() / file).string();
+  if (std::filesystem::exists(std::filesystem::symlink_status(path)) && !written.contains(path))
+    throw bad_file(path, "is there already, and not from this view", "another name");
+  return path;
+}
+
+}  // namespace
+
+struct ViewServer::State {
+  State(SceneEdits scene_edits, const ViewOptions& options, ViewHooks view_hooks);
+  ~State();
+
+  void accept();
+  void open_page(boost::beast::tcp_stream&& stream, const HttpRequest& request, std::shared_ptr<void> slot);
+  PageConnection::Events page_events();
+  void greet(PageConnection& page);
+  void receive(PageConnection& page, std::string_view text);
+  void act(PageConnection& page, const PageMessage& message);
+  void after_edit();
+  void save(PageConnection& page, const std::string& name);
+  void render_file(PageConnection& page, const std::string& name);
+  PackedFrame pack(const std::shared_ptr<const ViewPicture>& picture, const std::string& layer);
+  ViewEvents renderer_events();
+  void tell(PageText kind, std::string text);
+  void tick(const Monitor& until_cancelled);
+
+  asio::io_context io;
+  SceneEdits edits;
+  ViewHooks hooks;
+  AccessRules rules;
+  asio::ip::tcp::acceptor acceptor;
+  asio::steady_timer timer;
+  std::string url;
+  SharedText schema;
+  std::map<PageText, SharedText> texts;  ///< the newest of each kind
+  std::shared_ptr<const ViewPicture> picture;
+  std::map<std::string, PackedFrame> packed;  ///< of `picture`, by layer
+  std::uint32_t frames = 0;
+  std::set<PageConnection*> pages;
+  std::shared_ptr<std::size_t> connections = std::make_shared<std::size_t>(0);
+  std::set<std::string> written;
+  Monitor file_monitor;
+  bool renders_file = false;
+  std::jthread file_thread;
+  std::unique_ptr<ViewRenderer> renderer;
+};
+
+ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, ViewHooks view_hooks)
+    : edits(std::move(scene_edits)), hooks(std::move(view_hooks)), acceptor(io), timer(io) {
+  rules.token = options.token.empty() ? random_token() : options.token;
+  check_token(rules.token);
+  const Address wanted = address_of(options);
+  try {
+    acceptor.open(wanted.protocol());
+    close_in_children(acceptor.native_handle());
+    acceptor.set_option(asio::socket_base::reuse_address(true));
+    acceptor.bind(wanted);
+    acceptor.listen();
+  } catch (const boost::system::system_error& failure) {
+    throw run_failed(host_text(options.address, options.port), "cannot listen: " + failure.code().message());
+  }
+  const std::uint16_t port = acceptor.local_endpoint().port();
+  const bool is_everywhere = wanted.address().is_unspecified();
+  const std::string host = is_everywhere ? asio::ip::host_name() : wanted.address().to_string();
+  if (!is_everywhere) rules.hosts = {host_text(host, port), host_text("localhost", port)};
+  url = fmt::format("http://{}/{}/", host_text(host, port), rules.token);
+  schema = std::make_shared<const std::string>(schema_text());
+}
+
+ViewServer::State::~State() {
+  file_monitor.cancelled = true;
+  renderer.reset();
+}
+
+// ---- connections ----------------------------------------------------------------------------------------
+
+void ViewServer::State::accept() {
+  acceptor.async_accept([this](error_code error, asio::ip::tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
+    accept();
+    if (error) return hooks.refused("a connection: " + error.message());
+    close_in_children(socket.native_handle());
+    error_code no_peer;
+    const Address peer = socket.remote_endpoint(no_peer);
+    const std::string from = host_text(peer.address().to_string(), peer.port());
+    if (*connections >= kMostConnections)
+      return hooks.refused(fmt::format("{}: more than {} connections", from, kMostConnections));
+    ++*connections;
+    const std::shared_ptr<void> slot(nullptr, [count = connections](void*) { --*count; });
+    const HttpConnection::Events events{
+        [this](boost::beast::tcp_stream&& stream, const HttpRequest& request, std::shared_ptr<void> taken) {
+          open_page(std::move(stream), request, std::move(taken));
+        },
+        [this, from](const std::string& why) { hooks.refused(from + ": " + why); }};
+    std::make_shared<HttpConnection>(std::move(socket), rules, events, slot)->start();
+  });
+}
+
+void ViewServer::State::open_page(boost::beast::tcp_stream&& stream, const HttpRequest& request,
+                                  std::shared_ptr<void> slot) {
+  if (pages.size() >= kMostPages) return hooks.refused(fmt::format("more than {} pages", kMostPages));
+  const auto page = std::make_shared<PageConnection>(std::move(stream), page_events(), std::move(slot));
+  pages.insert(page.get());
+  page->start(request);
+}
+
+PageConnection::Events ViewServer::State::page_events() {
+  return {[this](PageConnection& page) { greet(page); },
+          [this](PageConnection& page, std::string_view text) { receive(page, text); },
+          [this](const std::shared_ptr<const ViewPicture>& shown, const std::string& layer) {
+            return pack(shown, layer);
+          },
+          [this](PageConnection& page, const std::string& why) {
+            pages.erase(&page);
+            if (!why.empty()) hooks.refused("a page: " + why);
+          }};
+}
+
+void ViewServer::State::greet(PageConnection& page) {
+  page.send(PageText::schema, schema);
+  for (const auto& [kind, text] : texts) page.send(kind, text);
+  if (picture != nullptr) page.send(picture);
+}
+
+PackedFrame ViewServer::State::pack(const std::shared_ptr<const ViewPicture>& shown,
+                                    const std::string& layer) {
+  if (shown != picture)
+    return {++frames, std::make_shared<const std::string>(pack_frame(*shown, frames, layer))};
+  PackedFrame& frame = packed[layer];
+  if (frame.bytes == nullptr) {
+    frame.number = ++frames;
+    frame.bytes = std::make_shared<const std::string>(pack_frame(*shown, frame.number, layer));
+  }
+  return frame;
+}
+
+void ViewServer::State::tell(PageText kind, std::string text) {
+  const SharedText shared = texts[kind] = std::make_shared<const std::string>(std::move(text));
+  for (PageConnection* page : pages) page->send(kind, shared);
+}
+
+// ---- messages -------------------------------------------------------------------------------------------
+
+void ViewServer::State::receive(PageConnection& page, std::string_view text) {
+  try {
+    act(page, parse_page_message(text));
+  } catch (const std::exception& failure) {
+    page.answer(told_text(false, failure.what()));
+    if (!texts[PageText::scene]->empty()) page.send(PageText::scene, texts[PageText::scene]);
+  }
+}
+
+void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
+  const std::uint32_t before = edits.revision();
+  if (const auto* set = std::get_if<SetValues>(&message)) edits.set(*set);
+  if (std::holds_alternative<Undo>(message)) edits.undo();
+  if (std::holds_alternative<Redo>(message)) edits.redo();
+  if (std::holds_alternative<Reset>(message)) edits.reset();
+  if (const auto* restore = std::get_if<Restore>(&message)) edits.restore(restore->edits);
+  if (const auto* save_as = std::get_if<SaveScene>(&message)) save(page, save_as->name);
+  if (const auto* file = std::get_if<RenderFile>(&message)) render_file(page, file->name);
+  if (const auto* layer = std::get_if<ChooseLayer>(&message)) {
+    page.choose_layer(layer->name);
+    if (picture != nullptr) page.send(picture);
+  }
+  if (const auto* shown = std::get_if<FrameShown>(&message)) page.shown(shown->frame);
+  if (edits.revision() != before) after_edit();
+}
+
+void ViewServer::State::after_edit() {
+  tell(PageText::scene, scene_text(edits, hooks.command(edits.overrides())));
+  renderer->show(edits.scene(), edits.revision());
+}
+
+void ViewServer::State::save(PageConnection& page, const std::string& name) {
+  const std::string path = path_beside(edits.file(), name, {".json"}, written);
+  write_file(path, edits.file_text());
+  written.insert(path);
+  page.answer(told_text(true, "saved " + path));
+}
+
+void ViewServer::State::render_file(PageConnection& page, const std::string& name) {
+  const std::string path = path_beside(edits.file(), name, {".exr", ".png"}, written);
+  if (renders_file) throw bad_file(path, "another file is being rendered", "one after the other");
+  renders_file = true;
+  page.answer(told_text(true, "rendering " + path));
+  file_thread = std::jthread([this, path, overrides = edits.overrides()] {
+    std::string failure;
+    try {
+      hooks.render_file(overrides, path, file_monitor);
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+    asio::post(io, [this, path, failure] {
+      renders_file = false;
+      if (failure.empty()) written.insert(path);
+      const std::string text = failure.empty() ? "rendered " + path : path + ": " + failure;
+      for (PageConnection* shown : pages) shown->answer(told_text(failure.empty(), text));
+    });
+  });
+}
+
+// ---- the renderer's news, and the clock ------------------------------------------------------------------
+
+ViewEvents ViewServer::State::renderer_events() {
+  return {[this](std::uint32_t revision, const Scene& scene, const Plan& plan) {
+            asio::post(io, [this, text = plan_text(revision, scene, plan)] { tell(PageText::plan, text); });
+          },
+          [this](std::shared_ptr<const ViewPicture> news) {
+            asio::post(io, [this, news = std::move(news)] {
+              picture = news;
+              packed.clear();
+              for (PageConnection* page : pages) page->send(picture);
+            });
+          },
+          [this](const ViewReport& report) {
+            asio::post(io, [this, text = report_text(report)] { tell(PageText::report, text); });
+          },
+          [this](std::uint32_t revision, const std::string& why) {
+            asio::post(io, [this, text = failed_text(revision, why)] { tell(PageText::failed, text); });
+          }};
+}
+
+void ViewServer::State::tick(const Monitor& until_cancelled) {
+  if (until_cancelled.cancelled) return io.stop();
+  std::string work = work_text(renderer->monitor());
+  const SharedText& last = texts[PageText::work];
+  if (last == nullptr || *last != work) tell(PageText::work, std::move(work));
+  timer.expires_after(kTick);
+  timer.async_wait([this, &until_cancelled](error_code) { tick(until_cancelled); });
+}
+
+ViewServer::ViewServer(SceneEdits edits, ViewOptions options, ViewHooks hooks)
+    : state_(std::make_unique<State>(std::move(edits), options, std::move(hooks))) {}
+ViewServer::~ViewServer() = default;
+
+std::string ViewServer::url() const {
+  return state_->url;
+}
+
+void ViewServer::run(const Monitor& until_cancelled) {
+  State& state = *state_;
+  state.renderer = std::make_unique<ViewRenderer>(state.renderer_events());
+  state.after_edit();
+  state.accept();
+  state.tick(until_cancelled);
+  state.io.run();
+}
+
+}  // namespace opaline

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene on a page: one network thread that keeps the edits, one renderer, any number of pages that see the same.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "opaline/core/monitor.h"
+#include "view/scene_edits.h"
+
+namespace opaline {
+
+struct ViewOptions {
+  std::string address = "127.0.0.1";  ///< IP; an unspecified one listens on all
+  std::uint16_t port = 0;             ///< 0: any that is free
+  std::string token;                  ///< empty: a random one
+};
+
+/// What the server leaves to its caller.
+struct ViewHooks {
+  /// A request or page that is refused, and why; one line. On the thread of `run`.
+  std::function<void(const std::string& text)> refused;
+  /// The command that renders the scene with these overrides.
+  std::function<std::string(const std::vector<std::string>& overrides)> command;
+  /// Renders it to a file; on a thread of its own.
+  /// error Error, whose text the pages are told
+  std::function<void(const std::vector<std::string>& overrides, const std::string& path, Monitor& monitor)>
+      render_file;
+};
+
+/// Pages at once, and connections of any kind. More are closed.
+inline constexpr std::size_t kMostPages = 16, kMostConnections = 64;
+
+class ViewServer {
+ public:
+  /// Listens from now on.
+  /// error Error{bad_input}: no IP address, a token that is none; Error{run_failed}: the port cannot be had
+  ViewServer(SceneEdits edits, ViewOptions options, ViewHooks hooks);
+  ~ViewServer();
+  ViewServer(const ViewServer&) = delete;
+  ViewServer& operator=(const ViewServer&) = delete;
+
+  /// Where the page is.
+  std::string url() const;
+
+  /// Serves until the monitor is cancelled.
+  void run(const Monitor& until_cancelled);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace opaline

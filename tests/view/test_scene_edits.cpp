@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Edits of a scene: each a step that can be taken back, and a file that can be read again.
+#include "opaline/core/error.h"
+#include "view_client.h"
+
+namespace opaline {
+namespace {
+
+using namespace test;
+using Words = std::vector<std::string>;
+
+SetValues one(const std::string& path, const std::string& value, std::uint64_t stroke = 0) {
+  return {{{path, value}}, stroke};
+}
+
+// Claim: a value replaces the one of its path and those within it; a stroke is one step; what fails or changes
+// nothing is none; a new step forgets what could be redone.
+TEST(SceneEdits, StepsAndStrokes) {
+  const ViewFolder folder;
+  SceneEdits edits(folder.scene, {"media.stone.eta=1.6"});
+  EXPECT_FALSE(edits.can_undo() || edits.can_redo());
+  edits.set(one("media.stone.eta", "1.4", 1));
+  edits.set(one("media.stone.eta", "1.5", 1));
+  edits.set(one("media.stone.eta", "1.45", 2));
+  EXPECT_EQ(edits.edits(), Words{"media.stone.eta=1.45"});
+  EXPECT_DOUBLE_EQ(edits.scene().media[0].eta, 1.45);
+  EXPECT_THROW(edits.set(one("media.stone.eta", "11", 2)), Error);
+  EXPECT_EQ(edits.revision(), 4u);
+  edits.set(one("media.stone.eta", "1.45", 3));
+  EXPECT_EQ(edits.revision(), 4u);
+  edits.set(one("media.stone", R"({"preset": "skin1"})"));
+  EXPECT_EQ(edits.edits(), Words{R"(media.stone={"preset": "skin1"})"});
+  edits.undo();
+  edits.undo();
+  EXPECT_DOUBLE_EQ(edits.scene().media[0].eta, 1.5);
+  edits.undo();
+  EXPECT_DOUBLE_EQ(edits.scene().media[0].eta, 1.6);  // of the command line
+  EXPECT_FALSE(edits.can_undo());
+  edits.redo();
+  edits.set(one("media.stone.eta", "1.7", 1));  // the stroke has ended
+  EXPECT_FALSE(edits.can_redo());
+  edits.reset();
+  EXPECT_TRUE(edits.edits().empty());
+  edits.undo();
+  EXPECT_DOUBLE_EQ(edits.scene().media[0].eta, 1.7);
+  EXPECT_EQ(edits.overrides(), (Words{"media.stone.eta=1.6", "media.stone.eta=1.7"}));
+}
+
+// Claim: the file's text with edits is read as the scene with edits, keyed values stay keyed, and only in what pages
+// see they are those of the first frame.
+TEST(SceneEdits, FileText) {
+  const ViewFolder folder;
+  SceneEdits edits(folder.scene,
+                   {R"(camera.position={"keyed": {"1": [0, 32, 140], "24": [60.125, 32, 126]}})",
+                    "settings.seed=18446744073709551615"});
+  edits.set(one("lights.panel.radiance", "[0.1, 1e-9, 3]"));
+  edits.set(one("shapes.0.normals", "\"faceted\""));
+  const Scene again = parse_scene(edits.file_text(), folder.file("again.json"), {}, 24);
+  Scene there = load_scene(folder.scene, edits.overrides(), 24);
+  there.file = again.file;
+  EXPECT_EQ(again, there);
+  const Json seen = Json::parse(edits.json());
+  EXPECT_EQ(seen.at("camera").at("position"), (Json{0, 32, 140}));
+  EXPECT_EQ(seen.at("lights").at(1).at("radiance").at(1), 1e-9);
+}
+
+}  // namespace
+}  // namespace opaline

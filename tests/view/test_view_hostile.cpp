@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whoever is no page, or a bad one, is refused with a line in the log, and the others are served.
+#include "view_client.h"
+
+namespace opaline {
+namespace {
+
+using namespace test;
+
+int status_of(const RunningView& view, http::request<http::empty_body> request) {
+  asio::io_context io;
+  beast::tcp_stream stream(io);
+  stream.connect(view.endpoint());
+  http::write(stream, request);
+  beast::flat_buffer buffer;
+  http::response<http::string_body> response;
+  http::read(stream, buffer, response);
+  return int(response.result_int());
+}
+
+http::request<http::empty_body> get(const RunningView& view, const std::string& target) {
+  http::request<http::empty_body> request(http::verb::get, target, 11);
+  request.set(http::field::host, view.host());
+  return request;
+}
+
+bool is_refused(const RunningView& view, const std::string& path, const std::string& origin) {
+  try {
+    ViewClient(view.endpoint(), view.host(), path, origin);
+  } catch (const beast::system_error& error) {
+    return error.code() == beast::websocket::error::upgrade_declined;
+  }
+  return false;
+}
+
+const std::string kRoot = "/" + std::string(kToken) + "/";
+
+// Claim: without the token, with another host's name or Origin, nothing is served. Fails if one of the checks goes.
+TEST(ViewHostile, WhoIsNoPageIsRefused) {
+  const ViewFolder folder;
+  RunningView view(folder.scene);
+  EXPECT_EQ(status_of(view, get(view, kRoot)), 200);
+  EXPECT_EQ(status_of(view, get(view, kRoot + "main.js")), 200);
+  for (const std::string& target : {std::string("/"), std::string("/favicon.ico"), std::string("//"),
+                                    kRoot.substr(0, 8) + "/", "/x" + kRoot, kRoot.substr(1)})
+    EXPECT_EQ(status_of(view, get(view, target)), 403) << target;
+  EXPECT_EQ(status_of(view, get(view, kRoot + "x")), 404);
+  EXPECT_TRUE(view.has_refused("wrong token"));
+  http::request<http::empty_body> rebound = get(view, kRoot);
+  rebound.set(http::field::host, "evil.example:" + std::to_string(view.endpoint().port()));
+  EXPECT_EQ(status_of(view, rebound), 403);
+  EXPECT_TRUE(view.has_refused("another host's name"));
+  http::request<http::empty_body> post = get(view, kRoot);
+  post.method(http::verb::post);
+  EXPECT_EQ(status_of(view, post), 405);
+  const std::string own = "http://" + view.host();
+  EXPECT_TRUE(is_refused(view, kRoot + "socket", "http://evil.example"));
+  EXPECT_TRUE(is_refused(view, kRoot + "socket", ""));
+  EXPECT_TRUE(view.has_refused("foreign Origin"));
+  EXPECT_TRUE(is_refused(view, "/another-token-here/socket", own));
+  EXPECT_TRUE(is_refused(view, kRoot, own));
+  EXPECT_FALSE(is_refused(view, kRoot + "socket", own));
+}
+
+// Claim: a message that is none is answered and changes nothing. Fails if one throws out of the network's thread, or
+// is taken.
+TEST(ViewHostile, BadMessagesAreAnswered) {
+  const ViewFolder folder;
+  const RunningView view(folder.scene);
+  ViewClient page(view);
+  ASSERT_TRUE(page.read_final());
+  const std::string deep(30000, '[');
+  for (const std::string& text : std::vector<std::string>{
+           "",
+           "{",
+           "[]",
+           "null",
+           "{}",
+           R"({"do": 3})",
+           R"({"do": "dance"})",
+           R"({"do": "undo", "more": 1})",
+           R"({"do": "set", "values": {"media.stone.eta": 1.3}})",
+           R"({"do": "set", "values": 3, "stroke": 1})",
+           R"({"do": "set", "values": {"": 1}, "stroke": 1})",
+           R"({"do": "set", "values": {"a=b": 1}, "stroke": 1})",
+           R"({"do": "set", "values": {"media.stone.eat": 1}, "stroke": 1})",
+           R"({"do": "set", "values": {"media.stone.eta": 1e999}, "stroke": 1})",
+           R"({"do": "set", "values": {"media.stone.eta": null}, "stroke": -1})",
+           R"({"do": "set", "values": {"film.resolution": [60000, 60000]}, "stroke": 1})",
+           R"({"do": "set", "values": {"film.resolution": [4097, 4097]}, "stroke": 1})",
+           R"({"do": "set", "values": {"shapes.left": {"file": "/etc/passwd"}}, "stroke": 1})",
+           R"({"do": "set", "values": {"camera.position": [0, 8, 0]}, "stroke": 1})",
+           R"({"do": "restore", "edits": ["nothing"]})",
+           R"({"do": "shown", "frame": "x"})",
+           deep,
+           "{\"do\": \"\xff\xfe\"}"}) {
+    if (text.find('\xff') != std::string::npos)
+      page.socket().binary(true), page.socket().write(asio::buffer(text));
+    else
+      page.send_text(text);
+    EXPECT_NE(page.read_answer(), "") << text.substr(0, 80);
+    EXPECT_FALSE(page.texts["told"].at("good"));
+  }
+  EXPECT_EQ(page.revision(), 1u);
+  page.set({{"media.stone.eta", 1.3}});
+  EXPECT_TRUE(page.read_final(2));
+}
+
+// Claim: a message above 64 kB ends its page at the announcement, frames that break the protocol end theirs; another
+// page is served. Source: RFC 6455, 7.4.1 (1009: too big).
+TEST(ViewHostile, BrokenFramesEndTheirPage) {
+  const ViewFolder folder;
+  RunningView view(folder.scene);
+  ViewClient good(view);
+  const std::string large("\x81\xff\x00\x00\x00\x00\x40\x00\x00\x00mask", 14);  // 2^30 bytes are to come
+  const std::string bare("\x81\x02{}", 4);                                      // not masked
+  const std::string unknown("\x8f\x80mask", 6);                                 // of an unknown kind
+  for (const std::string& bytes : {large, bare, unknown}) {
+    ViewClient bad(view);
+    asio::write(beast::get_lowest_layer(bad.socket()).socket(), asio::buffer(bytes));
+    EXPECT_FALSE(bad.read_until([] { return false; }));
+    if (bytes == large) {
+      EXPECT_EQ(bad.close_code, 1009u);
+    }
+  }
+  EXPECT_TRUE(view.has_refused("a page: "));
+  EXPECT_TRUE(good.read_final());
+}
+
+// Claim: a page that does not read, or never says that it shows its frames, costs the others nothing and has few
+// frames waiting: at most two. Fails if frames queue up.
+TEST(ViewHostile, ASlowPageMissesFrames) {
+  const ViewFolder folder;
+  const RunningView view(folder.scene);
+  ViewClient slow(view), quick(view);
+  slow.answers_frames = false;
+  ASSERT_TRUE(quick.read_final());
+  for (int i = 0; i < 20; ++i) {
+    quick.set({{"lights.key.position", {i, 100, 20}}});
+    ASSERT_TRUE(quick.read_final(std::uint32_t(i) + 2));
+  }
+  ASSERT_TRUE(slow.read_until([&] { return slow.revision() == 21; }));
+  while (slow.frames < 2 && slow.read()) continue;
+  slow.send({{"do", "layer"}, {"name", "nothing"}});
+  slow.send_text("?");
+  EXPECT_NE(slow.read_answer(), "");
+  EXPECT_LE(slow.frames, 2u);
+  slow.answers_frames = true;
+  slow.send({{"do", "shown"}, {"frame", slow.frame.number}});
+  EXPECT_TRUE(slow.read_final(21));
+  EXPECT_EQ(slow.frame.colours, quick.frame.colours);
+}
+
+// Claim: of 200 connections at most 64 are kept, each other one is closed with a line in the log; the page that was
+// there before is served, and a new one is when they are gone.
+TEST(ViewHostile, TwoHundredConnections) {
+  const ViewFolder folder;
+  RunningView view(folder.scene);
+  ViewClient page(view);
+  {
+    asio::io_context io;
+    std::vector<Tcp::socket> crowd;
+    for (int i = 0; i < 200; ++i) crowd.emplace_back(io).connect(view.endpoint());
+    EXPECT_TRUE(view.has_refused("more than 64 connections"));
+    page.set({{"media.stone.eta", 1.3}});
+    EXPECT_TRUE(page.read_final(2));
+  }
+  EXPECT_EQ(status_of(view, get(view, kRoot)), 200);
+  std::vector<std::unique_ptr<ViewClient>> pages;
+  try {
+    for (std::size_t i = 0; i < kMostPages; ++i) pages.push_back(std::make_unique<ViewClient>(view));
+  } catch (const beast::system_error&) {
+  }
+  EXPECT_EQ(pages.size(), kMostPages - 1);
+  EXPECT_TRUE(view.has_refused("more than 16 pages"));
+}
+
+}  // namespace
+}  // namespace opaline

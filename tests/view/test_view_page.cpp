@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The real page in a real browser: what a person does there is what the scene becomes, and what the file holds.
+#include <cmath>
+#include <random>
+
+#include "browser.h"
+#include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+using namespace test;
+
+const std::string kIsFinal =
+    "document.getElementById('error')?.dataset.revision == document.getElementById('step')?.dataset.revision "
+    "&& "
+    "document.getElementById('step')?.dataset.step === 'final' && "
+    "Number(document.getElementById('step').dataset.revision) === ";
+
+/// A view, and a tab of the browser that shows it.
+struct LongViewPage : ::testing::Test {
+  ViewFolder folder;
+  std::optional<RunningView> view{std::in_place, folder.scene};
+  Browser browser;
+  Tab tab = browser.open(view->url());
+
+  void TearDown() override {
+    for (const std::string& problem : browser.problems) {
+      const bool is_of_lost_server = problem.find("ERR_CONNECTION_REFUSED") != std::string::npos;
+      EXPECT_TRUE(is_of_lost_server && loses_server) << problem;
+    }
+  }
+  bool loses_server = false;
+
+  /// The edits once the picture of all of them is there: known by another page, which speaks for the server.
+  std::vector<std::string> final_edits(std::uint32_t least_revision = 1) {
+    ViewClient page(*view);
+    EXPECT_TRUE(page.read_final(least_revision));
+    EXPECT_TRUE(browser.comes_true(tab, kIsFinal + std::to_string(page.revision())));
+    revision = page.revision();
+    return page.texts.at("scene").at("edits").get<std::vector<std::string>>();
+  }
+  std::uint32_t revision = 0;
+
+  /// Types a value into the field of a knob.
+  void type(const std::string& path, const std::string& label, const std::string& value) {
+    browser.run(tab, "(() => { const field = document.querySelector(`[aria-label^=\"" + path +
+                         ",\"] [aria-label=\"" + label +
+                         "\"]`); field.closest('details').open = true; "
+                         "if (field.type === 'checkbox') field.checked = " +
+                         value + " == 'true'; else field.value = '" + value +
+                         "'; field.dispatchEvent(new Event('change')); })()");
+  }
+  void click(const std::string& id) { browser.run(tab, "document.getElementById('" + id + "').click()"); }
+  std::array<double, 4> box(const std::string& selector) {
+    const Json b =
+        browser.run(tab, "(() => { const b = document.querySelector('" + selector +
+                             "').getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()");
+    return b.get<std::array<double, 4>>();
+  }
+  std::array<double, 2> middle(const std::string& selector) {
+    const auto [x, y, width, height] = box(selector);
+    return {x + width / 2, y + height / 2};
+  }
+
+  /// Expects what the canvas shows to be the picture, in sRGB.
+  void expect_shown(const std::vector<std::uint16_t>& picture) {
+    const Json shown = browser.run(tab,
+                                   "[...document.getElementById('picture').getContext('2d')"
+                                   ".getImageData(0, 0, 48, 32).data]");
+    ASSERT_EQ(shown.size(), picture.size());
+    double worst = 0;
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+      if (i % 4 == 3) continue;
+      half value;
+      value.setBits(picture[i]);
+      const double x = std::max(0.0, double(float(value)));
+      const double srgb = x <= .0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - .055;
+      worst = std::max(worst, std::abs(shown[i].get<double>() - std::min(255.0, 255 * srgb)));
+    }
+    EXPECT_LE(worst, .51);
+  }
+};
+
+// Claim: what is typed, dragged, turned and undone in the page is in the scene, and the picture on the canvas is the one
+// of `opaline render` of it, to the byte that sRGB rounds to.
+TEST_F(LongViewPage, EditsAreShown) {
+  final_edits();
+  expect_shown(rendered(folder.scene));
+  type("media.stone.specular_ior", "specular_ior", "1.35");
+  EXPECT_EQ(final_edits(2), std::vector<std::string>{"media.stone.specular_ior=1.35"});
+  expect_shown(rendered(folder.scene, {"media.stone.specular_ior=1.35"}));
+  type("settings.near_field", "near_field", "false");
+  type("media.stone.profile", "profile", "better_dipole");
+  type("lights.panel.radiance", "radiance green", "7");
+  std::vector<std::string> edits = final_edits(5);
+  EXPECT_EQ(edits.back(), "lights.panel.radiance=[5, 7, 5]");
+  expect_shown(rendered(folder.scene, edits));
+
+  const auto [x, y] = middle("#picture");
+  browser.drag(tab, x, y, 60, -25);
+  edits = final_edits(6);
+  Scene scene = load_scene(folder.scene, edits);
+  EXPECT_NEAR(length(scene.camera.position - scene.camera.look_at), length(Vec3d{0, 22, 120}), 1e-3);
+  EXPECT_GT(length(scene.camera.position - Vec3d{0, 30, 120}), 5);
+  EXPECT_EQ(scene.camera.look_at, (Vec3d{0, 8, 0}));
+  expect_shown(rendered(folder.scene, edits));
+  browser.drag(tab, x, y, 40, 0, 8);  // Shift: pan
+  edits = final_edits(revision + 1);
+  EXPECT_NE(load_scene(folder.scene, edits).camera.look_at, (Vec3d{0, 8, 0}));
+  browser.mouse(tab, "mouseWheel", x, y, {{"deltaX", 0}, {"deltaY", -100}});
+  edits = final_edits(revision + 1);
+  EXPECT_LT(length(load_scene(folder.scene, edits).camera.position -
+                   load_scene(folder.scene, edits).camera.look_at),
+            length(Vec3d{0, 22, 120}) - 5);
+  expect_shown(rendered(folder.scene, edits));
+  for (int i = 0; i < 3; ++i) {
+    browser.key(tab, "z", 2);
+    edits = final_edits(revision + 1);
+  }
+  EXPECT_EQ(load_scene(folder.scene, edits).camera, load_scene(folder.scene).camera);
+  click("reset");
+  EXPECT_TRUE(final_edits(revision + 1).empty());
+  expect_shown(rendered(folder.scene));
+}
+
+// Claim: a light is moved by its handle, by mouse and keys, and its brightness by the wheel.
+TEST_F(LongViewPage, LightsAreMoved) {
+  final_edits();
+  const auto [x, y] = middle("[data-path=\"lights.key\"] circle");
+  browser.drag(tab, x, y, 50, 30);
+  std::vector<std::string> edits = final_edits(2);
+  const Vec3d moved = std::get<PointLight>(load_scene(folder.scene, edits).lights[0].source).position;
+  EXPECT_GT(moved.x, 2);
+  EXPECT_LT(moved.y, 98);
+  browser.mouse(tab, "mouseWheel", middle("[data-path=\"lights.key\"] circle")[0],
+                middle("[data-path=\"lights.key\"] circle")[1], {{"deltaX", 0}, {"deltaY", -100}});
+  edits = final_edits(revision + 1);
+  EXPECT_EQ(edits.back(), "lights.key.intensity=[33000, 22000, 11000]");
+  browser.run(tab, "document.querySelector('[data-path=\"lights.panel\"]').focus()");
+  browser.key(tab, "ArrowLeft");
+  edits = final_edits(revision + 1);
+  EXPECT_TRUE(edits.back().starts_with("lights.panel.corner=[-6")) << edits.back();
+  expect_shown(rendered(folder.scene, edits));
+}
+
+// Claim: the inspector shows the picture's values, of the layer too, to four digits. Source: the halves of an EXR.
+TEST_F(LongViewPage, InspectorShowsTheValues) {
+  final_edits();
+  Session session;
+  session.edit(load_scene(folder.scene));
+  const Image image = session.render().image;
+  browser.run(tab,
+              "(() => { const c = document.getElementById('channel'); c.value = 'irradiance'; "
+              "c.dispatchEvent(new Event('change')); })()");
+  browser.run(tab,
+              "(() => { document.getElementById('x').value = 15; document.getElementById('y').value = 14; "
+              "document.getElementById('y').dispatchEvent(new Event('input')); })()");
+  ASSERT_TRUE(
+      browser.comes_true(tab, "document.getElementById('values').textContent.includes('irradiance')"));
+  std::istringstream text(
+      browser.run(tab, "document.getElementById('values').textContent").get<std::string>());
+  const auto expect_channels = [&](const std::vector<std::string>& names, double precision) {
+    for (const std::string& name : names) {
+      double value = -1;
+      text >> value;
+      const auto c = std::size_t(std::ranges::find(image.channels, name) - image.channels.begin());
+      const double there = double(image.pixels[(14 * 48 + 15) * image.channels.size() + c]);
+      EXPECT_GT(there, 0) << name;
+      EXPECT_NEAR(value, there, precision * there) << name;
+    }
+  };
+  std::string word;
+  for (int i = 0; i < 4; ++i) text >> word;
+  expect_channels({"R", "G", "B"}, 1e-3);
+  text >> word >> word;
+  EXPECT_EQ(word, "irradiance");
+  expect_channels({"irradiance.R", "irradiance.G", "irradiance.B"}, 5.1e-4);
+}
+
+// Claim: the wipe shows the pinned picture on its left, and later ones on its right. Exposure changes both at once, and
+// nothing on the server.
+TEST_F(LongViewPage, WipeAndExposure) {
+  final_edits();
+  click("pin");
+  type("lights.key.intensity", "intensity red", "300000");
+  final_edits(2);
+  const std::string red =
+      "(id => document.getElementById(id).getContext('2d').getImageData(15, 14, 1, 1).data[0])";
+  EXPECT_GT(browser.run(tab, red + "('picture')").get<int>(),
+            browser.run(tab, red + "('pinned')").get<int>() + 10);
+  EXPECT_EQ(browser.run(tab, "getComputedStyle(document.getElementById('pinned')).clipPath"),
+            "inset(0px 50% 0px 0px)");
+  const int before = browser.run(tab, red + "('pinned')");
+  browser.run(tab,
+              "(() => { const e = document.getElementById('exposure'); e.value = -2; e.dispatchEvent(new "
+              "Event('input')); })()");
+  EXPECT_LT(browser.run(tab, red + "('pinned')").get<int>(), before);
+  EXPECT_EQ(final_edits(), std::vector<std::string>{"lights.key.intensity=[300000, 20000, 10000]"});
+}
+
+// Claim: what is saved is what is shown; a copied command renders it; a second page sees it.
+TEST_F(LongViewPage, SaveAndSecondPage) {
+  final_edits();
+  type("media.stone.specular_ior", "specular_ior", "1.4");
+  const std::vector<std::string> edits = final_edits(2);
+  click("save");
+  ASSERT_TRUE(browser.comes_true(tab, "document.getElementById('told').textContent.startsWith('saved')"));
+  expect_shown(rendered(folder.file("balls-edited.json")));
+  click("copy");
+  ASSERT_TRUE(
+      browser.comes_true(tab, "document.getElementById('told').textContent.includes('render with 1')"));
+  const Tab second = browser.open(view->url());
+  ASSERT_TRUE(browser.comes_true(second, kIsFinal + "2"));
+  type("media.stone.specular_ior", "specular_ior", "1.2");
+  final_edits(3);
+  ASSERT_TRUE(browser.comes_true(second, kIsFinal + "3"));
+  const std::string pixels = "document.getElementById('picture').toDataURL()";
+  EXPECT_EQ(browser.run(tab, pixels), browser.run(second, pixels));
+}
+
+// Claim: a page that lost its server says so, and brings the next one at the same URL to the same scene.
+TEST_F(LongViewPage, TheServerIsKilledAndBack) {
+  loses_server = true;
+  final_edits();
+  type("media.stone.specular_ior", "specular_ior", "1.4");
+  const std::vector<std::string> edits = final_edits(2);
+  const std::uint16_t port = view->endpoint().port();
+  view.reset();
+  ASSERT_TRUE(browser.comes_true(tab, "!document.getElementById('lost').hidden"));
+  view.emplace(folder.scene, port);
+  ASSERT_TRUE(browser.comes_true(tab, "document.getElementById('lost').hidden"));
+  EXPECT_EQ(final_edits(2), edits);
+  expect_shown(rendered(folder.scene, edits));
+}
+
+// Claim: after any strokes, however fast, the final picture is that of the scene they lead to.
+TEST_F(LongViewPage, RandomStrokes) {
+  final_edits();
+  std::mt19937 random(7);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<>(low, high)(random);
+  };
+  const auto [x, y] = middle("#picture");
+  for (int round = 0; round < 4; ++round) {
+    for (int i = 0; i < 12; ++i) switch (random() % 5) {
+        case 0:
+          browser.drag(tab, x, y, between(-90, 90), between(-40, 40), random() % 2 ? 8 : 0);
+          break;
+        case 1:
+          type("media.stone.specular_ior", "specular_ior", std::to_string(between(1.1, 1.9)));
+          break;
+        case 2:
+          type("lights.panel.radiance", "radiance blue", std::to_string(between(0, 20)));
+          break;
+        case 3:
+          click(random() % 3 ? "undo" : "redo");
+          break;
+        default:
+          type("lights.key.position", "position x", std::to_string(between(-80, 80)));
+      }
+    browser.run(tab, "new Promise((done) => setTimeout(done, 300))");  // the last stroke is on its way
+    expect_shown(rendered(folder.scene, final_edits()));
+  }
+}
+
+// Claim: everything that can be focused has a name; the page fits windows from 1280 x 720 to 4k with the picture in
+// sight; it is light or dark as its reader prefers.
+TEST_F(LongViewPage, NamesSizesAndThemes) {
+  final_edits();
+  browser.run(tab, "for (const d of document.querySelectorAll('details')) d.open = true");
+  browser.call(tab, "Accessibility.enable", {});
+  std::size_t focusable = 0;
+  const Json tree = browser.call(tab, "Accessibility.getFullAXTree", {});
+  for (const Json& node : tree.at("nodes")) {
+    const auto is_focusable = [](const Json& property) {
+      return property.at("name") == "focusable" && property.at("value").at("value") == true;
+    };
+    const Json properties = node.value("properties", Json::array());
+    if (node.value("ignored", false) || !std::ranges::any_of(properties, is_focusable)) continue;
+    ++focusable;
+    EXPECT_NE(node.value("name", Json::object()).value("value", ""), "") << node.dump();
+  }
+  EXPECT_GT(focusable, 100u);
+  for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}, {3840, 2160}}) {
+    browser.resize(tab, width, height);
+    browser.run(tab, "new Promise((done) => requestAnimationFrame(() => setTimeout(done, 100)))");
+    EXPECT_LE(browser.run(tab, "document.documentElement.scrollWidth - innerWidth"), 0);
+    EXPECT_LE(browser.run(tab, "document.documentElement.scrollHeight - innerHeight"), 0);
+    const auto [x, y, w, h] = box("#picture");
+    EXPECT_GT(w * h, .2 * width * height) << width;
+    EXPECT_NEAR(w / h, 1.5, .02);
+    EXPECT_LE(y + h, height);
+  }
+  const std::string paper = "getComputedStyle(document.body).backgroundColor";
+  std::vector<std::string> papers;
+  for (const char* scheme : {"light", "dark"}) {
+    browser.call(tab, "Emulation.setEmulatedMedia",
+                 {{"features", {{{"name", "prefers-color-scheme"}, {"value", scheme}}}}});
+    papers.push_back(browser.run(tab, paper));
+  }
+  EXPECT_NE(papers[0], papers[1]);
+}
+
+}  // namespace
+}  // namespace opaline

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A server in this process, and a page without a browser: the protocol as a program speaks it.
+#pragma once
+
+#include <Imath/half.h>
+#include <gtest/gtest.h>
+
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <cstring>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "../core/scratch_folder.h"
+#include "opaline/scene/load_scene.h"
+#include "opaline/session/session.h"
+#include "view/view_frame.h"
+#include "view/view_server.h"
+
+namespace opaline::test {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using Json = nlohmann::json;
+using Tcp = asio::ip::tcp;
+
+inline constexpr const char* kToken = "a-token-of-this-test";
+
+/// Two balls of one medium on a floor: 48 x 32 pixels, little of everything.
+struct ViewFolder : ScratchFolder {
+  std::string scene = file("balls.json");
+
+  ViewFolder() {
+    put_bytes(scene, R"(// comments are no part of a scene
+{
+  "media": {"stone": {"preset": "marble"}},
+  "shapes": [
+    {"name": "left", "sphere": {"center": [-15, 10, 0], "radius": 10}, "medium": "stone"},
+    {"name": "right", "sphere": {"center": [15, 10, 0], "radius": 10}, "medium": "stone"},
+    {"name": "floor", "quad": {"corner": [-60, -1, 60], "u": [120, 0, 0], "v": [0, 0, -120]}}
+  ],
+  "lights": [
+    {"name": "key", "type": "point", "position": [0, 100, 20], "intensity": [3e4, 2e4, 1e4]},
+    {"name": "panel", "type": "quad", "corner": [-60, 90, 30], "u": [40, 0, 0], "v": [0, 0, 20], "radiance": 5}
+  ],
+  "camera": {"position": [0, 30, 120], "look_at": [0, 8, 0], "field_of_view": 32},
+  "film": {"resolution": [48, 32]},
+  "settings": {"light_samples": 4}
+})");
+  }
+};
+
+/// Serves a scene on a thread, as `opaline view` does.
+class RunningView {
+ public:
+  explicit RunningView(const std::string& scene, std::uint16_t port = 0)
+      : server_(SceneEdits(scene, {}), {"127.0.0.1", port, kToken}, hooks()),
+        thread_([this] { server_.run(stop_); }) {}
+  ~RunningView() { stop_.cancelled = true; }
+  RunningView(const RunningView&) = delete;
+  RunningView& operator=(const RunningView&) = delete;
+
+  std::string url() const { return server_.url(); }
+  std::string host() const {
+    const std::string address = url();
+    return address.substr(7, address.find('/', 7) - 7);
+  }
+  Tcp::endpoint endpoint() const {
+    const std::string name = host();
+    return {asio::ip::make_address("127.0.0.1"), std::uint16_t(std::stoi(name.substr(name.find(':') + 1)))};
+  }
+  /// Whether a line of the log holds the text, now or within seconds.
+  bool has_refused(const std::string& text) {
+    for (int i = 0; i < 500; ++i) {
+      {
+        const std::lock_guard lock(mutex_);
+        if (log_.find(text) != std::string::npos) return true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
+ private:
+  ViewHooks hooks() {
+    return {[this](const std::string& text) {
+              const std::lock_guard lock(mutex_);
+              log_ += text + '\n';
+            },
+            [](const std::vector<std::string>& overrides) {
+              return "render with " + std::to_string(overrides.size());
+            },
+            [](const std::vector<std::string>&, const std::string& path, Monitor&) {
+              put_bytes(path, "a picture");
+            }};
+  }
+
+  std::mutex mutex_;
+  std::string log_;
+  Monitor stop_;
+  ViewServer server_;
+  std::jthread thread_;
+};
+
+struct Frame {
+  std::uint32_t number = 0, revision = 0, width = 0, height = 0, layer_channels = 0;
+  PictureStep step = PictureStep::moving;
+  std::vector<std::uint16_t> colours;  ///< bits of halves, R G B A a pixel
+  std::vector<float> layer;
+};
+
+inline Frame frame_of(const std::string& bytes) {
+  std::uint32_t words[8];
+  Frame frame;
+  EXPECT_GE(bytes.size(), sizeof words);
+  std::memcpy(words, bytes.data(), sizeof words);
+  EXPECT_EQ(words[0], kFrameMark);
+  frame = {words[1], words[2], words[4], words[5], words[6], PictureStep(words[3]), {}, {}};
+  const std::size_t pixels = std::size_t(frame.width) * frame.height;
+  frame.colours.resize(pixels * 4);
+  frame.layer.resize(pixels * frame.layer_channels);
+  EXPECT_EQ(bytes.size(), sizeof words + frame.colours.size() * 2 + frame.layer.size() * 4);
+  std::memcpy(frame.colours.data(), bytes.data() + sizeof words, frame.colours.size() * 2);
+  std::memcpy(frame.layer.data(), bytes.data() + sizeof words + frame.colours.size() * 2,
+              frame.layer.size() * 4);
+  return frame;
+}
+
+/// A page: keeps the newest text of each kind and the newest frame.
+class ViewClient {
+ public:
+  explicit ViewClient(const RunningView& view, const std::string& origin = "")
+      : ViewClient(view.endpoint(), view.host(), "/" + std::string(kToken) + "/socket",
+                   origin.empty() ? "http://" + view.host() : origin) {}
+
+  ViewClient(const Tcp::endpoint& endpoint, const std::string& host, const std::string& path,
+             const std::string& origin)
+      : socket_(io_) {
+    socket_.read_message_max(0);
+    beast::get_lowest_layer(socket_).connect(endpoint);
+    socket_.set_option(beast::websocket::stream_base::decorator(
+        [origin](beast::websocket::request_type& request) { request.set(http::field::origin, origin); }));
+    socket_.handshake(host, path);
+  }
+
+  void send(const Json& message) { send_text(message.dump()); }
+  void send_text(const std::string& text) {
+    socket_.text(true);
+    socket_.write(asio::buffer(text));
+  }
+  void set(const Json& values, std::uint64_t stroke = 0) {
+    send({{"do", "set"}, {"values", values}, {"stroke", stroke}});
+  }
+
+  /// Reads one message; false where none comes within a minute, or the server has closed.
+  bool read() {
+    if (read_within(std::chrono::minutes(1))) return true;
+    beast::get_lowest_layer(socket_).close();
+    io_.restart();
+    io_.run();
+    return false;
+  }
+
+  /// The same within a time, after which reading may go on.
+  bool read_within(std::chrono::milliseconds time) {
+    if (!is_reading_) {
+      is_reading_ = true;
+      result_.reset();
+      socket_.async_read(in_, [this](beast::error_code error, std::size_t) {
+        result_ = error;
+        is_reading_ = false;
+      });
+    }
+    io_.restart();
+    io_.run_one_for(std::chrono::milliseconds(0));
+    const auto end = std::chrono::steady_clock::now() + time;
+    while (!result_ && std::chrono::steady_clock::now() < end) io_.run_one_until(end);
+    close_code = socket_.reason().code;
+    if (!result_ || *result_) return false;
+    const std::string bytes = beast::buffers_to_string(in_.data());
+    in_.consume(in_.size());
+    result_.reset();
+    if (socket_.got_text()) {
+      const Json text = Json::parse(bytes);
+      texts[text.at("is")] = text;
+      newest = text.at("is");
+    } else {
+      frame = frame_of(bytes);
+      ++frames;
+      newest = "frame";
+      if (answers_frames) send({{"do", "shown"}, {"frame", frame.number}});
+    }
+    return true;
+  }
+
+  template <class Condition>
+  bool read_until(const Condition& condition) {
+    while (!condition())
+      if (!read()) return false;
+    return true;
+  }
+  std::uint32_t revision() const {
+    return texts.contains("scene") ? texts.at("scene").at("revision").get<std::uint32_t>() : 0;
+  }
+  /// Until the picture of the newest scene that it knows is final.
+  bool read_final(std::uint32_t least_revision = 1) {
+    return read_until([&] {
+      return frame.step == PictureStep::final && frame.revision == revision() && revision() >= least_revision;
+    });
+  }
+  /// An answer to this page alone.
+  std::string read_answer() {
+    texts.erase("told");
+    return read_until([&] { return texts.contains("told"); }) ? texts["told"].at("text") : "";
+  }
+
+  std::map<std::string, Json> texts;
+  std::string newest;
+  Frame frame;
+  std::size_t frames = 0;
+  bool answers_frames = true;
+  unsigned close_code = 0;
+
+  beast::websocket::stream<beast::tcp_stream>& socket() { return socket_; }
+
+ private:
+  asio::io_context io_;
+  beast::websocket::stream<beast::tcp_stream> socket_;
+  beast::flat_buffer in_;
+  std::optional<beast::error_code> result_;
+  bool is_reading_ = false;
+};
+
+/// The picture that `opaline render` makes, R G B A as bits of halves.
+inline std::vector<std::uint16_t> rendered(const std::string& scene,
+                                           const std::vector<std::string>& overrides = {}) {
+  Session session;
+  session.edit(load_scene(scene, overrides));
+  const Image image = session.render().image;
+  std::vector<std::uint16_t> bits;
+  for (std::size_t p = 0; p < std::size_t(image.width) * std::size_t(image.height); ++p)
+    for (std::size_t c = 0; c < 4; ++c)
+      bits.push_back(half(image.pixels[p * image.channels.size() + c]).bits());
+  return bits;
+}
+
+}  // namespace opaline::test
