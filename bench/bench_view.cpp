@@ -57,6 +57,8 @@ Waits measure_edits(ViewClient& page, const std::function<Json(int round)>& valu
     const Clock::time_point start = Clock::now();
     page.set(values(round));
     wait_for_final(page, next, start, waits);
+    page.read_until(
+        [&] { return page.texts.contains("report") && page.texts["report"]["revision"] == next; });
   }
   return waits;
 }

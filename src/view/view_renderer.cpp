@@ -191,6 +191,7 @@ std::shared_ptr<const ViewPicture> ViewRenderer::publish(const Wanted& wanted, P
 }
 
 void ViewRenderer::report(const Wanted& wanted, const Image& image, double error, StageCost shading) {
+  advance(&monitor_, 0);  // nobody reads it once there is a newer scene
   ViewReport report{wanted.revision, error, session_->costs(), session_->decisions(), {}};
   report.costs.push_back(std::move(shading));
   report.warnings = picture_warnings(wanted.scene, session_->world(), image);
