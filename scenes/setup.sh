@@ -20,10 +20,6 @@ test_packages=(libgtest-dev parallel clang-format)
 # shellcheck disable=SC2034
 long_test_packages=(chromium-headless-shell assimp-testmodels)
 
-bunny_package=glmark2-data
-bunny_path=./usr/share/glmark2/models/bunny.obj
-bunny_sha256=bff773d28c62e80187b2dfa8c6c8cc771a4c7707ddcdcf2e515913d322d1f548
-
 say() { printf 'opaline: %s\n' "$*"; }
 
 fail() {
@@ -60,26 +56,39 @@ install_packages() {
   apt_get "${install[@]}" || fail 3 "could not install ${missing[*]}: apt's reason is above; is the network there?"
 }
 
-is_the_bunny() { [[ -f $1 ]] && sha256sum --status --check <<<"$bunny_sha256  $1"; }
-
-# In a subshell, so that the trap and the folder are its own.
-fetch_bunny() (
-  mesh=$root/scenes/assets/bunny.obj
-  if is_the_bunny "$mesh"; then exit 0; fi
-  say "fetching scenes/assets/bunny.obj from Debian's package $bunny_package (6.6 MB, not installed)"
-  mkdir -p "${mesh%/*}"
-  scratch=$(mktemp -d "${mesh%/*}/fetch.XXXXXX") # beside the mesh, so that mv is atomic
+# A file of a Debian package that is not installed, into scenes/assets/. In a subshell, so that the trap and the folder
+# are its own.
+# in    the package, how much of it is fetched, the file's path in it, its sha256
+fetch() (
+  package=$1 size=$2 path=$3 sha256=$4
+  file=$root/scenes/assets/${path##*/}
+  is_right() { [[ -f $1 ]] && sha256sum --status --check <<<"$sha256  $1"; }
+  if is_right "$file"; then exit 0; fi
+  say "fetching scenes/assets/${file##*/} from Debian's package $package ($size, not installed)"
+  mkdir -p "${file%/*}"
+  scratch=$(mktemp -d "${file%/*}/fetch.XXXXXX") # beside the file, so that mv is atomic
   trap 'rm -rf "$scratch"' EXIT
   cd "$scratch"
-  if ! apt_get -q download "$bunny_package"; then
-    ((EUID == 0)) || fail 2 "$bunny_package could not be fetched; with the network there, run: sudo apt-get update"
+  if ! apt_get -q download "$package"; then
+    ((EUID == 0)) || fail 2 "$package could not be fetched; with the network there, run: sudo apt-get update"
     apt_get update || true
-    apt_get -q download "$bunny_package" || fail 3 "$bunny_package could not be fetched; is the network there?"
+    apt_get -q download "$package" || fail 3 "$package could not be fetched; is the network there?"
   fi
-  dpkg-deb --fsys-tarfile "$bunny_package"_*.deb | tar -xO "$bunny_path" >bunny.obj
-  is_the_bunny bunny.obj || fail 3 "the bunny.obj of $bunny_package is not the one the scene was made for (sha256)"
-  mv -f bunny.obj "$mesh"
+  dpkg-deb --fsys-tarfile "$package"_*.deb | tar -xO "$path" >fetched
+  is_right fetched || fail 3 "${file##*/} of $package is not the one the scenes were made for (sha256)"
+  mv -f fetched "$file"
 )
+
+fetch_bunny() {
+  fetch glmark2-data "6.6 MB" ./usr/share/glmark2/models/bunny.obj \
+    bff773d28c62e80187b2dfa8c6c8cc771a4c7707ddcdcf2e515913d322d1f548
+}
+
+rooms=./usr/share/blender/datafiles/studiolights/world
+fetch_rooms() {
+  fetch blender-data "31 MB" "$rooms/interior.exr" 4f6810b182ade346eac6964bf02405adf430c321b8853a644316af4e05d0fdb5
+  fetch blender-data "31 MB" "$rooms/sunset.exr" a164f20b86bc43ba4afd66c988a20a9dd5f1a0a5d8e960aed57a33f78119c168
+}
 
 # All cores, but at least 1 GB each: the CGAL sources take up to 1.7 GB to compile.
 job_count() {

@@ -29,6 +29,15 @@ void check_pixels(const Scene& scene) {
                    std::to_string(pixels));
 }
 
+/// A page cannot have files opened: neither by their key, nor in an object with one, however it is spelled.
+void check_opens_nothing(const std::string& file, const std::string& edit) {
+  const std::size_t end = edit.find('=');
+  const std::string path = edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
+  if (path == "file" || path.ends_with(".file") || value.find("\"file\"") != std::string::npos ||
+      value.find('\\') != std::string::npos)
+    throw bad_file(file, "a view does not change files", "those of the scene that was opened");
+}
+
 /// Whether an override is of the path, or of what is in it.
 bool is_within(const std::string& override, const std::string& path) {
   return override.starts_with(path) && (override.at(path.size()) == '=' || override.at(path.size()) == '.');
@@ -43,6 +52,7 @@ SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given)
 }
 
 Scene SceneEdits::parsed(const Edits& edits) const {
+  for (const std::string& edit : edits) check_opens_nothing(file_, edit);
   Edits all = given_;
   all.insert(all.end(), edits.begin(), edits.end());
   Scene scene = parse_scene(text_, file_, all);

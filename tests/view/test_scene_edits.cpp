@@ -46,6 +46,23 @@ TEST(SceneEdits, StepsAndStrokes) {
   EXPECT_EQ(edits.overrides(), (Words{"media.stone.eta=1.6", "media.stone.eta=1.7"}));
 }
 
+// Claim: no edit opens a file, by its key, in an object, or spelled with escapes; the error does not tell whether it is
+// there. Fails if: the check looks at meshes alone, after the scene with its pictures has been read.
+TEST(SceneEdits, OpenNoFiles) {
+  const ViewFolder folder;
+  SceneEdits edits(folder.scene, {});
+  for (const auto& [path, value] : std::vector<std::pair<std::string, std::string>>{
+           {"shapes.0.file", R"("/etc/passwd")"},
+           {"lights.0", R"({"type": "environment", "file": "/etc/passwd"})"},
+           {"lights.0", R"({"type": "environment", "\u0066ile": "/etc/passwd"})"}})
+    try {
+      edits.set(one(path, value));
+      ADD_FAILURE() << path;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.message, "a view does not change files") << error.what();
+    }
+}
+
 // Claim: the file's text with edits is read as the scene with edits, keyed values stay keyed, and only in what pages
 // see they are those of the first frame.
 TEST(SceneEdits, FileText) {

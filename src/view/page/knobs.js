@@ -108,7 +108,7 @@ export class Knobs {
     select.onchange = () => this.set({[path]: this.converted(name, select.value)}, newStroke());
     const ior = "eta" in medium ? "eta" : "specular_ior";
     return [make("label", {className: "knob"}, make("span", {className: "name", textContent: "given by"}), select),
-      ...[...kForms[form].keys, ior, "profile"].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
+      ...[...kForms[form].keys, ior, "specular_roughness", "profile", ...("thickness" in medium ? ["thickness"] : [])].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
   }
 
   // The same medium in another form, or where there is no telling one to start from.
@@ -147,6 +147,7 @@ export class Knobs {
     else if (row.type === "choice" || row.key === "medium") this.choice(knob, box, set);
     else if (kNumbers.includes(row.type)) this.number(knob, box, set);
     else if (kColours.includes(row.type)) this.colour(knob, box, set);
+    else if (row.type === "text") this.text(knob, box);
     else this.list(knob, box, set, kThrees.includes(row.type) ? ["x", "y", "z"] : kLists[row.key]);
     return box;
   }
@@ -155,6 +156,13 @@ export class Knobs {
     const input = make("input", {type: "checkbox", ariaLabel: knob.row.key, onchange: () => set(input.checked)});
     knob.show = (value) => { input.checked = value ?? defaultOf(knob.row); };
     box.append(input);
+  }
+
+  // Files are those of the scene.
+  text(knob, box) {
+    const output = make("output", {ariaLabel: knob.row.key});
+    knob.show = (value) => { output.textContent = value ?? ""; };
+    box.append(output);
   }
 
   choice(knob, box, set) {
