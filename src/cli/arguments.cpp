@@ -248,8 +248,9 @@ Command parse_arguments(int argc, const char* const* argv) {
     throw parse_error(app, failure);
   }
   if (app.get_subcommands().empty())
-    throw usage_error("no command given: render, view, info, import, compare, bench, profile, cache or precompute" +
-                      hint(app));
+    throw usage_error(
+        "no command given: render, view, info, import, compare, bench, profile, cache or precompute" +
+        hint(app));
   if (compare_command.parsed()) return checked(std::move(compare), options);
   if (import_command.parsed()) return checked(std::move(import));
   if (cache_command.parsed()) {

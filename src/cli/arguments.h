@@ -110,8 +110,9 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments,
-                             CacheArguments, PrecomputeArguments, ProfileArguments, ImportArguments, ViewArguments>;
+using Command =
+    std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments, CacheArguments,
+                 PrecomputeArguments, ProfileArguments, ImportArguments, ViewArguments>;
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+#include <vector>
+
 #include "cli/report.h"
 #include "opaline/core/units.h"
 
@@ -63,9 +67,15 @@ void print_text(const Summary& summary) {
                     "surface)",
                     grouped(summary.walks), 100 * summary.walk_noise));
   if (const std::string error = error_text(summary); !error.empty()) row("error", error);
-  for (const LightNoise& noise : summary.noise)
+  constexpr std::size_t kMostLines = 3;
+  std::vector<LightNoise> worst = summary.noise;
+  std::ranges::stable_sort(worst, std::greater(), &LightNoise::relative_error);
+  if (worst.size() > kMostLines) worst.resize(kMostLines);
+  for (const LightNoise& noise : worst)
     row("noise", fmt::format("irradiance from {} on {}: {:.2g} % (standard error at a sample)", noise.light,
                              noise.group, 100 * noise.relative_error));
+  if (summary.noise.size() > worst.size())
+    row("", fmt::format("and less from or on {} more", summary.noise.size() - worst.size()));
   row("rays",
       fmt::format(
           "{} in the shading pass: {:.3g} Mray per CPU second, {:.3g} inside Embree alone (the floor)",

@@ -44,7 +44,8 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"rendr", scene}, "unknown command 'rendr' (did you mean 'render'?)"},
       {{"ifno", scene, "--spp", "4"}, "unknown command 'ifno' (did you mean 'info'?)"},
       {{"draw", scene},
-       "unknown command 'draw' (expected one of render, view, precompute, info, import, compare, bench, profile, "
+       "unknown command 'draw' (expected one of render, view, precompute, info, import, compare, bench, "
+       "profile, "
        "cache)"},
       {{"cache", "lss", out}, "unknown command 'lss' (did you mean 'ls'?)"},
       {{"help", "rendr"}, "unknown command 'rendr' (did you mean 'render'?)"},
