@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -25,8 +26,19 @@
 namespace opaline {
 namespace {
 
+/// A picture in place of all lights, its values as they are.
+std::vector<std::string> environment_overrides(const std::string& picture) {
+  const nlohmann::json light{{"type", "environment"},
+                             {"name", "environment"},
+                             {"file", std::filesystem::absolute(picture).string()}};
+  const auto replace = nlohmann::json::error_handler_t::replace;
+  return {"lights=" + nlohmann::json::array({light}).dump(-1, ' ', false, replace), "surroundings=0",
+          "film.exposure=0"};
+}
+
 std::vector<std::string> overrides_of(const Options& options) {
   std::vector<std::string> overrides;
+  if (!options.environment.empty()) overrides = environment_overrides(options.environment);
   const auto add = [&](const char* key, const std::string& value) {
     if (!value.empty()) overrides.push_back(fmt::format("{}={}", key, value));
   };

@@ -68,6 +68,10 @@ void add_picture_options(CLI::App& app, Options& options) {
   option("--resolution", options.resolution, "film.resolution", "WxH")->check(resolution_check());
   option("--crop", options.crop, "film.crop", "x0,y0,x1,y1")->check(crop_check());
   option("--exposure", options.exposure, "film.exposure", "STOPS");
+  app.add_option("--environment", options.environment,
+                 "a lat-long picture (EXR, HDR) of a room in place of the scene's lights, at exposure 0")
+      ->type_name("FILE")
+      ->group("Picture");
   option("--method", options.method, "settings.method", "NAME");
   option("--evaluator", options.evaluator, "settings.evaluator", "NAME");
   option("--entry-samples", options.entry_samples, "settings.entry_samples", "N");

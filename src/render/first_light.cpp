@@ -13,6 +13,7 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kFewer = 16, kFewest = 256;  // samples
+constexpr int kMostLightSamples = 16;              // to each light with an area
 
 int divided_up(int a, int b) {
   return (a + b - 1) / b;
@@ -135,6 +136,7 @@ Image first_light(const PrecomputeInput& input) {
   Scene scene = input.scene;
   if (scene.settings.method != Method::lambert) scene.settings.method = Method::hierarchical;
   scene.settings.evaluator = EvaluatorKind::dual_tree;
+  scene.settings.light_samples = std::min(scene.settings.light_samples, kMostLightSamples);
   std::vector<Body> groups;
   if (scene.settings.method == Method::hierarchical)
     groups = draft_groups({scene, input.world, input.rays, input.plan, input.monitor});

@@ -74,6 +74,33 @@ TEST(CliAssets, DefaultLightsShowWhiteAsWhite) {
   EXPECT_LT(brightest, .99);
 }
 
+// Claim: `--environment` lights a scene by a picture in place of all its lights, wherever the program is started: what is
+// seen beside the asset is the picture, and its white cube is neither black nor as it was.
+TEST(CliAssets, EnvironmentInPlaceOfLights) {
+  const AssetFolder folder;
+  Image room;
+  room.width = room.full_width = 32;
+  room.height = room.full_height = 16;
+  room.channels = {"R", "G", "B"};
+  room.pixels.resize(32 * 16 * 3);
+  for (std::size_t i = 0; i < room.pixels.size(); ++i) room.pixels[i] = i % 3 == 0 ? .5f : .25f;
+  write_exr(folder.file("scenes/room.exr"), room, false);
+  const Outcome outcome = run_program(
+      {"render", "cubes.glb", "-o", "a.exr", "--environment", "scenes/room.exr", "--resolution", "32x32"},
+      folder.path);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Image image = read_image(folder.file("a.exr"));
+  EXPECT_NEAR(image.pixels[0], .5, 1e-3);
+  EXPECT_NEAR(image.pixels[1], .25, 1e-3);
+  const std::size_t middle = (16 * 32 + 16) * image.channels.size();
+  EXPECT_GT(image.pixels[middle], .01);
+  EXPECT_NE(image.pixels[middle], .5);
+  const Outcome gone =
+      run_program({"render", "cubes.glb", "-o", "a.exr", "--environment", "gone.exr"}, folder.path);
+  EXPECT_EQ(gone.exit_code, 2);
+  EXPECT_TRUE(contains(gone.err, "gone.exr: cannot read")) << gone.err;
+}
+
 // Claim: an asset that is broken, or is none, ends with code 2, its name, and without a scene file. Fails if the file
 // is written before it is checked.
 TEST(CliAssets, BrokenAssetsAreNamed) {
