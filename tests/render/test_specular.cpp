@@ -54,8 +54,7 @@ TEST(Coat, WhiteFurnace) {
 
 // Claim: a highlight is the lobe's value times the light: of a point at 1 / d^2, of a small glowing ball as of a point
 // with its intensity, whichever way directions are drawn. Source: the reflectance function. Tolerance: point 1e-3,
-// ball 3 % at 64 samples a pixel. Fails if: a cosine or the intensity is counted twice, or the weights of both ways do
-// not add up to 1.
+// ball 3 % at 64 samples a pixel. Fails if: a cosine or the intensity is counted twice.
 TEST(Coat, HighlightsOfAPointAndASmallBall) {
   Scene scene = white_ball(.4);
   scene.film.resolution = {1, 1};

@@ -166,7 +166,7 @@ function takeScene(message) {
   document.title = `${message.file} · opaline view`;
   one("file").textContent = message.file;
   if (isFirst) {
-    one("name").value = message.file.replace(/(\.json)?$/, "-edited");
+    one("name").value = message.file.replace(/(\.(json|glb|gltf|obj))?$/i, "-edited");
     setExposure(message.scene.film?.exposure || 0);
   }
   one("undo").disabled = !message.undo;
