@@ -81,15 +81,6 @@ Trials trials_at_samples(const Octree& tree) {
   return trials;
 }
 
-bool is_refined(const SplitKernel& kernel, const Exitance& e, const RgbF& own) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float share = kernel.own_irradiance[c];
-    if (e.near[c] * share * (1 - share) * std::abs(own[c] - e.irradiance[c]) > kRefinedStake * e.exitance[c])
-      return true;
-  }
-  return false;
-}
-
 /// Means over the trials, relative, of a channel.
 struct Differences {
   double wider = 0, finer = 0, expected = 0;
@@ -165,7 +156,7 @@ CloudError tell_cloud_error(const CloudErrorInput& input) {
       input.evaluator == EvaluatorKind::classic ? classic_sums(input, trials) : std::vector<Exitance>{};
   std::vector<bool> refined;
   for (std::size_t i = 0; i < fine.size(); ++i)
-    refined.push_back(is_refined(input.kernel, fine[i], trials.irradiance[i]));
+    refined.push_back(stake_of(input.kernel.own_irradiance, trials.irradiance[i], fine[i]) > kRefinedStake);
   const double creases = kAtCreases * std::min(1.0, rough.creased / rough.trials / kManyCreases);
   for (std::size_t c = 0; c < 3; ++c) {
     double sum = 0, squares = 0;

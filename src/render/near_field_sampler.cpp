@@ -236,15 +236,8 @@ void NearFieldSampler::replace_mixed(const RgbF& own, const RgbF& mean, const Rg
   }
 }
 
-// The share of the exitance that hangs on which of the two irradiances is right.
 float NearFieldSampler::at_stake(const RgbF& own, const Exitance& e) const {
-  float most = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float share = kernel_.own_irradiance[c],
-                part = e.near[c] * share * (1 - share) * std::abs(own[c] - e.irradiance[c]);
-    most = std::max(most, part < e.exitance[c] ? part / e.exitance[c] : part > 0 ? 1.0f : 0.0f);
-  }
-  return most;
+  return stake_of(kernel_.own_irradiance, own, e);
 }
 
 // Sorts the points into sets of neighbours; returns where each set ends.
