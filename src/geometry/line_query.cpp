@@ -91,7 +91,7 @@ std::vector<LineQuery::Triangle> LineQuery::triangles_in(const RayScene& rays, c
   rtcInitPointQueryContext(&context);
   rtcPointQuery(rays.handles_->scene, &query, &context, collect, &search);
   std::ranges::sort(search.found);
-  search.found.erase(std::ranges::unique(search.found).begin(), search.found.end());
+  search.found.erase(std::unique(search.found.begin(), search.found.end()), search.found.end());
   std::vector<Triangle> triangles;
   triangles.reserve(search.found.size());
   for (const std::uint64_t id : search.found) {

@@ -50,6 +50,7 @@ Scene coarse_scene(Scene scene, const CoarseGrid& grid) {
   if (scene.film.crop) scene.film.crop = grid.around(rendered_part(scene.film));
   scene.film.resolution = grid.coarse;
   scene.film.samples_per_pixel = 1;
+  scene.settings.bounces = 0;
   return scene;
 }
 

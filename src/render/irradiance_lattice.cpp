@@ -112,7 +112,7 @@ std::vector<IrradianceLattice::Key> IrradianceLattice::keys_near(std::span<const
     add_around(p, p, chosen.subspan(m, 1));
   }
   std::ranges::sort(keys, {}, &Key::corner);
-  keys.erase(std::ranges::unique(keys).begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   return keys;
 }
 

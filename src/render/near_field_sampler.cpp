@@ -51,6 +51,11 @@ double typical_distance(std::span<const SurfacePoint> points) {
   return double(*middle);
 }
 
+// Alike all over a near field.
+RgbF bounced_at(const PointIrradianceInput& lighting, std::size_t point) {
+  return lighting.bounced.empty() ? RgbF{} : lighting.bounced[point];
+}
+
 }  // namespace
 
 // What refine was given, or is to fill.
@@ -179,7 +184,8 @@ void NearFieldSampler::replace_all(const Found& found, std::span<const std::uint
                                    const NearFieldMeans& means, const RgbF& variance) const {
   for (std::size_t m = 0; m < points.size(); ++m) {
     const std::uint32_t i = points[m];
-    replace_mixed(found.own[i], means.mean(0, m), variance, found.exitance[i], found.noise[i]);
+    replace_mixed(found.own[i], means.mean(0, m) + bounced_at(found.lighting, i), variance, found.exitance[i],
+                  found.noise[i]);
     if (found.held == nullptr) continue;
     found.held->is_found[i] = true;
     for (std::size_t l = 0; l < found.lighting.lights.size(); ++l)
@@ -214,7 +220,7 @@ void NearFieldSampler::add_held(const HeldView::NearField& held, const PointIrra
                                 std::span<const RgbF> own, std::span<const std::uint32_t> points,
                                 std::span<Exitance> exitance, std::span<Rgb> noise) const {
   for (const std::uint32_t i : points) {
-    RgbF mean;
+    RgbF mean = bounced_at(lighting, i);
     for (std::size_t l = 0; l < lighting.lights.size(); ++l)
       mean += RgbF(emission(lighting.lights[l])) * held.transfers[l * exitance.size() + i];
     replace_mixed(own[i], mean, RgbF(1.0f / kTogether), exitance[i], noise[i]);

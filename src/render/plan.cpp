@@ -13,6 +13,7 @@
 #include "opaline/render/render.h"
 #include "opaline/render/surface_caches.h"
 #include "opaline/sampling/sample_surface.h"
+#include "opaline/scene/names.h"
 #include "opaline/volume/volume_diffusion.h"
 #include "opaline/volume/volume_exitance.h"
 #include "render/check_reach.h"
@@ -142,6 +143,16 @@ void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan
         "between them; move the light away or make settings.sample_spacing smaller",
         group.name, light.name, *distance < 1e-3 * group.spacing ? 0 : *distance, group.spacing));
   }
+}
+
+/// error where a method knows no light between things
+void check_bounces(const Scene& scene) {
+  const Method method = scene.settings.method;
+  if (scene.settings.bounces == 0 || method == Method::hierarchical || method == Method::lambert) return;
+  throw Error(
+      ErrorKind::bad_input, scene.file, 0, 0,
+      fmt::format("settings.bounces: 1: with the method {} things are lit by lights alone", name_of(method)),
+      "--set settings.bounces=0, or --method hierarchical");
 }
 
 /// error where a method cannot use a medium's profile
@@ -287,6 +298,9 @@ void list_stages(const Scene& scene, Plan& plan) {
       plan.stages.push_back(evaluation_stage(scene.settings));
     }
   }
+  if (scene.settings.bounces > 0)
+    plan.stages.push_back(
+        "bounces: light between things, once, gathered at the samples and at 64 x 64 places of the picture");
   plan.stages.push_back(shading_stage(scene.settings));
 }
 
@@ -311,6 +325,7 @@ RayBuild cheaper_build(const Scene& scene, const Plan& plan) {
 
 Plan make_plan(const Scene& scene, const World& world) {
   check_reach(scene, world);
+  check_bounces(scene);
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
   std::set<std::string> said;  // by the first of several shapes from one file

@@ -2,8 +2,10 @@
 #include "opaline/render/render.h"
 
 #include <atomic>
+#include <optional>
 
 #include "opaline/core/parallel.h"
+#include "render/bounced_light.h"
 #include "render/tile_renderer.h"
 
 namespace opaline {
@@ -52,7 +54,9 @@ RenderResult render(const RenderInput& input) {
   RenderResult result;
   result.image = empty_image(part, film, layer_names(input.scene.settings.method));
   result.translucent.resize(std::size_t(result.image.width) * std::size_t(result.image.height));
-  const Shader shader(input);
+  Shader shader(input);
+  std::optional<BouncedLight> bounced;
+  if (input.scene.settings.bounces > 0) shader.set_bounced_light(&bounced.emplace(input, shader));
   const TileRenderer renderer(input, shader);
   const std::vector<Rectangle> tiles = tiles_of(film);
   HeldView* const view = view_of(input, tiles.size());

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "opaline/transport/fresnel.h"
+#include "render/bounced_light.h"
 
 namespace opaline {
 namespace {
@@ -68,17 +69,41 @@ std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_
     const SurfaceHits& hits = all_hits[f];
     if (hits.points.empty()) continue;
     const Field& field = *fields_.all[f];
+    std::vector<RgbF> bounced;
+    if (bounced_ != nullptr && pass.is_seen) bounced = bounced_->at(hits, field.eta());
     const PointIrradianceInput lighting{input_.rays,
                                         hits.points,
                                         hits.keys,
                                         lights_,
                                         double(field.eta()),
                                         light_samples,
-                                        point_irradiance_seed(input_.scene.settings)};
+                                        point_irradiance_seed(input_.scene.settings),
+                                        {},
+                                        bounced};
     write(hits, field.at(hits, lighting, pass, held != nullptr ? &held->surfaces[f] : nullptr), batch.rays,
           batch.out);
   }
   return all_hits;
+}
+
+std::vector<RgbF> Shader::diffuse_along(std::span<const TracedRay> rays,
+                                        std::span<const std::uint64_t> keys) const {
+  std::vector<PixelSample> seen(rays.size());
+  shade_diffuse({rays, keys, seen}, 1, {.is_seen = false}, nullptr);
+  std::vector<RgbF> radiance;
+  radiance.reserve(seen.size());
+  for (const PixelSample& sample : seen) radiance.push_back(sample.diffuse);
+  return radiance;
+}
+
+std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedRay> rays,
+                                                         std::span<const std::uint64_t> keys) const {
+  std::vector<PixelSample> lights(rays.size());
+  std::vector<SurfaceHits> hits = collect(rays, keys, lights, nullptr);
+  std::vector<SeenSurfaces> seen;
+  for (std::size_t f = 0; f < hits.size(); ++f)
+    if (!hits[f].points.empty()) seen.push_back({std::move(hits[f]), fields_.all[f]->eta()});
+  return seen;
 }
 
 // Sorts the hits by field; rays that meet a light or nothing are done.

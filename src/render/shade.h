@@ -14,6 +14,8 @@
 
 namespace opaline {
 
+class BouncedLight;
+
 class Shader {
  public:
   /// entry_samplers: of Method::direct, one a group.
@@ -23,6 +25,20 @@ class Shader {
   /// held: how lights reach what the rays met, added to, or null. Returns the number of exitance queries.
   std::size_t shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                     std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held = nullptr) const;
+
+  /// What surfaces send back along rays that met them, diffusely, W/(mm^2 sr); by a ray to each light.
+  std::vector<RgbF> diffuse_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys) const;
+
+  /// Hits of rays that met surfaces, and the boundary that light enters through there; 0: none.
+  struct SeenSurfaces {
+    SurfaceHits hits;
+    float eta;
+  };
+  std::vector<SeenSurfaces> surfaces_along(std::span<const TracedRay> rays,
+                                           std::span<const std::uint64_t> keys) const;
+
+  /// From now on adds it to the light at hits; null: none.
+  void set_bounced_light(const BouncedLight* bounced) { bounced_ = bounced; }
 
   /// False where rays that hit nothing see nothing either.
   bool has_visible_lights() const { return !emitters_.empty() || !surroundings_.empty(); }
@@ -61,6 +77,7 @@ class Shader {
   std::vector<Appearance> appearances_;  // one a mesh
   Fields fields_;
   int light_samples_ = 1;  // a camera ray
+  const BouncedLight* bounced_ = nullptr;
 };
 
 }  // namespace opaline

@@ -75,7 +75,7 @@ std::optional<SurfaceCache> make_group_cache(const PrecomputeInput& input, const
   const Settings& settings = input.scene.settings;
   if (input.monitor != nullptr) input.monitor->begin("exitance", 0);
   std::optional<OwnLight> own_light;
-  if (can_hold_own_light(input.world, group)) own_light.emplace(input, group);
+  if (can_hold_own_light(input.scene, input.world, group)) own_light.emplace(input, group);
   return make_surface_cache(
       {.world = input.world,
        .meshes = group.plan.meshes,

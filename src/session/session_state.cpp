@@ -187,9 +187,16 @@ void Session::State::prepare(Monitor* monitor) {
   each("octree", [&](Body& body, BodyKeys& known, std::size_t) {
     update_tree(body, known, lights);
     update_kernel(body, known);
+  });
+  if (scene_.settings.bounces > 0) {
+    const Stopwatch watch;
+    update_bounces(input, lights);
+    costs_.push_back(watch.cost("bounces"));
+  }
+  for (Body& body : bodies_) {
     if (body.kernel.far_side != nullptr && body.octree.normal_cones.empty()) bound_normals(body.octree);
     body.cloud = cloud_error(body, *world_, scene_);
-  });
+  }
   const std::vector<std::size_t> most = most_cache_places(input, bodies_, pictures_);
   each("exitance",
        [&](Body& body, BodyKeys& known, std::size_t g) { update_exitance(body, known, input, most[g]); });
@@ -226,7 +233,7 @@ void Session::State::ready_light_mix(Monitor* monitor) {
 
 /// After prepare.
 bool Session::State::can_mix() const {
-  return mixes_lights_ && !has_cells(scene_.settings.method) &&
+  return mixes_lights_ && !has_cells(scene_.settings.method) && scene_.settings.bounces == 0 &&
          std::ranges::none_of(bodies_, [](const Body& g) { return g.surface_cache.has_value(); });
 }
 

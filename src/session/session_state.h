@@ -42,6 +42,7 @@ struct Session::State {
   void update_lights(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
                      const std::vector<Light>& lights);
   void update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights);
+  void update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights);
   void find_walked_profiles(const Body& body);
   void update_kernel(Body& body, BodyKeys& known);
   void update_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t most_places);

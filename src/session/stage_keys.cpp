@@ -69,6 +69,18 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
   return key.key();
 }
 
+StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
+                      std::span<const Light> lights) {
+  const Settings& settings = input.scene.settings;
+  KeyBuilder key("surfaces in their light", 1);
+  key.add(settings.seed).add(settings.tolerance).add(settings.evaluator).add(settings.max_solid_angle);
+  for (const MeshKeys& mesh : meshes) key.add(mesh.all);
+  for (const Shape& shape : input.scene.shapes)
+    if (!shape.medium) key.add(shape.reflectance);
+  for (const Light& light : lights) key.add(view_light_key(light)).add(emission(light));
+  return key.key();
+}
+
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes) {
   const Camera& camera = input.scene.camera;
   const Film& film = input.scene.film;

@@ -249,8 +249,10 @@ void Session::State::update_diffusion(Body& body, BodyKeys& known, const Precomp
 
 void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights) {
   const StageKey key = octree_key(known.samples_key, known.light_keys, lights);
-  if (key == known.tree_key) return decide(body, "tree kept");
-  known.tree_key = {};
+  const bool may_hold_bounces = scene_.settings.bounces > 0 && known.tree_key != StageKey{};
+  if (key == known.lights_key && (key == known.tree_key || may_hold_bounces))
+    return decide(body, "tree kept");
+  known.tree_key = known.lights_key = {};
   body.irradiance = combine_lights(body.transfers, lights);
   std::optional<Octree> found;
   if (cache_ != nullptr) found = cache_->find_octree(key, body.surface);
@@ -262,8 +264,38 @@ void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<
     work_.nodes_built += body.octree.nodes.size();
     if (cache_ != nullptr) cache_->keep_octree(key, body.octree);
   }
-  known.tree_key = key;
+  known.tree_key = known.lights_key = key;
   decide(body, found ? "tree from the cache" : "tree built");
+}
+
+// Trees with the light that bounces in place of those without it. What bounces depends on all bodies.
+void Session::State::update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights) {
+  KeyBuilder all("bounces", 1);
+  all.add(surfaces_key(input, mesh_keys_, lights));
+  for (const BodyKeys& known : keys_) all.add(known.lights_key).add(known.kernel_key);
+  const StageKey bounces = all.key();
+  const auto key_of = [&](const BodyKeys& known) {
+    return KeyBuilder("octree with bounces", 1).add(bounces).add(known.lights_key).key();
+  };
+  if (std::ranges::all_of(keys_, [&](const BodyKeys& known) { return known.tree_key == key_of(known); }))
+    return;
+  const auto build = [&](std::size_t b, std::span<const RgbF> irradiance, const StageKey& key) {
+    if (keys_[b].tree_key == key) return;
+    keys_[b].tree_key = {};
+    bodies_[b].octree = gather_flux(bodies_[b].surface.samples, irradiance);
+    work_.nodes_built += bodies_[b].octree.nodes.size();
+    keys_[b].tree_key = key;
+  };
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    bodies_[b].irradiance = combine_lights(bodies_[b].transfers, lights);
+    build(b, bodies_[b].irradiance, keys_[b].lights_key);
+  }
+  const std::vector<std::vector<RgbF>> bounced = bounced_at_samples(input, bodies_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    for (std::size_t i = 0; i < bounced[b].size(); ++i) bodies_[b].irradiance[i] += bounced[b][i];
+    build(b, bodies_[b].irradiance, key_of(keys_[b]));
+    decide(bodies_[b], "light of other surfaces gathered");
+  }
 }
 
 /// The shapes of tabulated profiles: those in the cache need not be walked, and what is walked is kept there.

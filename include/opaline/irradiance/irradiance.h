@@ -57,6 +57,8 @@ struct PointIrradianceInput {
   /// If not empty: one a point, to which the estimated variance of its irradiance is added, per channel.
   /// Double: the square of a brightness leaves a float's range.
   std::span<Rgb> variance = {};
+  /// If not empty: one a point, what other surfaces send there. Known already: irradiance_at does not add it.
+  std::span<const RgbF> bounced = {};
 };
 
 /// What reaches points from one light per unit emission.

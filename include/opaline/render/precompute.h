@@ -75,6 +75,10 @@ VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span
 /// The cells of a body with its samples, for the diffusion equation inside of it; media as for walks.
 VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body);
 
+/// Irradiance at each body's samples from surfaces, translucent ones as their trees have it and opaque ones as lights
+/// alone light them; one list a body.
+std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies);
+
 /// irradiance: one a sample.
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);
 /// Settings::near_irradiance, but the samples' where all light comes from all around: rays at each point are as noisy as

@@ -51,7 +51,8 @@ struct RenderResult {
 /// `hierarchical`: translucent surfaces send out M_o Ft(omega_o) / (pi (1 - F_bar)) with M_o from the trees;
 /// `lambert`: the same with M_o = total diffuse reflectance x E at the point itself, the limit of a vanishing
 /// mean free path and the floor of all costs. Both add the mirror image of area lights and surroundings,
-/// weight F. Opaque surfaces are Lambertian and lit directly. Light does not bounce between objects.
+/// weight F. Opaque surfaces are Lambertian.
+/// Lights light all of them, and with settings.bounces surfaces light each other, once.
 RenderResult render(const RenderInput& input);
 
 /// Mean over the lit pixels of what the `error` layer expects of |error| / max(diffuse, 1e-3 of its p99), the

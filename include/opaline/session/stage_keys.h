@@ -45,6 +45,11 @@ StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers
 /// Of the shape of a profile that is walked, in mean free paths.
 StageKey walked_profile_key(double absorbed, double eta);
 
+/// Of all that lights another surface but for what bodies hold: meshes, opaque surfaces, lights.
+/// in    lights: recentred
+StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
+                      std::span<const Light> lights);
+
 /// Of what camera rays meet: the camera, the film, all meshes, how the structure was built that rays walk.
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes);
 

@@ -17,6 +17,7 @@ namespace opaline {
 struct Pass {
   std::uint64_t index = 0;
   int entry_samples = 0;  ///< of each camera ray
+  bool is_seen = true;    ///< false: by rays that spread light; no near fields are looked into for them
 };
 
 /// The hits of a batch of camera rays that one field answers for, one entry a hit in each array.
@@ -49,7 +50,7 @@ class Field {
   virtual bool asks_samples() const { return false; }
 };
 
-/// Irradiance at the hits, by shadow rays unless it is held.
+/// Irradiance at the hits, from lights by shadow rays unless it is held, and from other surfaces.
 std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, HeldView::Surface* held);
 
 }  // namespace opaline

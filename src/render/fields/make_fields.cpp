@@ -75,12 +75,22 @@ bool has_area_lights(const Scene& scene) {
   return !std::ranges::all_of(scene.lights, is_delta);
 }
 
-std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, HeldView::Surface* held) {
+namespace {
+
+std::vector<RgbF> from_lights(const PointIrradianceInput& lighting, HeldView::Surface* held) {
   if (held == nullptr) return irradiance_at(lighting);
   held->lights.resize(lighting.lights.size());
   for (std::size_t l = 0; l < held->lights.size(); ++l)
     if (held->lights[l].weights.empty()) held->lights[l] = transfers_at(lighting, l);
   return combine_lights(held->lights, lighting);
+}
+
+}  // namespace
+
+std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, HeldView::Surface* held) {
+  std::vector<RgbF> irradiance = from_lights(lighting, held);
+  for (std::size_t i = 0; i < lighting.bounced.size(); ++i) irradiance[i] += lighting.bounced[i];
+  return irradiance;
 }
 
 }  // namespace opaline

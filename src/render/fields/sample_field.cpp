@@ -33,10 +33,11 @@ SampleField::SampleField(const RenderInput& input, const Body& group)
   if (needs_irradiance(group)) near_field_.emplace(group);
 }
 
-LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass&,
+LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                              HeldView::Surface* held) const {
   LeavingLight light;
-  if (near_field_) {
+  const bool looks_near = near_field_ && pass.is_seen;
+  if (looks_near) {
     light.noise.resize(hits.points.size());
     if (is_noisy_) lighting.variance = light.noise;
     light.irradiance = irradiance_at_hits(lighting, held);
@@ -45,13 +46,13 @@ LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput light
   std::vector<Exitance> exitance =
       group_.surface_cache ? looked_up(hits, light.irradiance)
                            : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
-  if (near_field_) refine_near_field(lighting, exitance, light, held);
+  if (looks_near) refine_near_field(lighting, exitance, light, held);
   for (std::vector<RgbF>* values : {&light.exitance, &light.error, &light.irradiance})
     values->reserve(exitance.size());
   for (const Exitance& e : exitance) {
     light.exitance.push_back(e.exitance);
     light.error.push_back(e.error + e.exitance * creases_);
-    if (!near_field_) light.irradiance.push_back(e.irradiance);
+    if (!looks_near) light.irradiance.push_back(e.irradiance);
   }
   return light;
 }

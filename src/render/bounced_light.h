@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that surfaces send to other surfaces.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/camera_rays.h"
+#include "render/shade.h"
+
+namespace opaline {
+
+/// What points gather, by rays over the hemisphere, from surfaces that are lit by the scene's lights.
+struct GatherInput {
+  const RayScene& rays;
+  const Shader& shader;
+  std::span<const SurfacePoint> points;
+  std::span<const std::uint64_t> keys;  ///< one a point: chooses its random numbers
+  float eta = 0;                        ///< of the boundary that light enters through; 0: none
+  int rays_each = 64;
+  std::uint64_t seed = 0;
+};
+
+/// Irradiance, one a point, W/mm^2; of what comes through the boundary where there is one.
+std::vector<RgbF> gathered_irradiance(const GatherInput& input);
+
+/// The same at the hits of a picture: gathered at what the camera sees at 64 places along the picture's longer
+/// side, and interpolated between places on the same plane. Hits that no such place stands for gather for themselves.
+/// from  Ward, Rubinstein & Clear 1988
+class BouncedLight {
+ public:
+  /// shader: without bounced light; both must outlive it
+  BouncedLight(const RenderInput& input, const Shader& shader);
+
+  /// One a hit, W/mm^2.
+  std::vector<RgbF> at(const SurfaceHits& hits, float eta) const;
+
+ private:
+  struct Place {
+    bool is_there = false;
+    SurfacePoint point;
+    RgbF irradiance;
+    float eta = 0;
+    float spacing = 0;  // to the next ones, across the view
+  };
+  void gather_places(std::span<const TracedRay> rays);
+  bool interpolate(const SurfacePoint& point, float eta, RgbF& irradiance) const;
+
+  const RenderInput& input_;
+  const Shader& shader_;
+  CameraRays camera_;
+  int step_;  // pixels from one place to the next
+  int first_column_, first_row_, columns_, rows_;
+  std::vector<Place> places_;  // row after row
+};
+
+}  // namespace opaline

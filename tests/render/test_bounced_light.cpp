@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that surfaces send to others (settings.bounces), against closed forms.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "opaline/core/error.h"
+#include "support/scenes.h"
+
+namespace opaline::test {
+namespace {
+
+Shape opaque(const std::string& name, ShapeSource source, const Rgb& reflectance) {
+  Shape shape;
+  shape.name = name;
+  shape.source = std::move(source);
+  shape.reflectance = reflectance;
+  return shape;
+}
+
+Scene bouncing_scene() {
+  Scene scene;
+  scene.camera.field_of_view = 40;
+  scene.film.resolution = {32, 32};
+  scene.film.half = false;
+  scene.settings.bounces = 1;
+  return scene;
+}
+
+// A red wall in the plane x = 0, lit along -x, beside a floor that its light alone reaches.
+Scene red_wall(double height, double half_width) {
+  Scene scene = bouncing_scene();
+  scene.shapes = {
+      opaque("wall", QuadShape{{0, 0, half_width}, {0, 0, -2 * half_width}, {0, height, 0}}, {.8, .1, .1}),
+      opaque("floor", QuadShape{{0, 0, 200}, {200, 0, 0}, {0, 0, -400}}, Rgb(.5))};
+  scene.lights = {{"sun", DirectionalLight{{-1, 0, 0}, Rgb(2)}}};
+  scene.camera.position = {40, 60, 0};
+  scene.camera.look_at = {40, 0, 0};
+  scene.camera.up = {0, 0, -1};
+  return scene;
+}
+
+// From a small piece of the floor to a wall of height h that reaches from z = -w to w: at distance d from it, and at z.
+// Two rectangles, each with a corner above the piece.
+double form_factor(double d, double z, double w, double h) {
+  const double far = std::sqrt(h * h + d * d);
+  const auto part = [&](double b) { return std::atan(b / d) - d / far * std::atan(b / far); };
+  return (part(w - z) + part(w + z)) / (2 * kPi);
+}
+
+// Claim: what a lit wall sends to a floor in front of it is E_wall times reflectance times the form factor, in the
+// wall's colour. Source: form factor of a differential element and a perpendicular rectangle (Howell, C-4). Tolerance:
+// 3 % over a column of the picture, whose places gather by 192 rays each; measured: 1.3 %. Fails if: rays are not
+// weighted by the cosine, or pi is missing.
+TEST(BouncedLight, OfAWallOnAFloor) {
+  const double height = 40, half_width = 60;
+  const Scene scene = red_wall(height, half_width);
+  const Image image = Prepared(scene).picture();
+  for (const int column : {4, 8, 16, 24, 31}) {
+    double sent = 0, expected = 0;
+    for (int row = 0; row < 32; ++row) {
+      const double x = channel(image, column, row, "P.X"), z = channel(image, column, row, "P.Z");
+      expected += 2 * .8 * form_factor(x, z, half_width, height);
+      sent += double(channel(image, column, row, "diffuse.R")) * kPi / .5;
+      EXPECT_NEAR(channel(image, column, row, "diffuse.G") * 8, channel(image, column, row, "diffuse.R"),
+                  1e-5);
+    }
+    EXPECT_NEAR(sent, expected, .03 * expected) << column;
+  }
+}
+
+// Claim: inside a sphere with a light in its middle a single bounce adds reflectance times the first light, everywhere:
+// the picture is reflectance / pi E (1 + reflectance). Source: the integrating sphere. Tolerance: 1 % over the picture.
+// Fails if: the light that bounces is left out or counted twice.
+TEST(BouncedLight, InAnIntegratingSphere) {
+  Scene scene = bouncing_scene();
+  scene.shapes = {opaque("sphere", SphereShape{{}, 50}, Rgb(.6))};
+  scene.lights = {point_light({}, Rgb(2500))};
+  scene.camera.position = {0, 0, 20};
+  scene.camera.look_at = {};
+  const Image image = Prepared(scene).picture();
+  double sum = 0;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) sum += double(channel(image, x, y, "diffuse.G")) / 1024;
+  EXPECT_NEAR(sum, .6 / kPi * 1.6, .01 * .6 / kPi * 1.6);
+}
+
+// Claim: a marble ball in a large room whose walls all send the same light looks as in surroundings of that radiance.
+// So what enters at samples goes through the boundary, and the share that the point's own irradiance has (mixed near
+// fields) is kept. Source: the same light field. Tolerance: 1.5 % of the mean. Fails if: samples or hits miss the light
+// that bounces, or Ft is left out.
+TEST(BouncedLight, OfWallsIsThatOfSurroundings) {
+  const double room = 1000, reflectance = .5, intensity = 4e6;
+  Scene scene = bouncing_scene();
+  scene.media = {marble()};
+  scene.shapes = {translucent("ball", SphereShape{{500, 0, 0}, 10}),
+                  opaque("room", SphereShape{{}, room}, Rgb(reflectance))};
+  scene.lights = {point_light({}, Rgb(intensity))};
+  scene.camera.position = {480, 0, 30};
+  scene.camera.look_at = {500, 0, 0};
+  scene.settings.samples = 3000;
+  const auto mean_of_ball = [](const Image& image) {
+    double sum = 0, count = 0;
+    for (int y = 8; y < 24; ++y)
+      for (int x = 8; x < 24; ++x) {
+        sum += double(channel(image, x, y, "diffuse.G"));
+        ++count;
+      }
+    return sum / count;
+  };
+  const double bounced = mean_of_ball(Prepared(scene).picture());
+  scene.settings.bounces = 0;
+  const double dark = mean_of_ball(Prepared(scene).picture());
+  scene.shapes.pop_back();
+  scene.lights.push_back({"walls", Surroundings{Rgb(reflectance / kPi * intensity / (room * room))}});
+  scene.settings.light_samples = 256;
+  const double surrounded = mean_of_ball(Prepared(scene).picture());
+  EXPECT_GT(surrounded, 1.1 * dark);
+  EXPECT_NEAR(bounced, surrounded, .015 * surrounded);
+}
+
+Scene ball_beside_wall() {
+  Scene scene = red_wall(40, 60);
+  scene.media = {marble()};
+  scene.shapes.push_back(translucent("ball", SphereShape{{20, 10, 0}, 10}));
+  scene.settings.samples = 2000;
+  return scene;
+}
+
+bool same_pixels(const Image& a, const Image& b) {
+  return a.pixels == b.pixels;
+}
+
+// Claim: a session that goes from one colour of a wall to another, to no bounces and back gives the pictures of new
+// sessions, and any number of threads the same. Source: Session. Fails if: what bounces is kept though a wall's colour
+// changed, or trees keep it when nothing bounces.
+TEST(BouncedLight, FollowsEdits) {
+  Scene scene = ball_beside_wall();
+  Session session;
+  const auto is_as_new = [&] {
+    session.edit(scene);
+    const Image edited = session.render().image;
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    return same_pixels(edited, Prepared(scene).picture());
+  };
+  EXPECT_TRUE(is_as_new());
+  scene.shapes[0].reflectance = {.1, .8, .1};
+  EXPECT_TRUE(is_as_new());
+  scene.settings.bounces = 0;
+  EXPECT_TRUE(is_as_new());
+  scene.settings.bounces = 1;
+  EXPECT_TRUE(is_as_new());
+  scene.camera.position.x += 5;
+  EXPECT_TRUE(is_as_new());
+}
+
+// Claim: methods that know no light between things refuse the setting by name. Fails if: they ignore it.
+TEST(BouncedLight, IsRefusedWhereItIsNotKnown) {
+  Scene scene = ball_beside_wall();
+  for (const Method method : {Method::direct, Method::volume, Method::volume_diffusion}) {
+    scene.settings.method = method;
+    Session session;
+    EXPECT_THROW(session.edit(scene), Error);
+  }
+}
+
+}  // namespace
+}  // namespace opaline::test
