@@ -4,6 +4,7 @@
 #include <embree3/rtcore_config.h>
 
 #include "opaline/lights/light.h"
+#include "opaline/render/surface_textures.h"
 
 namespace opaline {
 namespace {
@@ -91,6 +92,8 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
   for (const Shape& shape : input.scene.shapes) {
     key.add(shape.medium.has_value());
     if (shape.medium) key.add(input.scene.media[*shape.medium].eta);
+    if (shape.gloss) key.add(shape.gloss->eta);
+    if (shape.normal_map) add_to_key(key, *shape.normal_map);
   }
   for (const GroupPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));
   return key.key();
@@ -127,9 +130,10 @@ std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& sample
 }
 
 StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
-                    std::span<const Light> lights) {
+                    std::span<const Light> lights, const StageKey& tint) {
   KeyBuilder key("octree", kOctreeVersion);
   key.add(samples);
+  if (tint != StageKey{}) key.add(tint);
   for (std::size_t l = 0; l < lights.size(); ++l) key.add(transfers[l]).add(emission(lights[l]));
   return key.key();
 }

@@ -38,6 +38,7 @@ struct Body {
   VolumeSums walks = {};                           ///< of Method::volume
   std::optional<VolumeExitance> volume = {};       ///< what they amount to, or volume_diffusion
   std::shared_ptr<const CellFit> volume_fit = {};  ///< the same at any point
+  std::vector<RgbF> entering = {};                 ///< entering_tints, one a sample; empty: none
 };
 
 struct PrecomputeInput {
@@ -74,6 +75,10 @@ VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span
 
 /// The cells of a body with its samples, for the diffusion equation inside of it; media as for walks.
 VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body);
+
+/// The light that enters at a body's samples, tinted.
+/// in    lights: those of its transfers
+std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights);
 
 /// irradiance: one a sample.
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);
