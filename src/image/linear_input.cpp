@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <string_view>
 
 #include "image/picture_file.h"
 #include "opaline/core/error.h"
@@ -80,12 +81,15 @@ bool LinearInput::open(const std::string& name, OIIO::ImageSpec& spec) {
     return false;
   }
   take_spec();
+  const std::string_view format = opened_.input->format_name();
+  is_sequential_ = format == "png" || format == "jpeg" || format == "hdr";
   spec = m_spec;
   return true;
 }
 
 void LinearInput::take_spec() {
   m_spec = opened_.input->spec();
+  native_ = m_spec.format;
   m_spec.channelformats.clear();
   if (to_linear_) m_spec.set_format(OIIO::TypeHalf);
 }
@@ -93,21 +97,33 @@ void LinearInput::take_spec() {
 bool LinearInput::close() {
   const bool closed = opened_.input == nullptr || opened_.input->close();
   opened_ = {};
+  whole_ = {};
   return closed;
 }
 
 bool LinearInput::seek_subimage(int subimage, int miplevel) {
+  if (is_sequential_) return subimage == 0 && miplevel == 0;
   if (!opened_.input->seek_subimage(subimage, miplevel)) return false;
   take_spec();
   return true;
 }
 
-bool LinearInput::take(bool read, std::size_t pixels, void* data) {
-  if (!read) {
-    errorfmt("{}", complaint_of(opened_.input.get()));
-    return false;
+bool LinearInput::complain() {
+  errorfmt("{}", complaint_of(opened_.input.get()));
+  return false;
+}
+
+bool LinearInput::decode() {
+  whole_.resize(std::size_t(m_spec.image_pixels()) * std::size_t(m_spec.nchannels) * native_.size());
+  if (!opened_.input->read_image(0, 0, 0, m_spec.nchannels, native_, whole_.data())) {
+    whole_ = {};
+    return complain();
   }
-  if (!to_linear_) return true;
+  opened_ = {};
+  return true;
+}
+
+bool LinearInput::make_linear(std::size_t pixels, void* data) {
   const auto channels = std::size_t(m_spec.nchannels);
   for (std::size_t i = 0; i < pixels * channels; ++i)
     if (int(i % channels) != m_spec.alpha_channel) values_[i] = OIIO::sRGB_to_linear(values_[i]);
@@ -121,22 +137,34 @@ bool LinearInput::read_native_scanline(int subimage, int miplevel, int y, int z,
 
 bool LinearInput::read_native_scanlines(int subimage, int miplevel, int y_begin, int y_end, int z,
                                         void* data) {
+  const std::lock_guard lock(mutex_);
+  const std::size_t row = std::size_t(m_spec.width) * std::size_t(m_spec.nchannels);
   const std::size_t pixels = std::size_t(m_spec.width) * std::size_t(y_end - y_begin);
-  if (to_linear_) values_.resize(pixels * std::size_t(m_spec.nchannels));
-  return take(opened_.input->read_scanlines(subimage, miplevel, y_begin, y_end, z, 0, m_spec.nchannels,
-                                            to_linear_ ? OIIO::TypeFloat : m_spec.format,
-                                            to_linear_ ? static_cast<void*>(values_.data()) : data),
-              pixels, data);
+  const auto values = pixels * std::size_t(m_spec.nchannels);
+  if (to_linear_) values_.resize(values);
+  void* const target = to_linear_ ? static_cast<void*>(values_.data()) : data;
+  const OIIO::TypeDesc type = to_linear_ ? OIIO::TypeFloat : m_spec.format;
+  if (is_sequential_) {
+    if (whole_.empty() && !decode()) return false;
+    const unsigned char* const first = whole_.data() + std::size_t(y_begin - m_spec.y) * row * native_.size();
+    OIIO::convert_pixel_values(native_, first, type, target, int(values));
+  } else if (!opened_.input->read_scanlines(subimage, miplevel, y_begin, y_end, z, 0, m_spec.nchannels, type,
+                                            target)) {
+    return complain();
+  }
+  return !to_linear_ || make_linear(pixels, data);
 }
 
 bool LinearInput::read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) {
+  const std::lock_guard lock(mutex_);
   const auto pixels = std::size_t(m_spec.tile_pixels());
   if (to_linear_) values_.resize(pixels * std::size_t(m_spec.nchannels));
-  return take(opened_.input->read_tiles(subimage, miplevel, x, x + m_spec.tile_width, y,
-                                        y + m_spec.tile_height, z, z + std::max(1, m_spec.tile_depth), 0,
-                                        m_spec.nchannels, to_linear_ ? OIIO::TypeFloat : m_spec.format,
-                                        to_linear_ ? static_cast<void*>(values_.data()) : data),
-              pixels, data);
+  if (!opened_.input->read_tiles(subimage, miplevel, x, x + m_spec.tile_width, y, y + m_spec.tile_height, z,
+                                 z + std::max(1, m_spec.tile_depth), 0, m_spec.nchannels,
+                                 to_linear_ ? OIIO::TypeFloat : m_spec.format,
+                                 to_linear_ ? static_cast<void*>(values_.data()) : data))
+    return complain();
+  return !to_linear_ || make_linear(pixels, data);
 }
 
 }  // namespace opaline

@@ -7,6 +7,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@
 namespace opaline {
 
 /// Decodes another input. sRGB becomes linear halves, whose rounding is below that of 8 bits; alpha stays as it is.
+/// Formats that are read from their beginning alone are decoded at once and held as they are: the cache asks for rows in
+/// any order, and OpenImageIO 2.4 goes back by opening the file anew, which a picture in memory does not survive.
 class LinearInput : public OIIO::ImageInput {
  public:
   /// What inputs of this name, of none of a file, read.
@@ -37,8 +40,8 @@ class LinearInput : public OIIO::ImageInput {
   }
   bool open(const std::string& name, OIIO::ImageSpec& spec) override;
   bool close() override;
-  int current_subimage() const override { return opened_.input->current_subimage(); }
-  int current_miplevel() const override { return opened_.input->current_miplevel(); }
+  int current_subimage() const override { return is_sequential_ ? 0 : opened_.input->current_subimage(); }
+  int current_miplevel() const override { return is_sequential_ ? 0 : opened_.input->current_miplevel(); }
   bool seek_subimage(int subimage, int miplevel) override;
   bool read_native_scanline(int subimage, int miplevel, int y, int z, void* data) override;
   bool read_native_scanlines(int subimage, int miplevel, int y_begin, int y_end, int z, void* data) override;
@@ -46,11 +49,17 @@ class LinearInput : public OIIO::ImageInput {
 
  private:
   void take_spec();
-  bool take(bool read, std::size_t pixels, void* data);
+  bool decode();
+  bool complain();
+  /// From values_ to what the cache gets.
+  bool make_linear(std::size_t pixels, void* data);
 
   std::shared_ptr<const PictureSource> source_;
-  bool to_linear_ = false;
+  bool to_linear_ = false, is_sequential_ = false;
   Opened opened_;
+  OIIO::TypeDesc native_;  // of the values in the file
+  std::mutex mutex_;       // of all below
+  std::vector<unsigned char> whole_;
   std::vector<float> values_;
 };
 

@@ -156,7 +156,12 @@ void Shader::add_highlights(const GlossyHits& glossy) const {
 void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
   struct Drawn {
     float weight;
-    RgbF color;  // times the weight where colours have a say
+    RgbF color;  // besides
+    std::uint32_t hit;
+  };
+  struct Met {
+    float weight;  // of all rays that met surfaces
+    RgbF share;    // these, each in its colour
     std::uint32_t hit;
   };
   std::vector<TracedRay> rays;
@@ -177,7 +182,7 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
   input_.rays.intersect(rays);
 
   // Of the surfaces that a hit's rays meet, one stands for all.
-  std::vector<Drawn> met;
+  std::vector<Met> met;
   Cones cones{kGlossySpread, {}};
   std::vector<TracedRay> met_rays;
   std::vector<std::uint64_t> met_keys;
@@ -204,12 +209,12 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
       if (!textures_.empty()) cones.widths.push_back(width_at(glossy.batch, glossy.hits.rays[i]));
     }
     met.back().weight += weight;
-    met.back().color += color * weight;
+    met.back().share += color * weight;
     const double chance = unit_double(hash_bits(glossy.seed + r, glossy.hits.keys[i]));
     if (chance * double(met.back().weight) < double(weight)) met_rays.back() = rays[r];
   }
   const std::vector<PixelSample> seen = seen_along(met_rays, met_keys, cones, pass);
-  for (std::size_t m = 0; m < met.size(); ++m) glossy.specular(met[m].hit) += seen[m].diffuse * met[m].color;
+  for (std::size_t m = 0; m < met.size(); ++m) glossy.specular(met[m].hit) += seen[m].diffuse * met[m].share;
 }
 
 }  // namespace opaline

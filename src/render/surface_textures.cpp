@@ -97,8 +97,8 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
     own.has_tint = own.tint != nullptr || own.factor != Rgb(1);
     own.needs_uv = needs_uvs(scene, shape);
     is_empty_ = is_empty_ && !own.has_tint && !own.needs_uv;
-    for (const Texture* texture : {own.tint, own.roughness, own.metalness, own.normals})
-      if (texture != nullptr) check_tiles(*texture, world.meshes[m], shape.name);
+    for (const Texture* texture : textures_of(scene, shape))
+      check_tiles(*texture, world.meshes[m], shape.name);
   }
 }
 

@@ -76,12 +76,25 @@ Texture read_normal_map(const Value& value) {
   return read_texture(value, false);
 }
 
+std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) {
+  std::vector<const Texture*> textures;
+  const auto add = [&](const std::optional<Texture>& texture) {
+    if (texture) textures.push_back(&*texture);
+  };
+  add(shape.reflectance_texture);
+  add(shape.normal_map);
+  if (shape.gloss) {
+    add(shape.gloss->metalness_texture);
+    add(shape.gloss->roughness_texture);
+  }
+  if (!shape.medium) return textures;
+  add(scene.media[*shape.medium].tint_texture);
+  add(scene.media[*shape.medium].roughness_texture);
+  return textures;
+}
+
 bool needs_uvs(const Scene& scene, const Shape& shape) {
-  if (shape.reflectance_texture || shape.normal_map) return true;
-  if (shape.gloss && (shape.gloss->metalness_texture || shape.gloss->roughness_texture)) return true;
-  if (!shape.medium) return false;
-  const Medium& medium = scene.media[*shape.medium];
-  return medium.tint_texture || medium.roughness_texture;
+  return !textures_of(scene, shape).empty();
 }
 
 }  // namespace opaline

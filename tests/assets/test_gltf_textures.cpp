@@ -64,6 +64,20 @@ TEST(GltfTextures, AreFoundWhereverTheyAre) {
   }
 }
 
+// Claim: a picture within an asset is looked up in any order. Fails if going back opens it anew as a file.
+TEST(GltfTextures, AreLookedUpInAnyOrder) {
+  const ScratchFolder folder;
+  test::put_png(folder.file("p.png"), 8, 1024, [](int, int y) { return test::Bytes{y / 4, 0, 255}; });
+  Asset asset = textured_triangle(colored(), {});
+  asset.json["images"][0] = embedded(asset, bytes_of(folder.file("p.png")));
+  put_bytes(folder.file("a.glb"), asset.glb());
+  const auto texture = TextureFile::open(folder.file("a.glb#image/0"), ColorSpace::linear);
+  for (int i = 0; i < 64; ++i) {
+    const int row = (i * 37 + 63) % 64 * 16 + 2;
+    EXPECT_NEAR(double(texture->at({.5f, (float(row) + .5f) / 1024, {}, {}})[0]) * 255, row / 4, .01) << row;
+  }
+}
+
 // Claim: v is turned upwards, once: the corner that glTF calls (0, 1) is at the picture's lower edge. Fails if it is at
 // its upper one.
 TEST(GltfTextures, CountUpwards) {

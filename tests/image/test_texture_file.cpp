@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -60,6 +61,25 @@ TEST(TextureFile, KnowsColourSpaces) {
               2e-4);
   EXPECT_NEAR(double(TextureFile::open(bytes, ColorSpace::linear)->at(at(.2, .5))[0]), 128 / 255., 2e-4);
   EXPECT_EQ(TextureFile::open(floats, ColorSpace::linear)->at(at(.2, .5))[2], 3);
+}
+
+// Claim: JPEG and TIFF are read, too. Tolerance: 2 of 255, JPEG's. Fails if a format's first bytes are not known.
+TEST(TextureFile, ReadsJpegAndTiff) {
+  const ScratchFolder folder;
+  for (const char* name : {"p.jpg", "p.tif"}) {
+    const std::string path = folder.file(name);
+    const auto output = OIIO::ImageOutput::create(path);
+    std::vector<unsigned char> bytes;
+    for (int i = 0; i < 64 * 64; ++i)
+      for (const int value : {i % 64 < 32 ? 40 : 200, 100, 50})
+        bytes.push_back(static_cast<unsigned char>(value));
+    ASSERT_TRUE(output->open(path, OIIO::ImageSpec(64, 64, 3, OIIO::TypeUInt8)));
+    ASSERT_TRUE(output->write_image(OIIO::TypeUInt8, bytes.data()) && output->close());
+    const auto texture = TextureFile::open(path, ColorSpace::linear);
+    EXPECT_NEAR(double(texture->at(at(.25, .75))[0]) * 255, 40, 2);
+    EXPECT_NEAR(double(texture->at(at(.75, .25))[0]) * 255, 200, 2);
+    EXPECT_NEAR(double(texture->at(at(.75, .25))[2]) * 255, 50, 2);
+  }
 }
 
 // Claim: where all texels are alike their value is exact, that of "#808080" in a scene file; one other texel makes the

@@ -282,6 +282,8 @@ struct Scene {
   friend bool operator==(const Scene&, const Scene&) = default;
 };
 
+/// The textures of a shape and of its medium.
+std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
 /// Whether a shape's mesh has to have UVs.
 bool needs_uvs(const Scene& scene, const Shape& shape);
 
