@@ -26,6 +26,7 @@ class CachedPicture {
   virtual std::optional<Texel> constant() const = 0;
   virtual Texel mean() const = 0;
   virtual int channels() const = 0;
+  virtual TextureMemory memory() const = 0;
 };
 
 struct TextureReader {
@@ -33,6 +34,8 @@ struct TextureReader {
   std::unique_ptr<CachedPicture> (*open)(PictureSource source, bool to_linear);
   /// Whether it holds floats.
   bool (*is_float)(const PictureSource& source);
+  /// Of the cache, bytes.
+  std::size_t (*cache_limit)();
 };
 
 }  // namespace opaline

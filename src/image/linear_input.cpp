@@ -74,12 +74,7 @@ bool LinearInput::open(const std::string& name, OIIO::ImageSpec& spec) {
     source_ = found->second.source;
     to_linear_ = found->second.to_linear;
   }
-  try {
-    opened_ = open_source(*source_);
-  } catch (const Error& failure) {
-    errorfmt("{}", failure.what());
-    return false;
-  }
+  if (!reopen()) return false;
   take_spec();
   const std::string_view format = opened_.input->format_name();
   is_sequential_ = format == "png" || format == "jpeg" || format == "hdr";
@@ -113,13 +108,25 @@ bool LinearInput::complain() {
   return false;
 }
 
+bool LinearInput::reopen() {
+  try {
+    opened_ = open_source(*source_);
+    return true;
+  } catch (const Error& failure) {
+    errorfmt("{}", failure.what());
+    return false;
+  }
+}
+
 bool LinearInput::decode() {
+  if (opened_.input == nullptr && !reopen()) return false;
   whole_.resize(std::size_t(m_spec.image_pixels()) * std::size_t(m_spec.nchannels) * native_.size());
   if (!opened_.input->read_image(0, 0, 0, m_spec.nchannels, native_, whole_.data())) {
     whole_ = {};
     return complain();
   }
   opened_ = {};
+  is_given_.assign(std::size_t(m_spec.height), false);
   return true;
 }
 
@@ -148,6 +155,8 @@ bool LinearInput::read_native_scanlines(int subimage, int miplevel, int y_begin,
     if (whole_.empty() && !decode()) return false;
     const unsigned char* const first = whole_.data() + std::size_t(y_begin - m_spec.y) * row * native_.size();
     OIIO::convert_pixel_values(native_, first, type, target, int(values));
+    std::fill(is_given_.begin() + (y_begin - m_spec.y), is_given_.begin() + (y_end - m_spec.y), true);
+    if (std::ranges::find(is_given_, false) == is_given_.end()) whole_ = {};
   } else if (!opened_.input->read_scanlines(subimage, miplevel, y_begin, y_end, z, 0, m_spec.nchannels, type,
                                             target)) {
     return complain();

@@ -16,8 +16,8 @@
 namespace opaline {
 
 /// Decodes another input. sRGB becomes linear halves, whose rounding is below that of 8 bits; alpha stays as it is.
-/// Formats that are read from their beginning alone are decoded at once and held as they are: the cache asks for rows in
-/// any order, and OpenImageIO 2.4 goes back by opening the file anew, which a picture in memory does not survive.
+/// Formats that are read from their beginning alone are decoded at once and held until each row was asked for: the cache
+/// asks for rows in any order, and OpenImageIO 2.4 goes back by opening the file anew, which a picture in memory does not survive.
 class LinearInput : public OIIO::ImageInput {
  public:
   /// What inputs of this name, of none of a file, read.
@@ -49,6 +49,7 @@ class LinearInput : public OIIO::ImageInput {
 
  private:
   void take_spec();
+  bool reopen();
   bool decode();
   bool complain();
   /// From values_ to what the cache gets.
@@ -60,6 +61,7 @@ class LinearInput : public OIIO::ImageInput {
   OIIO::TypeDesc native_;  // of the values in the file
   std::mutex mutex_;       // of all below
   std::vector<unsigned char> whole_;
+  std::vector<bool> is_given_;  // each row of it
   std::vector<float> values_;
 };
 

@@ -68,10 +68,14 @@ bool is_tiled(const std::string& path) {
   return fs::path(path).filename().string().find(kTileWord) != std::string::npos;
 }
 
+/// 0 of what is no file: opening it says so.
 std::uint64_t content_hash(const PictureSource& source) {
   if (!source.bytes.empty()) return XXH3_64bits(source.bytes.data(), source.bytes.size());
-  std::ifstream file(source.path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};  // what cannot be read, opening it says
+  std::error_code failure;
+  if (!fs::is_regular_file(source.path, failure)) return 0;
+  std::ifstream file(source.path, std::ios::binary | std::ios::ate);
+  std::string bytes(file ? std::size_t(file.tellg()) : 0, '\0');
+  file.seekg(0).read(bytes.data(), std::streamsize(bytes.size()));
   return XXH3_64bits(bytes.data(), bytes.size());
 }
 
@@ -138,6 +142,20 @@ std::shared_ptr<const TextureFile> TextureFile::open(const std::string& path, Co
 ColorSpace TextureFile::space_of_colors(const std::string& path) {
   const std::string first = is_tiled(path) ? tile_files(path).begin()->second : path;
   return reader().is_float(source_of(first, true)) ? ColorSpace::linear : ColorSpace::srgb;
+}
+
+std::size_t TextureFile::cache_limit() {
+  return reader().cache_limit();
+}
+
+TextureMemory TextureFile::memory() const {
+  TextureMemory all;
+  for (const auto& [tile, picture] : pictures_) {
+    const TextureMemory own = picture->memory();
+    all.decoded = std::max(all.decoded, own.decoded);
+    all.cached += own.cached;
+  }
+  return all;
 }
 
 bool TextureFile::has_tile(int column, int row) const {

@@ -23,12 +23,18 @@ namespace {
 
 constexpr int kRows = 64;  // of a picture, read at once
 
-/// For all textures of the process, at most a quarter of the machine. Never destroyed: threads may still look up.
+/// A quarter of the machine, but at least 256 MB and at most 4 GB.
+std::size_t cache_limit() {
+  static const std::size_t limit =
+      std::clamp(available_memory() / 4, std::size_t(256) << 20, std::size_t(4096) << 20);
+  return limit;
+}
+
+/// For all textures of the process. Never destroyed: threads may still look up.
 OIIO::TextureSystem& texture_system() {
   static OIIO::TextureSystem* const system = [] {
     OIIO::TextureSystem* made = OIIO::TextureSystem::create(false);
-    constexpr double least = 256, most = 4096;  // MB
-    made->attribute("max_memory_MB", float(std::clamp(double(available_memory()) / (4 << 20), least, most)));
+    made->attribute("max_memory_MB", float(cache_limit() >> 20));
     made->attribute("automip", 1);
     made->attribute("autotile", kRows);
     made->attribute("gray_to_rgb", 1);
@@ -106,7 +112,11 @@ class OiioPicture : public CachedPicture {
       : source_(std::make_shared<const PictureSource>(std::move(source))), to_linear_(to_linear) {
     static std::atomic<std::uint64_t> count{0};
     check_whole(*source_);
-    channels_ = LinearInput::open_source(*source_).input->spec().nchannels;
+    const OIIO::ImageSpec spec = LinearInput::open_source(*source_).input->spec();
+    channels_ = spec.nchannels;
+    const auto values = std::size_t(spec.image_pixels()) * std::size_t(spec.nchannels);
+    const std::size_t cached = to_linear ? 2 : spec.format.size();
+    memory_ = {values * spec.format.size(), values * cached * 4 / 3};
     name_ = "opaline " + std::to_string(count++) + ": " + source_->path;
     LinearInput::register_source(name_, source_, to_linear);
     const OIIO::ustring name(name_);
@@ -156,6 +166,7 @@ class OiioPicture : public CachedPicture {
   }
 
   int channels() const override { return channels_; }
+  TextureMemory memory() const override { return memory_; }
 
  private:
   [[noreturn]] void fail() const {
@@ -167,6 +178,7 @@ class OiioPicture : public CachedPicture {
   std::shared_ptr<const PictureSource> source_;
   bool to_linear_;
   int channels_ = 0;
+  TextureMemory memory_;
   std::string name_;
   OIIO::TextureSystem::TextureHandle* handle_ = nullptr;
   OIIO::TextureOpt options_;
@@ -184,5 +196,5 @@ bool holds_floats(const PictureSource& source) {
 }  // namespace opaline
 
 opaline::TextureReader opaline_texture_reader() {
-  return {opaline::open_picture, opaline::holds_floats};
+  return {opaline::open_picture, opaline::holds_floats, opaline::cache_limit};
 }

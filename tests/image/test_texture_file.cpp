@@ -144,9 +144,16 @@ TEST(TextureFile, RefusesBrokenFiles) {
   put_bytes(folder.file("empty.png"), "");
   put_bytes(folder.file("text.png"), "a text, and no picture");
   put_bytes(folder.file("short.jpg"), std::string("\xff\xd8\xff\xe0\0\x10JFIF\0\1\1\0\0\1\0\1\0\0", 20));
-  const std::pair<const char*, const char*> broken[] = {
-      {"short.png", "truncated"}, {"changed.png", "damaged"},    {"empty.png", "empty"},
-      {"text.png", "EXR, HDR"},   {"absent.png", "cannot read"}, {"short.jpg", "truncated"}};
+  std::filesystem::create_directory(folder.file("folder.png"));
+  std::filesystem::create_symlink("/dev/zero", folder.file("endless.png"));
+  const std::pair<const char*, const char*> broken[] = {{"short.png", "truncated"},
+                                                        {"changed.png", "damaged"},
+                                                        {"empty.png", "empty"},
+                                                        {"text.png", "EXR, HDR"},
+                                                        {"absent.png", "cannot read"},
+                                                        {"folder.png", "not a regular file"},
+                                                        {"endless.png", "not a regular file"},
+                                                        {"short.jpg", "truncated"}};
   for (const auto& [name, what] : broken) {
     const std::string message = message_of(folder.file(name));
     EXPECT_NE(message.find(folder.file(name)), std::string::npos) << message;

@@ -21,6 +21,12 @@ struct TexturePlace {
   std::array<float, 2> side_x{}, side_y{};
 };
 
+/// What looking at all of a texture takes, bytes.
+struct TextureMemory {
+  std::size_t decoded = 0;  ///< for a while, of the largest picture
+  std::size_t cached = 0;   ///< at all sizes; all textures together take no more than cache_limit
+};
+
 using Texel = std::array<double, 4>;  ///< red, green, blue, alpha; a grey picture has three alike
 
 class CachedPicture;
@@ -49,6 +55,9 @@ class TextureFile {
 
   const std::string& path() const { return path_; }
   int channels() const { return channels_; }
+  TextureMemory memory() const;
+  /// Of the cache that all textures share, bytes.
+  static std::size_t cache_limit();
   /// Whether there is a picture for the tile that v upwards and u count; a plain picture is everywhere.
   bool has_tile(int column, int row) const;
   /// Of the file's bytes and its colour space.
