@@ -13,6 +13,8 @@ const kForms = {
 };
 const kNumbers = ["number", "whole_number", "length"], kThrees = ["point", "triple"];
 const kColours = ["color", "number_or_triple"];
+// Shown where the scene has them.
+const kOptional = ["tint", "texture_mix", "thickness"];
 const kGloss = ["metalness", "specular_roughness", "specular_ior"];
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};
 const kWidestLinear = 1000, kDecade = 1;
@@ -69,8 +71,8 @@ export class Knobs {
     this.scene = scene;
     if (!this.rows) return;
     const media = scene.media || {}, lights = scene.lights || [], shapes = scene.shapes || [];
-    const shape = JSON.stringify([Object.entries(media).map(([name, m]) => [name, this.formOf(m), Object.keys(m), textured(m)]),
-      lights.map((l) => [l.name, l.type]), shapes.map((s) => [s.name, Object.keys(s), textured(s)])]);
+    const shape = JSON.stringify([Object.entries(media).map(([name, m]) => [name, this.formOf(m), "eta" in m, kOptional.filter((key) => key in m), textured(m)]),
+      lights.map((l) => [l.name, l.type]), shapes.map((s) => [s.name, "medium" in s, kGloss.filter((key) => key in s), textured(s)])]);
     if (shape !== this.shape) this.build(scene);
     this.shape = shape;
     for (const knob of this.knobs) {
@@ -112,7 +114,7 @@ export class Knobs {
     select.onchange = () => this.set({[path]: this.converted(name, select.value)}, newStroke());
     const ior = "eta" in medium ? "eta" : "specular_ior";
     return [make("label", {className: "knob"}, make("span", {className: "name", textContent: "given by"}), select),
-      ...[...kForms[form].keys, ior, "specular_roughness", "profile", ...["tint", "texture_mix", "thickness"].filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
+      ...[...kForms[form].keys, ior, "specular_roughness", "profile", ...kOptional.filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
   }
 
   // The same medium in another form, or where there is no telling one to start from.
