@@ -103,6 +103,36 @@ TEST(Textures, LieAsUvsSay) {
       }
 }
 
+// Claim: a set of tiles lies side by side on a quad whose UVs span two of them; where they reach a tile that is not there,
+// that is an error at the texture's line, naming the tile. Fails if tiles are taken for one picture, or a missing one is
+// black.
+TEST(Textures, OfTilesNeedThemAll) {
+  const ScratchFolder folder;
+  put_png(folder.file("p.1001.png"), 4, 4, Bytes{255, 0, 0});
+  put_png(folder.file("p.1002.png"), 4, 4, Bytes{0, 255, 0});
+  put_bytes(folder.file("q.obj"),
+            "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 0 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 2 0\nvt 0 1\nvt 1 "
+            "1\nvt 2 1\n"
+            "f 1/1 5/2 6/5 4/4\nf 5/2 2/3 3/6 6/5\n");
+  std::string text = quad_scene(R"("reflectance": {"texture": "p.<UDIM>.png", "color_space": "linear"})");
+  const std::size_t begin = text.find("\"quad\""), end = text.find("}, ", begin);
+  text.replace(begin, end + 1 - begin, "\"file\": \"q.obj\"");
+  const Image image = picture_of(folder, text);
+  EXPECT_GT(channel(image, 3, 8, "R"), .5);
+  EXPECT_EQ(channel(image, 3, 8, "G"), 0);
+  EXPECT_GT(channel(image, 12, 8, "G"), .5);
+  EXPECT_EQ(channel(image, 12, 8, "R"), 0);
+  std::filesystem::remove(folder.file("p.1002.png"));
+  put_png(folder.file("p.1003.png"), 4, 4, Bytes{0, 255, 0});
+  try {
+    picture_of(folder, text);
+    FAIL();
+  } catch (const Error& failure) {
+    EXPECT_EQ(failure.line, 1) << failure.what();
+    EXPECT_NE(std::string(failure.what()).find("1002"), std::string::npos) << failure.what();
+  }
+}
+
 // Claim: a checker too fine for the pixels is its mean in each of them, at one ray a pixel. Tolerance: .5 %. Fails if
 // lookups have no footprint (then pixels are black or white), or sizes are made of sRGB numbers.
 TEST(Textures, AreFilteredFromAfar) {
@@ -187,6 +217,32 @@ TEST(Textures, MixAsTheySay) {
       EXPECT_NEAR(left / expected_left, 1, .1);
       EXPECT_NEAR(right / expected_right, 1, .1);
     }
+}
+
+// Claim: random walks are tinted where light enters and where it leaves: an even tint of 1/4 leaves a quarter, whichever
+// the mix, and a tint of two sides each its own away from the border. Tolerance: rounding for the even one, whose walks
+// are the same; 10 % for sides, the walks' noise. Fails if walks start without the tint, or are kept under a key without
+// the texture.
+TEST(Textures, TintRandomWalks) {
+  const ScratchFolder folder;
+  put_png(folder.file("sides.png"), 512, 4, [](int x, int) {
+    return x < 256 ? Bytes{255, 255, 255} : Bytes{140, 140, 140};
+  });
+  Session session;
+  const auto picture = [&](const std::string& keys) {
+    session.edit(parse_scene(ball_scene(keys, .5, "volume"), folder.file("scene.json"),
+                             std::vector<std::string>{"media.m.sigma_a=0.3", "settings.samples=400"}));
+    return session.render().image;
+  };
+  const auto value = [](const Image& image, int x) { return double(channel(image, x, 16, "diffuse.G")); };
+  const Image plain = picture("\"tint\": 1");
+  for (const std::string mix : {"pre", "post", "split"}) {
+    const Image even = picture(R"("tint": 0.25, "texture_mix": ")" + mix + '"');
+    const Image sides = picture(R"("tint": {"texture": "sides.png"}, "texture_mix": ")" + mix + '"');
+    for (const int x : {6, 16, 26}) EXPECT_NEAR(value(even, x) / value(plain, x), .25, 1e-4) << mix;
+    EXPECT_NEAR(value(sides, 6) / value(plain, 6), 1, .1) << mix;
+    EXPECT_NEAR(value(sides, 26) / value(plain, 26) / linear_of_byte(140), 1, .1) << mix;
+  }
 }
 
 // Claim: `direct` and `hierarchical` agree under a texture, whatever the mix. Tolerance: .5 % of the mean, 4 % a pixel,
