@@ -31,7 +31,8 @@ struct AssetScene {
 
 /// What the material of a shape becomes.
 struct SurfaceTranslation {
-  Json medium;  ///< as in a scene file; null: opaque
+  Json medium;                 ///< as in a scene file; null: opaque
+  Json keys = Json::object();  ///< of the shape besides; a reflectance among them is in place of the next
   Vec3d reflectance{1, 1, 1};
 };
 

@@ -2,6 +2,7 @@
 #include "assets/gltf_accessor.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 
@@ -55,7 +56,7 @@ double number(const unsigned char* bytes, int type, bool normalized) {
   }
 }
 
-/// One accessor with its checks; `components` a vector, 1 of a scalar.
+/// One accessor with its checks; `components` 1 of a scalar, 2 or 3 of a vector.
 class AccessorReader {
  public:
   AccessorReader(const GltfModel& gltf, int index)
@@ -80,9 +81,10 @@ class AccessorReader {
   }
 
   void check_type(std::size_t components) const {
-    const int wanted = components == 1 ? TINYGLTF_TYPE_SCALAR : TINYGLTF_TYPE_VEC3;
-    if (accessor_.type != wanted)
-      fail("is of the wrong type", components == 1 ? "SCALAR" : "VEC3",
+    constexpr std::array<int, 3> types{TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3};
+    constexpr std::array<const char*, 3> names{"SCALAR", "VEC2", "VEC3"};
+    if (accessor_.type != types[components - 1])
+      fail("is of the wrong type", names[components - 1],
            std::to_string(tinygltf::GetNumComponentsInType(std::uint32_t(accessor_.type))) + " components");
     if (size_ == 0)
       fail("has a componentType that is none of glTF", "5120 to 5123, 5125 or 5126",
@@ -160,6 +162,15 @@ std::vector<Vec3d> read_vectors(const GltfModel& gltf, int index) {
   for (std::size_t i = 0; i < numbers.size(); i += 3)
     vectors.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
   return vectors;
+}
+
+std::vector<std::array<float, 2>> read_pairs(const GltfModel& gltf, int index) {
+  const std::vector<double> numbers = AccessorReader(gltf, index).run(2);
+  std::vector<std::array<float, 2>> pairs;
+  pairs.reserve(numbers.size() / 2);
+  for (std::size_t i = 0; i < numbers.size(); i += 2)
+    pairs.push_back({float(numbers[i]), float(numbers[i + 1])});
+  return pairs;
 }
 
 std::vector<std::uint32_t> read_indices(const GltfModel& gltf, int index) {

@@ -2,6 +2,7 @@
 // Numbers of a glTF accessor.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace opaline {
 /// out   its vectors, sparse ones put in place, normalized integers as glTF says
 /// error Error{bad_input}: it is no VEC3, or reaches beyond its buffer view
 std::vector<Vec3d> read_vectors(const GltfModel& gltf, int index);
+
+/// The same of VEC2.
+std::vector<std::array<float, 2>> read_pairs(const GltfModel& gltf, int index);
 
 /// The same of unsigned scalars.
 std::vector<std::uint32_t> read_indices(const GltfModel& gltf, int index);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "opaline/core/error.h"
 
@@ -34,15 +35,15 @@ class JsonScan {
  public:
   JsonScan(const std::string& path, std::string& file) : path_(path), file_(file) {}
 
-  GltfCounts run() {
+  GltfOutline run() {
     const Extent extent = json_extent(file_);
     for (at_ = extent.begin; at_ < extent.end; ++at_) {
       const char c = file_[at_];
       if (c == '"') string(extent.end);
       if (c == '{' || c == '[') open();
-      if ((c == '}' || c == ']') && depth_ > 0) --depth_;
+      if (c == '}' || c == ']') close();
     }
-    return counts_;
+    return std::move(outline_);
   }
 
  private:
@@ -61,22 +62,29 @@ class JsonScan {
   }
 
   void open() {
-    if (depth_ == 2) ++counts_[list_];
+    if (depth_ == 1) list_begin_ = at_;
+    if (depth_ == 2) ++outline_.counts[list_];
     if (++depth_ > most_depth)
       throw bad_file(path_, "its JSON is nested too deep",
                      "at most " + std::to_string(most_depth) + " levels");
   }
 
+  void close() {
+    if (depth_ == 0 || --depth_ != 1) return;
+    if (list_ == "images") outline_.images = file_.substr(list_begin_, at_ + 1 - list_begin_);
+    if (list_ == "textures") outline_.textures = file_.substr(list_begin_, at_ + 1 - list_begin_);
+  }
+
   const std::string& path_;
   std::string& file_;
-  std::size_t at_ = 0, depth_ = 0;
+  std::size_t at_ = 0, depth_ = 0, list_begin_ = 0;
   std::string list_;
-  GltfCounts counts_;
+  GltfOutline outline_;
 };
 
 }  // namespace
 
-GltfCounts prepare_gltf_json(const std::string& path, std::string& file) {
+GltfOutline prepare_gltf_json(const std::string& path, std::string& file) {
   return JsonScan(path, file).run();
 }
 

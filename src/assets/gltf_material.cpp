@@ -8,6 +8,9 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <utility>
+
+#include "assets/gltf_texture.h"
 
 namespace opaline {
 namespace {
@@ -16,7 +19,7 @@ constexpr double kMillimetres = 1000;  // in glTF's metre
 // Attenuation of a channel that light crosses without loss, or not at all, over the attenuation distance.
 constexpr double kDarkest = 1e-6, kClearest = .999;
 constexpr double kMostAnisotropy = .99;
-constexpr double kLeastIor = .1, kMostIor = 10;
+constexpr double kLeastIor = .1, kMostIor = 10, kGltfIor = 1.5;
 
 /// The values of one extension of a material; those that are not there have defaults.
 class ExtensionValues {
@@ -78,11 +81,12 @@ Shares single_scattering(double color, double g) {
 
 class MaterialTranslator {
  public:
-  MaterialTranslator(const GltfModel& gltf, int index, AssetScene& scene)
+  MaterialTranslator(const GltfModel& gltf, const MaterialUse& use, AssetScene& scene)
       : gltf_(gltf),
-        material_(gltf.model.materials[std::size_t(index)]),
-        place_(record_name("materials", std::size_t(index))),
-        label_(material_label(gltf, index)),
+        material_(gltf.model.materials[std::size_t(use.index)]),
+        use_(use),
+        place_(record_name("materials", std::size_t(use.index))),
+        label_(material_label(gltf, use.index)),
         scene_(scene) {}
 
   SurfaceTranslation run() {
@@ -92,10 +96,13 @@ class MaterialTranslator {
       for (std::size_t i = 0; i < 3; ++i) surface.reflectance[i] = std::clamp(base[i], 0., 1.);
     if (const std::optional<Scatter> scatter = read_scatter()) surface.medium = make_medium(*scatter);
     if (surface.medium.is_null())
-      translated(
-          fmt::format("baseColorFactor -> reflectance {} (opaque)", short_triple(surface.reflectance)));
-    else if (surface.reflectance != Vec3d(1))
-      not_carried(fmt::format("baseColorFactor {} of a translucent body", short_triple(surface.reflectance)));
+      add_opaque(surface);
+    else
+      add_tint(surface);
+    if (std::optional<Json> normals = texture(of(material_.normalTexture), "normalTexture")) {
+      (*normals)["scale"] = std::max(material_.normalTexture.scale, 0.);
+      surface.keys["normal_map"] = std::move(*normals);
+    }
     tell_losses(!surface.medium.is_null());
     return surface;
   }
@@ -103,6 +110,73 @@ class MaterialTranslator {
  private:
   void translated(const std::string& text) { scene_.translated.push_back(label_ + ": " + text); }
   void not_carried(const std::string& text) { scene_.not_carried.push_back(label_ + ": " + text); }
+
+  template <class Info>
+  static GltfTexture of(const Info& info) {
+    return {info.index, info.texCoord, &info.extensions};
+  }
+
+  /// None: the material has none, or it is not carried over.
+  std::optional<Json> texture(const GltfTexture& info, const char* name) {
+    if (info.index < 0) return {};
+    if (!use_.has_uvs) {
+      not_carried(std::string(name) + ": its mesh has no TEXCOORD_0");
+      return {};
+    }
+    try {
+      Json json = texture_json(gltf_, info, use_.mesh_path);
+      translated(std::string(name) + " -> " + json["texture"].get<std::string>());
+      return json;
+    } catch (const Error& failure) {
+      not_carried(std::string(name) + ": " + failure.message);
+      return {};
+    }
+  }
+
+  /// A colour or number times its texture.
+  static Json times(std::optional<Json> texture, Json factor, const Json& one) {
+    if (!texture) return factor;
+    if (factor != one) (*texture)["scale"] = std::move(factor);
+    return *std::move(texture);
+  }
+
+  /// The channel of a number's texture: roughness is green, metalness blue.
+  static std::optional<Json> channel(std::optional<Json> texture, const char* name) {
+    if (texture) (*texture)["channel"] = name;
+    return texture;
+  }
+
+  void add_opaque(SurfaceTranslation& surface) {
+    const tinygltf::PbrMetallicRoughness& pbr = material_.pbrMetallicRoughness;
+    const Json white = triple_json(Vec3d(1));
+    const double metalness = std::clamp(pbr.metallicFactor, 0., 1.),
+                 roughness = std::clamp(pbr.roughnessFactor, 0., 1.);
+    surface.keys["reflectance"] =
+        times(texture(of(pbr.baseColorTexture), "baseColorTexture"), triple_json(surface.reflectance), white);
+    const std::optional<Json> both = texture(of(pbr.metallicRoughnessTexture), "metallicRoughnessTexture");
+    if (metalness > 0) surface.keys["metalness"] = times(channel(both, "b"), metalness, 1.0);
+    surface.keys["specular_roughness"] = times(channel(both, "g"), roughness, 1.0);
+    const double ior = index_of_refraction();
+    if (ior > 1 && ior != kGltfIor) surface.keys["specular_ior"] = ior;
+    translated(
+        fmt::format("baseColorFactor, metallicFactor, roughnessFactor -> reflectance {}, metalness {:.3g}, "
+                    "specular_roughness {:.3g} (opaque)",
+                    short_triple(surface.reflectance), metalness, roughness));
+  }
+
+  void add_tint(SurfaceTranslation& surface) {
+    const tinygltf::PbrMetallicRoughness& pbr = material_.pbrMetallicRoughness;
+    std::optional<Json> base = texture(of(pbr.baseColorTexture), "baseColorTexture");
+    if (base || surface.reflectance != Vec3d(1)) {
+      surface.medium["tint"] =
+          times(std::move(base), triple_json(surface.reflectance), triple_json(Vec3d(1)));
+      translated(fmt::format("baseColorFactor -> tint {}", short_triple(surface.reflectance)));
+    }
+    if (std::optional<Json> rough =
+            channel(texture(of(pbr.metallicRoughnessTexture), "metallicRoughnessTexture"), "g"))
+      surface.medium["specular_roughness"] =
+          times(std::move(rough), std::clamp(pbr.roughnessFactor, 0., 1.), 1.0);
+  }
 
   bool has(const char* extension) const { return material_.extensions.contains(extension); }
 
@@ -126,12 +200,11 @@ class MaterialTranslator {
   }
 
   double index_of_refraction() {
-    constexpr double of_gltf = 1.5;
-    const double ior = values("KHR_materials_ior").number("ior", of_gltf);
+    const double ior = values("KHR_materials_ior").number("ior", kGltfIor);
     if (ior >= kLeastIor && ior <= kMostIor) return ior;
-    not_carried(
-        fmt::format("ior {:.4g}, which is outside {} to {}: {} is taken", ior, kLeastIor, kMostIor, of_gltf));
-    return of_gltf;
+    not_carried(fmt::format("ior {:.4g}, which is outside {} to {}: {} is taken", ior, kLeastIor, kMostIor,
+                            kGltfIor));
+    return kGltfIor;
   }
 
   /// Null where nothing attenuates light.
@@ -198,23 +271,15 @@ class MaterialTranslator {
   }
 
   void tell_losses(bool is_translucent) {
-    const tinygltf::PbrMetallicRoughness& pbr = material_.pbrMetallicRoughness;
     std::vector<std::string> textures;
     const auto add = [&](int index, const char* name) {
       if (index >= 0) textures.emplace_back(name);
     };
-    add(pbr.baseColorTexture.index, "baseColorTexture");
-    add(pbr.metallicRoughnessTexture.index, "metallicRoughnessTexture");
-    add(material_.normalTexture.index, "normalTexture");
     add(material_.occlusionTexture.index, "occlusionTexture");
     add(material_.emissiveTexture.index, "emissiveTexture");
     for (const auto& [extension, unused] : material_.extensions)
       for (std::string& name : values(extension.c_str()).textures()) textures.push_back(std::move(name));
     for (const std::string& name : textures) not_carried("texture " + name);
-    if (pbr.metallicFactor > 0 && !is_translucent)
-      not_carried(fmt::format("metallicFactor {:.3g}: shaded as matte paint", pbr.metallicFactor));
-    if (material_.values.contains("roughnessFactor") && !is_translucent)
-      not_carried(fmt::format("roughnessFactor {:.3g}: shaded as matte paint", pbr.roughnessFactor));
     if (material_.emissiveFactor != std::vector<double>{0, 0, 0} && !material_.emissiveFactor.empty())
       not_carried("emissiveFactor: it does not glow");
     if (material_.alphaMode != "OPAQUE")
@@ -238,14 +303,15 @@ class MaterialTranslator {
 
   const GltfModel& gltf_;
   const tinygltf::Material& material_;
+  const MaterialUse& use_;
   std::string place_, label_;
   AssetScene& scene_;
 };
 
 }  // namespace
 
-SurfaceTranslation translate_material(const GltfModel& gltf, int index, AssetScene& scene) {
-  if (index >= 0) return MaterialTranslator(gltf, index, scene).run();
+SurfaceTranslation translate_material(const GltfModel& gltf, const MaterialUse& use, AssetScene& scene) {
+  if (use.index >= 0) return MaterialTranslator(gltf, use, scene).run();
   scene.translated.push_back("no material -> reflectance 1 (opaque)");
   return {};
 }

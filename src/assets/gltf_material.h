@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a glTF material becomes: a translucent medium where it scatters light inside, else a matte colour.
+// What a glTF material becomes: a translucent medium where it scatters light inside, else a coated colour or metal.
 #pragma once
 
 #include "assets/asset_scene.h"
@@ -7,9 +7,15 @@
 
 namespace opaline {
 
-/// in    index: of the material; -1: glTF's default one, white
+/// Where a material is met.
+struct MaterialUse {
+  int index = -1;           ///< -1: glTF's default one, white
+  bool has_uvs = false;     ///< of what it is on
+  std::string mesh_path{};  ///< how the scene file calls the asset
+};
+
 /// error Error{bad_input} at a value that is not of its type
-SurfaceTranslation translate_material(const GltfModel& gltf, int index, AssetScene& scene);
+SurfaceTranslation translate_material(const GltfModel& gltf, const MaterialUse& use, AssetScene& scene);
 
 /// How messages call it.
 std::string material_label(const GltfModel& gltf, int index);

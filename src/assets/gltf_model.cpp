@@ -183,7 +183,10 @@ class ReferenceCheck {
 
 /// in    file: is written to, see prepare_gltf_json
 void parse(GltfModel& gltf, std::string& file, Neighbours& beside) {
-  gltf.counts = prepare_gltf_json(gltf.path, file);
+  GltfOutline outline = prepare_gltf_json(gltf.path, file);
+  gltf.counts = std::move(outline.counts);
+  gltf.images = std::move(outline.images);
+  gltf.textures = std::move(outline.textures);
   const std::size_t size = file.size();
   if (size > 0xffffffff) throw bad_file(gltf.path, "is too large for a glTF file", "less than 4 GiB");
   file.resize(size + spare_bytes);

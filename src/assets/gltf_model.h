@@ -21,7 +21,8 @@ struct GltfModel {
   std::string path;
   std::string contents;  ///< hash of the file and of the buffers beside it
   tinygltf::Model model;
-  GltfCounts counts;  ///< of what the file lists, read or not
+  GltfCounts counts;             ///< of what the file lists, read or not
+  std::string images, textures;  ///< as GltfOutline's
 };
 
 /// Reads a GLB or glTF file with its buffers, but for images. The last one read is kept: an asset is asked for

@@ -137,9 +137,21 @@ void read_normals(const GltfModel& gltf, const tinygltf::Primitive& primitive, G
   }
 }
 
+/// glTF counts v downwards.
+void read_uvs(const GltfModel& gltf, const tinygltf::Primitive& primitive, GltfPart& part) {
+  const auto found = primitive.attributes.find("TEXCOORD_0");
+  if (found == primitive.attributes.end()) return;
+  part.uvs = read_pairs(gltf, found->second);
+  if (part.uvs.size() != part.positions.size())
+    fail_at(gltf.path, record_name("accessors", std::size_t(found->second)), "has a UV too many or too few",
+            std::to_string(part.positions.size()) + ", as there are positions",
+            std::to_string(part.uvs.size()));
+  for (auto& uv : part.uvs) uv[1] = 1 - uv[1];
+}
+
 }  // namespace
 
-GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name) {
+GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, bool with_uvs) {
   const PartIndex index = find_part(gltf, name);
   const tinygltf::Primitive& primitive = gltf.model.meshes[index.mesh].primitives[index.primitive];
   const std::string place =
@@ -153,14 +165,15 @@ GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name) {
   part.positions = read_vectors(gltf, positions->second);
   check_positions(gltf, positions->second, part.positions);
   read_normals(gltf, primitive, part);
+  if (with_uvs) read_uvs(gltf, primitive, part);
   TriangleList(gltf, primitive, place).read(part);
   if (part.triangles.empty())
     fail_at(gltf.path, place, "has no triangles", "at least three corners", "fewer");
   return part;
 }
 
-GltfPart read_gltf_part(const std::string& path, const std::string& part) {
-  return read_gltf_part(*load_gltf(path), part);
+GltfPart read_gltf_part(const std::string& path, const std::string& part, bool with_uvs) {
+  return read_gltf_part(*load_gltf(path), part, with_uvs);
 }
 
 std::string gltf_contents(const std::string& path) {

@@ -181,7 +181,8 @@ class GltfImporter {
       shape["transform"] = Json::array({{{"matrix", rows}}});
     }
     if (!primitive.attributes.contains("NORMAL")) shape["normals"] = "faceted";
-    add_surface(shape, primitive.material, placed.index, mesh.primitives.size() > 1);
+    const MaterialUse use{primitive.material, primitive.attributes.contains("TEXCOORD_0"), mesh_path_};
+    add_surface(shape, use, placed.index, mesh.primitives.size() > 1);
     scene_.shapes.push_back(std::move(shape));
     parts_.push_back({part, t});
     scene_.translated.push_back(
@@ -189,12 +190,11 @@ class GltfImporter {
   }
 
   /// Primitives of one node that share a medium are one body.
-  void add_surface(Json& shape, int material, std::size_t node, bool has_siblings) {
-    const Surface& surface = surface_of(material);
-    if (surface.medium.empty()) {
-      shape["reflectance"] = triple_json(surface.reflectance);
-      return;
-    }
+  void add_surface(Json& shape, const MaterialUse& use, std::size_t node, bool has_siblings) {
+    const Surface& surface = surface_of(use);
+    if (surface.medium.empty()) shape["reflectance"] = triple_json(surface.reflectance);
+    for (const auto& [key, value] : surface.keys.items()) shape[key] = value;
+    if (surface.medium.empty()) return;
     shape["medium"] = surface.medium;
     if (!has_siblings) return;
     shape["group"] = fmt::format("{} of node {}", surface.medium, node);
@@ -203,18 +203,19 @@ class GltfImporter {
   struct Surface {
     std::string medium;  ///< its name; empty: opaque
     Vec3d reflectance;
+    Json keys;
   };
 
-  const Surface& surface_of(int material) {
-    const auto known = surfaces_.find(material);
+  const Surface& surface_of(const MaterialUse& use) {
+    const auto known = surfaces_.find({use.index, use.has_uvs});
     if (known != surfaces_.end()) return known->second;
-    SurfaceTranslation translation = translate_material(gltf_, material, scene_);
-    Surface surface{"", translation.reflectance};
+    SurfaceTranslation translation = translate_material(gltf_, use, scene_);
+    Surface surface{"", translation.reflectance, std::move(translation.keys)};
     if (!translation.medium.is_null()) {
-      surface.medium = medium_names_.take(gltf_.model.materials[std::size_t(material)].name, "medium");
+      surface.medium = medium_names_.take(gltf_.model.materials[std::size_t(use.index)].name, "medium");
       scene_.media[surface.medium] = std::move(translation.medium);
     }
-    return surfaces_[material] = surface;
+    return surfaces_[{use.index, use.has_uvs}] = surface;
   }
 
   void tell_mesh_losses(std::size_t index) {
@@ -252,7 +253,8 @@ class GltfImporter {
     if (count("skins") > 0)
       scene_.not_carried.push_back(
           fmt::format("skins ({}): meshes stand as they were modelled", count("skins")));
-    constexpr std::array<std::string_view, 2> read{"KHR_lights_punctual", "KHR_mesh_quantization"};
+    constexpr std::array<std::string_view, 3> read{"KHR_lights_punctual", "KHR_mesh_quantization",
+                                                   "KHR_texture_transform"};
     const tinygltf::Model& model = gltf_.model;
     const std::set<std::string> required(model.extensionsRequired.begin(), model.extensionsRequired.end());
     std::set<std::string> used = required;
@@ -267,7 +269,7 @@ class GltfImporter {
   std::string mesh_path_;
   AssetScene scene_;
   UniqueNames shape_names_, medium_names_, light_names_;
-  std::map<int, Surface> surfaces_;  // by material
+  std::map<std::pair<int, bool>, Surface> surfaces_;  // by material, and whether there are UVs
   std::set<std::size_t> told_meshes_;
   std::vector<PlacedPart> parts_;
 };

@@ -54,6 +54,7 @@ std::optional<Vec3d> three_numbers(std::string_view line) {
 
 /// What an OBJ file says beside its faces.
 struct ObjOutline {
+  bool has_uvs = false;
   std::vector<Vec3d> vertices;
   std::vector<std::string> libraries, materials;  ///< materials that have faces, in the order of the file
 };
@@ -68,6 +69,8 @@ ObjOutline read_outline(const std::string& text) {
       const auto position = three_numbers(line);  // where they are none, the reader of the mesh says so
       if (position && max_component(component_max(*position, -*position)) < 1e18)
         outline.vertices.push_back(*position);
+    } else if (keyword == "vt") {
+      outline.has_uvs = true;
     } else if (keyword == "mtllib") {
       outline.libraries.emplace_back(trimmed(line));
     } else if (keyword == "usemtl") {
@@ -89,6 +92,7 @@ class ObjImporter {
     if (outline.materials.empty()) throw bad_file(path_, "shows nothing", "a mesh with faces");
     enclose(scene_, [&](const auto& visit) { std::ranges::for_each(outline.vertices, visit); });
     scene_.is_one_mesh = true;
+    has_uvs_ = outline.has_uvs;
     scene_.translated.push_back("OBJ has no unit: lengths are taken for millimetres");
     for (const std::string& library : outline.libraries) read_libraries(library);
     for (const std::string& material : outline.materials) add_shape(material);
@@ -123,10 +127,27 @@ class ObjImporter {
           colors_[material] = component_min(component_max(*color, Vec3d(0)), Vec3d(1));
         else
           lost_[material].insert("Kd " + in_quotes(trimmed(line)));
+      } else if (keyword == "map_Kd" && !material.empty() && has_uvs_) {
+        take_picture(material, std::string(trimmed(line)), path);
       } else if (is_lost(keyword, line)) {
         lost_[material].insert(keyword);
       }
     });
+  }
+
+  /// A file beside the library, without options, which not two programs read alike.
+  void take_picture(const std::string& material, std::string name, const std::string& library) {
+    std::ranges::replace(name, '\\', '/');
+    namespace fs = std::filesystem;
+    const fs::path file = fs::path(library).parent_path() / name;
+    std::error_code error;
+    if (name.starts_with('-') || !fs::is_regular_file(file, error)) {
+      lost_[material].insert("map_Kd " + in_quotes(name));
+      return;
+    }
+    const fs::path from_asset = fs::relative(file, fs::path(path_).parent_path(), error);
+    pictures_[material] =
+        (fs::path(mesh_path_).parent_path() / (error || from_asset.empty() ? file : from_asset)).string();
   }
 
   /// Whether a value changes what a matte surface looks like: black highlights and full opacity do not.
@@ -141,26 +162,42 @@ class ObjImporter {
 
   void add_shape(const std::string& material) {
     const std::string name = names_.take(material == kNoMaterial ? "" : material, "shape");
-    const auto color = colors_.find(material);
-    const Vec3d reflectance = color == colors_.end() ? kGrey : color->second;
     scene_.shapes.push_back({{"name", name},
                              {"file", mesh_path_},
                              {"part", material},
-                             {"reflectance", triple_json(reflectance)}});
-    if (color != colors_.end())
-      scene_.translated.push_back(fmt::format("material {}: Kd -> reflectance {} (opaque)",
-                                              in_quotes(material), short_triple(reflectance)));
-    else if (material != kNoMaterial)
-      scene_.not_carried.push_back("material " + in_quotes(material) + ": no library has it; taken as grey");
+                             {"reflectance", reflectance_of(material)}});
     for (const std::string& keyword : lost_[material])
       scene_.not_carried.push_back("material " + in_quotes(material) + ": " + keyword);
+  }
+
+  Json reflectance_of(const std::string& material) {
+    const auto color = colors_.find(material);
+    const Vec3d reflectance = color == colors_.end() ? kGrey : color->second;
+    const std::string label = "material " + in_quotes(material);
+    if (const auto picture = pictures_.find(material); picture != pictures_.end()) {
+      Json texture{{"texture", picture->second}};
+      // Programs that write a picture may leave the colour black; grey stands for none.
+      const bool has_color = reflectance != Vec3d() && reflectance != kGrey && reflectance != Vec3d(1);
+      if (has_color) texture["scale"] = triple_json(reflectance);
+      scene_.translated.push_back(fmt::format("{}: map_Kd -> reflectance {}{}", label, picture->second,
+                                              has_color ? " times Kd " + short_triple(reflectance) : ""));
+      return texture;
+    }
+    if (color != colors_.end())
+      scene_.translated.push_back(
+          fmt::format("{}: Kd -> reflectance {} (opaque)", label, short_triple(reflectance)));
+    else if (material != kNoMaterial)
+      scene_.not_carried.push_back(label + ": no library has it; taken as grey");
+    return triple_json(reflectance);
   }
 
   const std::string& path_;
   std::string mesh_path_;
   AssetScene scene_;
   UniqueNames names_;
+  bool has_uvs_ = false;
   std::map<std::string, Vec3d> colors_;                // Kd, by material
+  std::map<std::string, std::string> pictures_;        // map_Kd, as the scene file calls it, by material
   std::map<std::string, std::set<std::string>> lost_;  // keywords without a counterpart, by material
 };
 

@@ -18,4 +18,12 @@ SourceMesh tessellate(const QuadShape& quad, const std::string& name);
 SourceMesh tessellate(const SlabShape& slab, const std::string& name);
 SourceMesh tessellate(const TorusShape& torus, const std::string& name);
 
+/// UVs of a shape's triangles. A sphere's: u once around from -z by -x, +z and +x, v from its lower pole to the upper one; each
+/// face of a box once; a torus by the angles around its axis and around the tube.
+void add_uvs(const SphereShape& sphere, SourceMesh& mesh);
+void add_uvs(const BoxShape& box, SourceMesh& mesh);
+void add_uvs(const SlabShape& slab, SourceMesh& mesh);
+void add_uvs(const QuadShape& quad, SourceMesh& mesh);
+void add_uvs(const TorusShape& torus, SourceMesh& mesh);
+
 }  // namespace opaline

@@ -2,6 +2,7 @@
 #include "check_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "opaline/core/error.h"
@@ -19,6 +20,8 @@ class MeshChecker {
       : settings_(settings), source_(std::move(source)), memory_(memory) {}
 
   CheckedMesh run() {
+    origins_.resize(source_.uvs.size());
+    for (std::size_t t = 0; t < origins_.size(); ++t) origins_[t] = std::uint32_t(2 * t);
     find_same_vertices();
     if (!recall()) {
       start_memory();
@@ -65,11 +68,12 @@ class MeshChecker {
   bool recall() {
     if (memory_ == nullptr || !memory_->holds || memory_->fill_holes != settings_.fill_holes ||
         memory_->may_be_open != settings_.may_be_open || memory_->same != same_ || memory_->site != site_ ||
-        memory_->given != source_.triangles ||
+        memory_->given != source_.triangles || memory_->origins.empty() != origins_.empty() ||
         any_inward(source_.positions, memory_->mended, memory_->part, memory_->parts))
       return false;
     memory_->recalled = true;
     source_.triangles = memory_->mended;
+    origins_ = memory_->origins;
     report_ = memory_->report;
     return true;
   }
@@ -90,6 +94,7 @@ class MeshChecker {
     memory_->same = std::move(same_);
     memory_->site = std::move(site_);
     memory_->mended = source_.triangles;
+    memory_->origins = origins_;
     memory_->report = report_;
   }
 
@@ -106,8 +111,12 @@ class MeshChecker {
   template <class Predicate>
   std::size_t drop_triangles(Predicate drop) {
     std::size_t kept = 0;
-    for (std::size_t t = 0; t < source_.triangles.size(); ++t)
-      if (!drop(t)) source_.triangles[kept++] = source_.triangles[t];
+    for (std::size_t t = 0; t < source_.triangles.size(); ++t) {
+      if (drop(t)) continue;
+      if (!origins_.empty()) origins_[kept] = origins_[t];
+      source_.triangles[kept++] = source_.triangles[t];
+    }
+    if (!origins_.empty()) origins_.resize(kept);
     const std::size_t dropped = source_.triangles.size() - kept;
     source_.triangles.resize(kept);
     return dropped;
@@ -153,6 +162,7 @@ class MeshChecker {
     for (std::size_t t = 0; t < winding.flip.size(); ++t) {
       if (!winding.flip[t]) continue;
       std::swap(source_.triangles[t][1], source_.triangles[t][2]);
+      if (!origins_.empty() && origins_[t] != kNew) origins_[t] ^= 1;
       ++report_.flipped;
     }
     if (winding.inconsistent > 0)
@@ -166,6 +176,7 @@ class MeshChecker {
   void fill(const EdgeTable& edges) {
     const HoleFilling filling = fill_holes(source_.positions, all_sites(), open_edges(edges));
     source_.triangles.insert(source_.triangles.end(), filling.triangles.begin(), filling.triangles.end());
+    if (!origins_.empty()) origins_.resize(source_.triangles.size(), kNew);
     report_.holes_filled = filling.filled;
     report_.hole_triangles_added = filling.triangles.size();
     if (filling.unfilled.empty()) return;
@@ -205,6 +216,21 @@ class MeshChecker {
     warn_of(report_.duplicates_dropped, " triangles given twice were dropped");
   }
 
+  /// Of the triangles that are left; none where holes were filled.
+  std::vector<CornerUvs> mended_uvs() const {
+    std::vector<CornerUvs> uvs;
+    uvs.reserve(origins_.size());
+    for (const std::uint32_t origin : origins_) {
+      uvs.push_back(origin == kNew ? CornerUvs{} : source_.uvs[origin / 2]);
+      if (origin != kNew && origin % 2 == 1) std::swap(uvs.back()[1], uvs.back()[2]);
+      constexpr float farthest = 1e6f;
+      for (auto& corner : uvs.back())
+        for (float& value : corner)
+          if (!(std::abs(value) < farthest)) value = 0;
+    }
+    return uvs;
+  }
+
   /// The mesh with only the vertices its triangles use, in their order.
   Mesh compacted() {
     constexpr std::uint32_t unused = 0xffffffff;
@@ -218,14 +244,18 @@ class MeshChecker {
       mesh.positions.push_back(source_.positions[v]);
       if (!source_.normals.empty()) mesh.normals.push_back(source_.normals[v]);
     }
+    mesh.uvs = mended_uvs();
     mesh.triangles = std::move(source_.triangles);
     for (Triangle& triangle : mesh.triangles)
       for (std::uint32_t& v : triangle) v = place[v];
     return mesh;
   }
 
+  static constexpr std::uint32_t kNew = ~0u;  // of a triangle that fills a hole
+
   const CheckSettings& settings_;
   SourceMesh source_;
+  std::vector<std::uint32_t> origins_;  // see CheckMemory; empty: without UVs
   CheckMemory* memory_;
   MeshReport report_;
   std::vector<std::uint32_t> same_, site_;

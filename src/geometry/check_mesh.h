@@ -22,8 +22,10 @@ struct CheckMemory {
   bool fill_holes = false, may_be_open = false;
   std::vector<Triangle> given;  ///< before anything was done to them
   std::vector<std::uint32_t> same,
-      site;                         ///< of each vertex the first at its place, with its normal and without
-  std::vector<Triangle> mended;     ///< without doubles, and wound
+      site;                      ///< of each vertex the first at its place, with its normal and without
+  std::vector<Triangle> mended;  ///< without doubles, and wound
+  std::vector<std::uint32_t>
+      origins;  ///< of these, twice the number of that given, one more if flipped; of UVs alone
   std::vector<std::uint32_t> part;  ///< Winding::part of these
   std::uint32_t parts = 0;
   MeshReport report;  ///< warnings do not name the mesh

@@ -16,10 +16,13 @@ namespace {
 
 struct SourceReader {
   const std::string& name;
-  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path, file.part); }
+  bool with_uvs;
+  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path, file.part, with_uvs); }
   template <class Builtin>
   SourceMesh operator()(const Builtin& shape) const {
-    return tessellate(shape, name);
+    SourceMesh mesh = tessellate(shape, name);
+    if (with_uvs) add_uvs(shape, mesh);
+    return mesh;
   }
 };
 
@@ -73,12 +76,17 @@ void place(SourceMesh& mesh, const Transform& to_world, const std::string& name)
   const NormalMap map{cross(y, z) * (side * (largest / lx)), cross(z, x) * (side * (largest / ly)),
                       cross(x, y) * (side * (largest / lz))};
   for (Vec3f& n : mesh.normals) n = map(n);
-  if (determinant < 0)
+  if (determinant < 0) {
     for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+    for (CornerUvs& uvs : mesh.uvs) std::swap(uvs[1], uvs[2]);
+  }
 }
 
-SourceMesh read_source(const Shape& shape, const std::string& name) {
-  SourceMesh mesh = std::visit(SourceReader{name}, shape.source);
+SourceMesh read_source(const Shape& shape, const std::string& name, bool with_uvs) {
+  SourceMesh mesh = std::visit(SourceReader{name, with_uvs}, shape.source);
+  if (with_uvs && mesh.uvs.empty())
+    throw bad_file(name, "has no UVs, by which its textures would be laid over it",
+                   "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF", "none");
   if (const auto* file = std::get_if<MeshFile>(&shape.source))
     if (file->fit_size) fit(mesh, *file->fit_size, name);
   return mesh;
@@ -119,16 +127,16 @@ const MeshMemory::Work& MeshMemory::work() const {
   return state_->work;
 }
 
-CheckedMesh make_mesh(const Shape& shape) {
+CheckedMesh make_mesh(const Shape& shape, bool with_uvs) {
   const std::string name = shape_label(shape);
-  return make_mesh(shape, name, read_source(shape, name), nullptr);
+  return make_mesh(shape, name, read_source(shape, name, with_uvs), nullptr);
 }
 
-CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory) {
+CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory, bool with_uvs) {
   const std::string name = shape_label(shape);
   MeshMemory::State& state = *memory.state_;
   if (!state.is_current) {
-    state.source = read_source(shape, name);
+    state.source = read_source(shape, name, with_uvs);
     state.is_current = true;
     ++state.work.read;
   }

@@ -12,10 +12,10 @@ namespace opaline {
 /// in    part: see MeshFile::part
 /// out   at least one triangle unless all were collapsed; every index in range, every position finite and
 ///       below 1e18; positions as exact as the file has them (STL: float); the file's normals, not
-///       normalised, with a vertex doubled where OBJ gives it several
+///       normalised, with a vertex doubled where OBJ gives it several; UVs, if asked for and there
 /// error Error{bad_input} naming the file, and the line where known: missing, not a file, empty, unknown
 ///       extension, no such part, truncated, not of its format, bad coordinates or indices, no faces. Memory stays within a
 ///       small multiple of the file's length
-SourceMesh read_mesh(const std::string& path, const std::string& part = {});
+SourceMesh read_mesh(const std::string& path, const std::string& part = {}, bool with_uvs = false);
 
 }  // namespace opaline

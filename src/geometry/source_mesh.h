@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "opaline/core/vec3.h"
+#include "opaline/geometry/mesh.h"
 
 namespace opaline {
 
@@ -18,7 +19,8 @@ struct SourceMesh {
   std::vector<Vec3d> positions;
   std::vector<Vec3f> normals;  ///< empty, or one a vertex, of any length; zero where there is none
   std::vector<Triangle> triangles;
-  std::size_t collapsed = 0;  ///< triangles left out already for want of three different corners
+  std::vector<CornerUvs> uvs;  ///< one a triangle, if asked for and there; else empty
+  std::size_t collapsed = 0;   ///< triangles left out already for want of three different corners
   std::vector<std::string> warnings;
 };
 

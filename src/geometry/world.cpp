@@ -20,9 +20,10 @@ Vec3d stable_middle(const Bounds& all, double diagonal) {
 }
 
 /// What is wrong with a shape is said where the scene has it.
-CheckedMesh load_mesh(const Shape& shape, MeshMemory* memory) {
+CheckedMesh load_mesh(const Scene& scene, const Shape& shape, MeshMemory* memory) {
+  const bool with_uvs = needs_uvs(scene, shape);
   try {
-    return memory == nullptr ? make_mesh(shape) : make_mesh(shape, *memory);
+    return memory == nullptr ? make_mesh(shape, with_uvs) : make_mesh(shape, *memory, with_uvs);
   } catch (const Error& failure) {
     throw told_at(shape.place, failure);
   }
@@ -64,7 +65,7 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
                    std::size_t& loaded, std::span<MeshMemory* const> memories) {
   World world;
   const auto load = [&](std::size_t shape) {
-    CheckedMesh checked = load_mesh(scene.shapes[shape], memories.empty() ? nullptr : memories[shape]);
+    CheckedMesh checked = load_mesh(scene, scene.shapes[shape], memories.empty() ? nullptr : memories[shape]);
     world.meshes[shape] = std::move(checked.mesh);
     world.reports[shape] = std::move(checked.report);
     world.boxes[shape] = bounds(world.meshes[shape]);

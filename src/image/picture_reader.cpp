@@ -5,71 +5,26 @@
 #include <OpenImageIO/color.h>
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string_view>
 
+#include "image/picture_file.h"
+#include "image/png_chunks.h"
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
-#include "png_chunks.h"
 
 namespace opaline {
 namespace {
 
-/// "exr", "hdr" or "png" by the first bytes. OpenImageIO would try every format it knows, and finds a Targa in
-/// noise.
-const char* format_of(const std::string& path) {
-  std::error_code failure;
-  const std::filesystem::file_status status = std::filesystem::status(path, failure);
-  if (!std::filesystem::exists(status)) throw bad_file(path, "cannot read: " + failure.message());
-  if (!std::filesystem::is_regular_file(status)) throw bad_file(path, "cannot read: not a regular file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw bad_file(path, std::string("cannot read: ") + std::strerror(errno));
-  char bytes[8] = {};
-  file.read(bytes, sizeof bytes);
-  const std::string_view start(bytes, static_cast<std::size_t>(file.gcount()));
-  if (start.empty()) throw bad_file(path, "the file is empty", "an EXR, HDR or PNG picture");
-  if (start.starts_with("\x76\x2f\x31\x01")) return "exr";
-  if (start == "\x89PNG\r\n\x1a\n") return "png";
-  if (start.starts_with("#?RADIAN") || start.starts_with("#?RGBE")) return "hdr";
-  throw bad_file(path, "not a picture that can be read", "an EXR, HDR or PNG picture");
-}
-
-std::string one_line(std::string message) {
-  while (!message.empty() && message.back() == '\n') message.pop_back();
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  return message;
-}
-
-/// The pending message; not fetched, OpenImageIO 2.5 and later print it at exit.
-std::string complaint_of(const OIIO::ImageInput* input) {
-  const std::string complaint = input ? input->geterror() : OIIO::geterror();
-  return one_line(complaint.empty() ? "no reason given" : complaint);
-}
-
-/// Floats in memory over bytes in the file, at most: a constant picture of 8192 x 8192 halves packs 29330 : 1
-/// as DWA, 1945 : 1 as ZIP, less as others (measured); a PNG of one-bit palette entries 99072 : 1 (deflate's
-/// 1032).
-double densest(const OIIO::ImageSpec& spec, std::string_view format) {
-  if (format == "png") return 131072;
-  return spec.get_string_attribute("compression").substr(0, 3) == "dwa" ? 32768 : 2048;
-}
-
-/// A damaged header can claim any size: memory stays bounded by the file's own. Beside the picture the
-/// libraries hold rows: OpenImageIO 256, however few there are, OpenEXR 32 a thread (traced on a picture of
-/// 55555 x 2: 850 MB for 2.6).
-void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::string_view format) {
-  constexpr double always_allowed = 512 << 20, rows_beside = 1024;
-  const double claimed =
-      sizeof(float) * static_cast<double>(spec.width) * (spec.height + rows_beside) * spec.nchannels;
-  const double actual = static_cast<double>(std::filesystem::file_size(path));
-  if (claimed > densest(spec, format) * actual + always_allowed)
-    throw bad_file(path, "the file is too short for the size it claims", {},
-                   std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels");
+const char* readable_format_of(const std::string& path) {
+  constexpr const char* readable = "an EXR, HDR or PNG picture";
+  const std::string start = first_bytes(path);
+  if (start.empty()) throw bad_file(path, "the file is empty", readable);
+  const char* const format = picture_format(start);
+  for (const char* const known : {"exr", "hdr", "png"})
+    if (format != nullptr && std::string_view(format) == known) return format;
+  throw bad_file(path, "not a picture that can be read", readable);
 }
 
 /// Text that describes the picture, without what describes the file.
@@ -105,7 +60,7 @@ void linearize(Image& image, int alpha) {
 }  // namespace
 
 Image read_picture(const std::string& path) {
-  const std::string format = format_of(path);
+  const std::string format = readable_format_of(path);
   if (format == "png") check_png_chunks(path);
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
   OIIO::ImageSpec spec, config;
@@ -113,7 +68,7 @@ Image read_picture(const std::string& path) {
   if (!input || !input->open(path, spec, config))
     throw bad_file(path, "not a picture that can be read: " + complaint_of(input.get()));
   if (spec.deep) throw bad_file(path, "deep pictures are not supported");
-  check_size(path, spec, format);
+  check_picture_size(path, spec, format, std::filesystem::file_size(path));
 
   Image image = describe(spec);
   image.pixels.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *

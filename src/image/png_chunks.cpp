@@ -37,8 +37,11 @@ std::uint32_t big_endian(std::string_view bytes) {
 }  // namespace
 
 void check_png_chunks(const std::string& path) {
-  const std::uintmax_t size = std::filesystem::file_size(path);
   std::ifstream file(path, std::ios::binary);
+  check_png_chunks(file, std::filesystem::file_size(path), path);
+}
+
+void check_png_chunks(std::istream& file, std::uintmax_t size, const std::string& path) {
   std::uintmax_t at = 8;  // after the signature
   std::string chunk;      // its type and data, then its CRC
   while (!chunk.starts_with("IEND")) {

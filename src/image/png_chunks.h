@@ -3,6 +3,8 @@
 // a missing end for an end, and its long jump out of OpenImageIO 2.4 leaks.
 #pragma once
 
+#include <cstdint>
+#include <istream>
 #include <string>
 
 namespace opaline {
@@ -12,5 +14,7 @@ namespace opaline {
 /// error Error{bad_input} naming the file: truncated, damaged
 /// from  PNG specification (ISO/IEC 15948), sections 5.3 and annex D
 void check_png_chunks(const std::string& path);
+/// The same of a file's bytes in memory. name: for messages
+void check_png_chunks(std::istream& file, std::uintmax_t size, const std::string& name);
 
 }  // namespace opaline

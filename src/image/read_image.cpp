@@ -1,28 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <dlfcn.h>
 
+#include "image/picture_module.h"
+#include "image/picture_reader.h"
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
-#include "picture_reader.h"
 
 namespace opaline {
-namespace {
 
 // Looked for along the run path of the program.
-constexpr const char* kModule = "opaline_picture_reader.so";
-
-ReadPicture load_reader() {
-  void* const module = ::dlopen(kModule, RTLD_NOW | RTLD_LOCAL);
-  void* const symbol = module != nullptr ? ::dlsym(module, "opaline_picture_reader") : nullptr;
-  if (symbol == nullptr)
-    throw run_failed(kModule, std::string("cannot load what reads pictures: ") + ::dlerror());
-  return reinterpret_cast<decltype(&opaline_picture_reader)>(symbol)();
+void* picture_module_function(const char* name) {
+  constexpr const char* file = "opaline_picture_reader.so";
+  void* const module = ::dlopen(file, RTLD_NOW | RTLD_LOCAL);
+  void* const function = module != nullptr ? ::dlsym(module, name) : nullptr;
+  if (function == nullptr)
+    throw run_failed(file, std::string("cannot load what reads pictures: ") + ::dlerror());
+  return function;
 }
 
-}  // namespace
-
 Image read_image(const std::string& path) {
-  static const ReadPicture read = load_reader();
+  static const ReadPicture read = reinterpret_cast<decltype(&opaline_picture_reader)>(
+      picture_module_function("opaline_picture_reader"))();
   return read(path);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 
@@ -11,15 +12,28 @@
 #include "opaline/scene/scene.h"
 #include "opaline/transport/fresnel.h"
 #include "opaline/transport/rough_boundary.h"
+#include "render/hit_textures.h"
 
 namespace opaline {
 
 struct Appearance {
   bool translucent = false;
-  RgbF albedo{};                       ///< reflectance, or total diffuse reflectance
-  float eta = 1;                       ///< translucent only
-  float average_reflectance = 0;       ///< F_bar
-  std::optional<RoughBoundary> rough;  ///< none: smooth
+  RgbF albedo{};                                           ///< reflectance, or total diffuse reflectance
+  float eta = 1;                                           ///< of the boundary, where there is one
+  float average_reflectance = 0;                           ///< F_bar
+  std::optional<RoughBoundary> rough;                      ///< none: smooth
+  bool has_boundary = false;                               ///< translucent things and glossy opaque ones
+  float metalness = 0;                                     ///< of an opaque one
+  std::shared_ptr<const RoughnessRange> roughnesses = {};  ///< of a boundary whose roughness is a texture
+
+  /// The same at a point whose textures are known.
+  Appearance at(const HitTextures& textures) const {
+    Appearance here = *this;
+    here.albedo = albedo * textures.tint.entering * textures.tint.leaving;
+    if (textures.roughness && roughnesses) here.rough = roughnesses->at(*textures.roughness);
+    if (textures.metalness) here.metalness = *textures.metalness;
+    return here;
+  }
 
   /// The share of light towards a direction that is mirrored.
   float reflectance(float cosine) const {
@@ -28,7 +42,18 @@ struct Appearance {
   /// Radiance towards a direction over the exitance: what is not mirrored. In a furnace both are 1 together.
   float radiance_of_exitance(float cosine) const {
     constexpr float kInversePi = std::numbers::inv_pi_v<float>;
-    return translucent ? kInversePi * (1 - reflectance(cosine)) / (1 - average_reflectance) : kInversePi;
+    if (!has_boundary) return kInversePi;
+    const float entered = kInversePi * (1 - reflectance(cosine)) / (1 - average_reflectance);
+    return metalness > 0 ? entered * (1 - metalness) : entered;
+  }
+  /// Light that is mirrored over that of a dielectric without a metal.
+  /// in    cosine: with the facet's normal
+  RgbF mirror_color(float cosine) const {
+    if (!(metalness > 0)) return RgbF(1);
+    const float dielectric = fresnel_reflectance(std::min(cosine, 1.0f), eta);
+    const float grazing = std::pow(1 - std::min(cosine, 1.0f), 5.0f);  // Schlick 1994
+    const RgbF metal = albedo + (RgbF(1) - albedo) * grazing;
+    return RgbF(1 - metalness) + metal * (metalness / dielectric);
   }
 };
 

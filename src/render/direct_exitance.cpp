@@ -22,6 +22,19 @@ bool survives(Entry& entry, float usual, double random) {
   return true;
 }
 
+/// What tints light that enters there, as fine as the texture is.
+RgbF entering_tint(const DirectExitanceInput& input, const Entry& entry, std::size_t exit) {
+  if (input.textures == nullptr || input.textures->empty()) return RgbF(1);
+  const bool is_exit = entry.mesh == Hit::kMiss;
+  const Hit& hit = input.hits[exit];
+  const std::uint32_t mesh = is_exit ? hit.mesh : entry.mesh;
+  if (!input.textures->tints_entering(mesh)) return RgbF(1);
+  const SurfaceTextures::Place place =
+      is_exit ? input.textures->place(mesh, hit.triangle, hit.u, hit.v, {})
+              : input.textures->place(mesh, entry.triangle, entry.u, entry.v, {});
+  return input.textures->tint(place).entering;
+}
+
 /// Where the profile asks for the light's direction: ray by ray.
 void add_directed_light(const DirectExitanceInput& input, const PointIrradianceInput& at,
                         std::span<const Entry> entries, std::span<const std::size_t> exits,
@@ -34,7 +47,7 @@ void add_directed_light(const DirectExitanceInput& input, const PointIrradianceI
                                                                                 entry.point, towards_light) *
                                                           entry.inverse_density
                                                     : entry.weight;
-      exitance[exits[e]] += weight * colour * irradiance;
+      exitance[exits[e]] += weight * colour * irradiance * entry.tint;
     });
   }
 }
@@ -62,6 +75,7 @@ std::vector<RgbF> direct_exitance(const DirectExitanceInput& input) {
       for (std::size_t e = 0; e < entries.size(); ++e) {
         const std::uint64_t entry_key = hash_bits(sample_key, 2 + e);
         if (!survives(entries[e], usual, unit_double(entry_key))) continue;
+        entries[e].tint = entering_tint(input, entries[e], p);
         entry_points.push_back(entries[e].point);
         taken.push_back(entries[e]);
         keys.push_back(entry_key);
@@ -77,7 +91,8 @@ std::vector<RgbF> direct_exitance(const DirectExitanceInput& input) {
     add_directed_light(input, at, taken, exits, exitance);
   } else {
     const std::vector<RgbF> entered = irradiance_at(at);
-    for (std::size_t e = 0; e < taken.size(); ++e) exitance[exits[e]] += taken[e].weight * entered[e];
+    for (std::size_t e = 0; e < taken.size(); ++e)
+      exitance[exits[e]] += taken[e].weight * entered[e] * taken[e].tint;
   }
   if (input.entry_samples > 0)
     for (RgbF& m : exitance) m *= 1 / float(input.entry_samples);

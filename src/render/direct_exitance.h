@@ -3,6 +3,7 @@
 #pragma once
 
 #include "opaline/irradiance/irradiance.h"
+#include "opaline/render/surface_textures.h"
 #include "render/entry_sampler.h"
 
 namespace opaline {
@@ -11,6 +12,9 @@ struct DirectExitanceInput {
   const EntrySampler& sampler;
   PointIrradianceInput exits;  ///< points that light leaves, their keys, lights and boundary
   int entry_samples = 1;       ///< a point, >= 0
+  /// What tints light that enters, and where the exits are; null: nothing.
+  const SurfaceTextures* textures = nullptr;
+  std::span<const Hit> hits = {};
 };
 
 /// Unbiased estimates of M_o at each point, W/mm^2: the mean over the samples of weight x E at their entries,

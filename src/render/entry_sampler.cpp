@@ -98,7 +98,8 @@ void EntrySampler::sample(const SurfacePoint& exit, const EntryRandom& random, s
     const bool crosses = far_table_ && !same_sheet(point.geometric, exit.geometric);
     alignas(16) float kernel[4];
     _mm_store_ps(kernel, (crosses ? *far_table_ : table_)(dot(offset, offset)));
-    entries.push_back({point, RgbF{kernel[0], kernel[1], kernel[2]} * (1 / p), 1 / p});
+    entries.push_back({point, RgbF{kernel[0], kernel[1], kernel[2]} * (1 / p), 1 / p, hit.mesh, hit.triangle,
+                       hit.u, hit.v});
   }
 }
 

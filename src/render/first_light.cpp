@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "opaline/core/parallel.h"
+#include "opaline/render/surface_textures.h"
 #include "opaline/sampling/draft_samples.h"
 #include "render/tile_renderer.h"
 
@@ -98,6 +99,7 @@ void enlarge(const Image& coarse, const CoarseGrid& grid, Image& picture) {
 
 std::vector<Body> draft_groups(const PrecomputeInput& input) {
   const std::vector<Light> lights = recentred_lights(input.scene, input.world);
+  const SurfaceTextures textures(input.scene, input.world);
   std::vector<Body> groups;
   for (std::size_t g = 0; g < input.plan.groups.size(); ++g) {
     const GroupPlan& plan = input.plan.groups[g];
@@ -106,11 +108,13 @@ std::vector<Body> draft_groups(const PrecomputeInput& input) {
         draft_samples(input.world, plan.meshes, std::max(kFewest, plan.samples / kFewer));
     SplitKernel kernel = group_kernel(profile, surface, input.world, input.scene);
     std::vector<LightTransfer> transfers = light_samples(input, g, surface.samples, lights);
-    std::vector<RgbF> irradiance = combine_lights(transfers, lights);
-    Octree octree = gather_flux(surface.samples, irradiance);
-    if (kernel.far_side != nullptr) bound_normals(octree);
-    groups.push_back({plan, profile, std::move(surface), std::move(transfers), std::move(irradiance),
-                      std::move(octree), std::move(kernel)});
+    groups.push_back({plan, profile, std::move(surface), std::move(transfers), {}, {}});
+    Body& body = groups.back();
+    body.entering = entering_tints(textures, body.surface.samples);
+    body.irradiance = entered_irradiance(body, lights);
+    body.octree = gather_flux(body.surface.samples, body.irradiance);
+    if (kernel.far_side != nullptr) bound_normals(body.octree);
+    body.kernel = std::move(kernel);
   }
   return groups;
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/image/texture_file.h"
 #include "opaline/lights/light.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/render.h"
@@ -321,6 +322,21 @@ RayBuild cheaper_build(const Scene& scene, const Plan& plan) {
   return lost < kSaved * double(plan.triangles) ? RayBuild::quick : RayBuild::careful;
 }
 
+/// Of all textures at their full sizes: a camera may look at less.
+std::size_t texture_bytes(const Scene& scene) {
+  std::set<const TextureFile*> files;
+  for (const Shape& shape : scene.shapes)
+    for (const Texture* texture : textures_of(scene, shape)) files.insert(texture->file.get());
+  if (files.empty()) return 0;
+  std::size_t decoded = 0, cached = 0;
+  for (const TextureFile* file : files) {
+    const TextureMemory memory = file->memory();
+    decoded = std::max(decoded, memory.decoded);
+    cached += memory.cached;
+  }
+  return decoded + std::min(cached, TextureFile::cache_limit());
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, const World& world) {
@@ -343,7 +359,9 @@ Plan make_plan(const Scene& scene, const World& world) {
   for (const Mesh& mesh : world.meshes) {
     plan.triangles += mesh.triangles.size();
     plan.bytes += mesh.positions.size() * 48 + mesh.triangles.size() * 140;  // and Embree's tree
+    plan.bytes += mesh.uvs.size() * 2 * sizeof(CornerUvs);                   // as read, and mended
   }
+  plan.bytes += texture_bytes(scene);
   std::size_t samples = 0;
   for (GroupPlan& group : plan.groups) {
     choose_samples(scene, group, plan.warnings);

@@ -126,6 +126,12 @@ VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body) {
                           body.plan.cell / input.world.unit});
 }
 
+std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights) {
+  std::vector<RgbF> irradiance = combine_lights(body.transfers, lights);
+  for (std::size_t i = 0; i < body.entering.size(); ++i) irradiance[i] = irradiance[i] * body.entering[i];
+  return irradiance;
+}
+
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance) {
   std::vector<FluxSample> flux(samples.size());
   for (std::size_t i = 0; i < flux.size(); ++i) {

@@ -11,14 +11,43 @@
 namespace opaline {
 namespace {
 
-Appearance appearance_of(const Scene& scene, const Shape& shape) {
-  if (!shape.medium) return {.albedo = RgbF(shape.reflectance), .rough = {}};
+void roughen(Appearance& appearance, double roughness, bool is_texture, double eta) {
+  if (is_texture)
+    appearance.roughnesses = std::make_shared<const RoughnessRange>(eta);
+  else if (roughness > 0)
+    appearance.rough.emplace(roughness, eta);
+}
+
+Appearance opaque_appearance(const Shape& shape) {
+  Appearance appearance{.albedo = RgbF(shape.reflectance), .rough = {}};
+  if (!shape.gloss) return appearance;
+  const Gloss& gloss = *shape.gloss;
+  appearance.eta = float(gloss.eta);
+  appearance.average_reflectance = float(average_reflectance_outside(gloss.eta));
+  appearance.has_boundary = true;
+  appearance.metalness = float(gloss.metalness);
+  roughen(appearance, gloss.roughness, gloss.roughness_texture.has_value(), gloss.eta);
+  return appearance;
+}
+
+Appearance mesh_appearance(const Scene& scene, const Shape& shape) {
+  if (!shape.medium) return opaque_appearance(shape);
   const Medium& medium = scene.media[*shape.medium];
   const DiffuseProfile profile = make_diffuse_profile(medium);
-  Appearance appearance{
-      true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), {}};
-  if (medium.specular_roughness > 0) appearance.rough.emplace(medium.specular_roughness, medium.eta);
+  Appearance appearance{true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), {},
+                        true};
+  roughen(appearance, medium.specular_roughness, medium.roughness_texture.has_value(), medium.eta);
   return appearance;
+}
+
+// Of the cones around some 64 directions over a hemisphere, for textures that they meet.
+constexpr float kGatheringSpread = 0.25f;
+
+// Full angle of a pixel's ray.
+float pixel_spread(const Scene& scene) {
+  constexpr double kHalf = std::numbers::pi / 360;  // degrees of a full angle to radians of its half
+  const double pixel = 2 * std::tan(scene.camera.field_of_view * kHalf) / scene.film.resolution[1];
+  return float(pixel / std::sqrt(scene.film.samples_per_pixel));
 }
 
 SurfacePoint point_of(const Hit& hit, const RayScene& rays) {
@@ -36,13 +65,16 @@ std::vector<SurfacePoint> points_of(std::span<const TracedRay> traced, const Ray
 }  // namespace
 
 Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers)
-    : input_(input), fields_(make_fields(input, entry_samplers)) {
+    : input_(input),
+      textures_(input.scene, input.world),
+      pixel_spread_(pixel_spread(input.scene)),
+      fields_(make_fields(input, textures_, entry_samplers)) {
   for (const Light& light : input.scene.lights) {
     lights_.push_back(recentred(light, input.world.origin, input.world.unit));
     if (is_delta(light)) continue;
     (extent(light).center ? emitters_ : surroundings_).push_back(lights_.back());
   }
-  for (const Shape& shape : input.scene.shapes) appearances_.push_back(appearance_of(input.scene, shape));
+  for (const Shape& shape : input.scene.shapes) appearances_.push_back(mesh_appearance(input.scene, shape));
   // The samples of a pixel share the rays: their average has as many.
   const int spp = input.scene.film.samples_per_pixel;
   light_samples_ = (input.scene.settings.light_samples + spp - 1) / spp;
@@ -51,11 +83,12 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
 std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                           std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held) const {
   std::size_t queries = 0;
-  const std::vector<SurfaceHits> all_hits = shade_diffuse({rays, keys, out}, light_samples_, pass, held);
+  const std::vector<SurfaceHits> all_hits =
+      shade_diffuse({rays, keys, out, pixel_spread_}, light_samples_, pass, held);
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
     if (all_hits[f].points.empty()) continue;
     const float eta = fields_.all[f]->eta();
-    if (eta > 0 && eta != 1) add_specular(all_hits[f], {rays, keys, out}, pass);
+    if (eta > 0 && eta != 1) add_specular(all_hits[f], {rays, keys, out, pixel_spread_}, pass);
     if (fields_.all[f]->asks_samples()) queries += all_hits[f].points.size();
   }
   return queries;
@@ -64,7 +97,7 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
 std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
                                                HeldView::Batch* held) const {
   if (held != nullptr) held->surfaces.resize(fields_.all.size());
-  std::vector<SurfaceHits> all_hits = collect(batch.rays, batch.keys, batch.out, held);
+  std::vector<SurfaceHits> all_hits = collect(batch, held);
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
     const SurfaceHits& hits = all_hits[f];
     if (hits.points.empty()) continue;
@@ -89,7 +122,7 @@ std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_
 std::vector<RgbF> Shader::diffuse_along(std::span<const TracedRay> rays,
                                         std::span<const std::uint64_t> keys) const {
   std::vector<PixelSample> seen(rays.size());
-  shade_diffuse({rays, keys, seen}, 1, {.is_seen = false}, nullptr);
+  shade_diffuse({rays, keys, seen, kGatheringSpread, {}}, 1, {.is_seen = false}, nullptr);
   std::vector<RgbF> radiance;
   radiance.reserve(seen.size());
   for (const PixelSample& sample : seen) radiance.push_back(sample.diffuse);
@@ -99,7 +132,7 @@ std::vector<RgbF> Shader::diffuse_along(std::span<const TracedRay> rays,
 std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedRay> rays,
                                                          std::span<const std::uint64_t> keys) const {
   std::vector<PixelSample> lights(rays.size());
-  std::vector<SurfaceHits> hits = collect(rays, keys, lights, nullptr);
+  std::vector<SurfaceHits> hits = collect({rays, keys, lights, pixel_spread_, {}}, nullptr);
   std::vector<SeenSurfaces> seen;
   for (std::size_t f = 0; f < hits.size(); ++f)
     if (!hits[f].points.empty()) seen.push_back({std::move(hits[f]), fields_.all[f]->eta()});
@@ -107,8 +140,8 @@ std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedR
 }
 
 // Sorts the hits by field; rays that meet a light or nothing are done.
-std::vector<SurfaceHits> Shader::collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                                         std::span<PixelSample> out, HeldView::Batch* held) const {
+std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch* held) const {
+  const auto& [rays, keys, out, spread, widths] = batch;
   std::vector<SurfaceHits> surfaces(fields_.all.size());
   const bool holds_points = held != nullptr && input_.view->has_room;
   if (holds_points && held->points.empty()) held->points = points_of(rays, input_.rays);
@@ -135,6 +168,7 @@ std::vector<SurfaceHits> Shader::collect(std::span<const TracedRay> rays, std::s
         point.geometric = -point.geometric;
         point.normal = -point.normal;
       }
+      if (!textures_.empty()) add_textures(batch, i, point, own);
       own.points.push_back(point);
       own.hits.push_back(hit);
       own.keys.push_back(keys[i]);
@@ -144,20 +178,40 @@ std::vector<SurfaceHits> Shader::collect(std::span<const TracedRay> rays, std::s
   return surfaces;
 }
 
+void Shader::add_textures(const RayBatch& batch, std::size_t ray, SurfacePoint& point,
+                          SurfaceHits& hits) const {
+  const auto& [traced, hit] = batch.rays[ray];
+  const SurfaceTextures::Place place = textures_.place(
+      hit.mesh, hit.triangle, hit.u, hit.v, footprint_of(point, traced.direction, width_at(batch, ray)));
+  textures_.bend(place, point);
+  hits.textures.push_back({textures_.tint(place), textures_.roughness(place), textures_.metalness(place)});
+}
+
+float Shader::width_at(const RayBatch& batch, std::size_t ray) const {
+  return (batch.widths.empty() ? 0 : batch.widths[ray]) + batch.spread * batch.rays[ray].ray.far;
+}
+
+Appearance Shader::appearance_of(const SurfaceHits& hits, std::size_t i) const {
+  return appearances_[hits.hits[i].mesh].at(hits.textures[i]);
+}
+
 void Shader::write(const SurfaceHits& hits, const LeavingLight& light, std::span<const TracedRay> rays,
                    std::span<PixelSample> out) const {
   for (std::size_t i = 0; i < hits.rays.size(); ++i) {
     const auto& [ray, hit] = rays[hits.rays[i]];
-    const Appearance& appearance = appearances_[hit.mesh];
+    const bool is_plain = hits.textures.empty();
+    const Appearance textured = is_plain ? Appearance{} : appearance_of(hits, i);
+    const Appearance& appearance = is_plain ? appearances_[hit.mesh] : textured;
     const SurfacePoint& point = hits.points[i];
     PixelSample& sample = out[hits.rays[i]];
-    const float radiance = appearance.radiance_of_exitance(cos_view(point, ray.direction));
+    RgbF radiance(appearance.radiance_of_exitance(cos_view(point, ray.direction)));
+    if (!is_plain) radiance = radiance * hits.textures[i].tint.leaving;
     sample.diffuse = light.exitance[i] * radiance;
     sample.coverage = 1;
     sample.albedo = appearance.albedo;
     if (!light.irradiance.empty()) sample.irradiance = light.irradiance[i];
     if (!light.error.empty()) sample.error = light.error[i] * radiance;
-    if (!light.noise.empty()) sample.noise = light.noise[i] * double(radiance * radiance);
+    if (!light.noise.empty()) sample.noise = light.noise[i] * Rgb(radiance * radiance);
     if (!light.bias.empty()) sample.bias = light.bias[i] * radiance;
     sample.translucent = appearance.translucent ? 1.0f : 0.0f;
     sample.normal = point.normal;

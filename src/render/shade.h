@@ -48,12 +48,21 @@ class Shader {
     std::span<const TracedRay> rays;
     std::span<const std::uint64_t> keys;
     std::span<PixelSample> out;
+    /// How wide the cones around the rays are, for textures: at their origins (empty: 0) and more by their length.
+    float spread = 0;
+    std::span<const float> widths = {};
+  };
+  /// Rays that leave surfaces, as their cones do.
+  struct Cones {
+    float spread = 0;
+    std::vector<float> widths;  ///< empty: nobody asks
   };
   struct GlossyHits;
 
   RgbF surroundings(const Vec3f& direction) const;
-  std::vector<SurfaceHits> collect(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                                   std::span<PixelSample> out, HeldView::Batch* held) const;
+  std::vector<SurfaceHits> collect(const RayBatch& batch, HeldView::Batch* held) const;
+  void add_textures(const RayBatch& batch, std::size_t ray, SurfacePoint& point, SurfaceHits& hits) const;
+  Appearance appearance_of(const SurfaceHits& hits, std::size_t i) const;
   /// What leaves where rays meet surfaces, and lights that they meet. Returns the hits of each field.
   std::vector<SurfaceHits> shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
                                          HeldView::Batch* held) const;
@@ -66,7 +75,8 @@ class Shader {
   void add_highlights(const GlossyHits& glossy) const;
   void add_reflections(const GlossyHits& glossy, const Pass& pass) const;
   std::vector<PixelSample> seen_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                                      const Pass& pass) const;
+                                      const Cones& cones, const Pass& pass) const;
+  float width_at(const RayBatch& batch, std::size_t ray) const;
   bool mirrors_surfaces() const { return has_visible_lights() || input_.scene.shapes.size() > 1; }
   EmitterHit nearest_emitter(const Vec3f& origin, const Vec3f& direction, float far) const;
 
@@ -75,6 +85,8 @@ class Shader {
   std::vector<Light> emitters_;          // those with an area
   std::vector<Light> surroundings_;      // those all around
   std::vector<Appearance> appearances_;  // one a mesh
+  SurfaceTextures textures_;
+  float pixel_spread_ = 0;  // of camera rays
   Fields fields_;
   int light_samples_ = 1;  // a camera ray
   const BouncedLight* bounced_ = nullptr;

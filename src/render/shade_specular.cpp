@@ -16,6 +16,8 @@ namespace {
 constexpr int kFacets = 16, kLightSamples = 16;
 // Shadow rays towards a surface that is seen in a mirror, over those where it is seen: a mirror takes most away.
 constexpr int kFewerInMirrors = 4;
+// Of the cones around directions of a lobe, for textures that they meet.
+constexpr float kGlossySpread = .1f;
 
 TracedRay leaving(const SurfacePoint& point, const Vec3f& direction) {
   const float side = dot(direction, point.geometric) >= 0 ? 1.0f : -1.0f;
@@ -44,11 +46,13 @@ float balance(float own, float other) {
 void Shader::add_specular(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const {
   SurfaceHits smooth, rough;
   for (std::size_t i = 0; i < hits.rays.size(); ++i) {
-    SurfaceHits& part = appearances_[hits.hits[i].mesh].rough ? rough : smooth;
+    const Appearance& appearance = appearances_[hits.hits[i].mesh];
+    SurfaceHits& part = appearance.rough || appearance.roughnesses ? rough : smooth;
     part.points.push_back(hits.points[i]);
     part.hits.push_back(hits.hits[i]);
     part.keys.push_back(hits.keys[i]);
     part.rays.push_back(hits.rays[i]);
+    if (!hits.textures.empty()) part.textures.push_back(hits.textures[i]);
   }
   if (!smooth.rays.empty() && mirrors_surfaces()) add_mirrored(smooth, batch, pass);
   if (!rough.rays.empty()) add_glossy(rough, batch, pass);
@@ -56,24 +60,31 @@ void Shader::add_specular(const SurfaceHits& hits, const RayBatch& batch, const 
 
 // Without what is mirrored there.
 std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
-                                            std::span<const std::uint64_t> keys, const Pass& pass) const {
+                                            std::span<const std::uint64_t> keys, const Cones& cones,
+                                            const Pass& pass) const {
   std::vector<PixelSample> seen(rays.size());
-  shade_diffuse({rays, keys, seen}, std::max(1, light_samples_ / kFewerInMirrors), pass, nullptr);
+  shade_diffuse({rays, keys, seen, cones.spread, cones.widths}, std::max(1, light_samples_ / kFewerInMirrors),
+                pass, nullptr);
   return seen;
 }
 
 // Lights without an area have no extent to be seen by.
 void Shader::add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const {
   std::vector<TracedRay> mirrored;
+  Cones cones{batch.spread, {}};
   for (std::size_t i = 0; i < hits.rays.size(); ++i) {
     const Vec3f d = normalized(batch.rays[hits.rays[i]].ray.direction), &normal = hits.points[i].normal;
     mirrored.push_back(leaving(hits.points[i], d - normal * (2 * dot(d, normal))));
+    if (!textures_.empty()) cones.widths.push_back(width_at(batch, hits.rays[i]));
   }
   input_.rays.intersect(mirrored);
-  const std::vector<PixelSample> seen = seen_along(mirrored, hits.keys, pass);
+  const std::vector<PixelSample> seen = seen_along(mirrored, hits.keys, cones, pass);
   for (std::size_t i = 0; i < hits.rays.size(); ++i) {
     const float cosine = cos_view(hits.points[i], batch.rays[hits.rays[i]].ray.direction);
-    const float share = appearances_[hits.hits[i].mesh].reflectance(cosine);
+    const bool is_plain = hits.textures.empty();
+    const Appearance textured = is_plain ? Appearance{} : appearance_of(hits, i);
+    const Appearance& appearance = is_plain ? appearances_[hits.hits[i].mesh] : textured;
+    const RgbF share = appearance.mirror_color(cosine) * appearance.reflectance(cosine);
     batch.out[hits.rays[i]].specular = (seen[i].diffuse + seen[i].emitted) * share;
   }
 }
@@ -83,7 +94,8 @@ struct Shader::GlossyHits {
   const SurfaceHits& hits;
   const RayBatch& batch;
   std::vector<Frame> frames;
-  std::vector<const RoughBoundary*> boundaries;
+  std::vector<Appearance> textured;  // where textures have their say
+  std::vector<const Appearance*> appearances;
   int facets, to_lights;
   std::uint64_t seed;
 
@@ -92,15 +104,24 @@ struct Shader::GlossyHits {
     const int spp = shader.input_.scene.film.samples_per_pixel;
     facets = (kFacets + spp - 1) / spp;
     to_lights = (kLightSamples + spp - 1) / spp;
+    textured.reserve(hits.textures.size());
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
       frames.emplace_back(hits.points[i], -normalized(batch.rays[hits.rays[i]].ray.direction));
-      boundaries.push_back(&*shader.appearances_[hits.hits[i].mesh].rough);
+      if (!hits.textures.empty()) textured.push_back(shader.appearance_of(hits, i));
+      appearances.push_back(hits.textures.empty() ? &shader.appearances_[hits.hits[i].mesh]
+                                                  : &textured.back());
     }
+  }
+  const RoughBoundary& boundary(std::size_t i) const { return *appearances[i]->rough; }
+  // Of what is mirrored from a direction, local.
+  RgbF color(std::size_t i, const Vec3f& light) const {
+    if (!(appearances[i]->metalness > 0)) return RgbF(1);
+    return appearances[i]->mirror_color(dot(frames[i].view, normalized(frames[i].view + light)));
   }
   RgbF& specular(std::size_t i) const { return batch.out[hits.rays[i]].specular; }
   // How many directions each way of drawing puts there, 1/sr.
   float of_lobe(std::size_t i, const Vec3f& towards) const {
-    return float(facets) * boundaries[i]->density(frames[i].view, frames[i].local(towards));
+    return float(facets) * boundary(i).density(frames[i].view, frames[i].local(towards));
   }
   float of_light(std::size_t i, const Light& light, const Vec3f& towards) const {
     const SurfacePoint& point = hits.points[i];
@@ -125,8 +146,8 @@ void Shader::add_highlights(const GlossyHits& glossy) const {
       const Vec3f local = glossy.frames[i].local(towards);
       const float share =
           is_delta(light) ? 1 : balance(glossy.of_light(i, light, towards), glossy.of_lobe(i, towards));
-      const float value = glossy.boundaries[i]->value(glossy.frames[i].view, local) / local.z;
-      glossy.specular(i) += emitted * (irradiance * value * share);
+      const float value = glossy.boundary(i).value(glossy.frames[i].view, local) / local.z;
+      glossy.specular(i) += emitted * glossy.color(i, local) * (irradiance * value * share);
     });
   }
 }
@@ -135,6 +156,12 @@ void Shader::add_highlights(const GlossyHits& glossy) const {
 void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
   struct Drawn {
     float weight;
+    RgbF color;  // besides
+    std::uint32_t hit;
+  };
+  struct Met {
+    float weight;  // of all rays that met surfaces
+    RgbF share;    // these, each in its colour
     std::uint32_t hit;
   };
   std::vector<TracedRay> rays;
@@ -145,22 +172,23 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
                                       unit_double(hash_bits(glossy.seed, 2 * key + 1))};
     for (int k = 0; k < glossy.facets; ++k) {
       const auto [direction, weight] =
-          glossy.boundaries[i]->sample(glossy.frames[i].view, r2_point(std::uint64_t(k), shift));
+          glossy.boundary(i).sample(glossy.frames[i].view, r2_point(std::uint64_t(k), shift));
       const Vec3f towards = glossy.frames[i].world(direction);
       if (!(weight > 0 && dot(towards, glossy.hits.points[i].geometric) > 0)) continue;
       rays.push_back(leaving(glossy.hits.points[i], towards));
-      drawn.push_back({weight / float(glossy.facets), std::uint32_t(i)});
+      drawn.push_back({weight / float(glossy.facets), glossy.color(i, direction), std::uint32_t(i)});
     }
   }
   input_.rays.intersect(rays);
 
   // Of the surfaces that a hit's rays meet, one stands for all.
-  std::vector<Drawn> met;
+  std::vector<Met> met;
+  Cones cones{kGlossySpread, {}};
   std::vector<TracedRay> met_rays;
   std::vector<std::uint64_t> met_keys;
   for (std::size_t r = 0; r < rays.size(); ++r) {
     const auto& [ray, mesh_hit] = rays[r];
-    const auto [weight, i] = drawn[r];
+    const auto& [weight, color, i] = drawn[r];
     const bool is_free = mesh_hit.mesh == Hit::kMiss;
     for (const Light& light : lights_) {
       if (is_delta(light)) continue;
@@ -169,21 +197,24 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
                             : is_free   ? background(light, ray.direction)
                                         : RgbF{};
       if (radiance == RgbF{}) continue;
-      glossy.specular(i) += radiance * (weight * balance(glossy.of_lobe(i, ray.direction),
-                                                         glossy.of_light(i, light, ray.direction)));
+      glossy.specular(i) +=
+          radiance * color *
+          (weight * balance(glossy.of_lobe(i, ray.direction), glossy.of_light(i, light, ray.direction)));
     }
     if (is_free) continue;
     if (met.empty() || met.back().hit != i) {
-      met.push_back({0, i});
+      met.push_back({0, RgbF(0), i});
       met_rays.push_back(rays[r]);
       met_keys.push_back(glossy.hits.keys[i]);
+      if (!textures_.empty()) cones.widths.push_back(width_at(glossy.batch, glossy.hits.rays[i]));
     }
     met.back().weight += weight;
+    met.back().share += color * weight;
     const double chance = unit_double(hash_bits(glossy.seed + r, glossy.hits.keys[i]));
     if (chance * double(met.back().weight) < double(weight)) met_rays.back() = rays[r];
   }
-  const std::vector<PixelSample> seen = seen_along(met_rays, met_keys, pass);
-  for (std::size_t m = 0; m < met.size(); ++m) glossy.specular(met[m].hit) += seen[m].diffuse * met[m].weight;
+  const std::vector<PixelSample> seen = seen_along(met_rays, met_keys, cones, pass);
+  for (std::size_t m = 0; m < met.size(); ++m) glossy.specular(met[m].hit) += seen[m].diffuse * met[m].share;
 }
 
 }  // namespace opaline

@@ -55,12 +55,14 @@ std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::sp
   const EvaluatorKind evaluator = input.scene.settings.evaluator;
   std::vector<std::size_t> most(groups.size());
   if (evaluator == EvaluatorKind::surface_cache)
-    for (std::size_t g = 0; g < groups.size(); ++g) most[g] = most_wanted_places(groups[g].plan, input.world);
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      if (groups[g].entering.empty()) most[g] = most_wanted_places(groups[g].plan, input.world);
   if (groups.empty() || evaluator != EvaluatorKind::automatic) return most;
   const std::vector<double> points = expected_points(input);
   for (std::size_t g = 0; g < groups.size(); ++g)
-    for (const std::uint32_t m : groups[g].plan.meshes)
-      most[g] += std::size_t(kMost * double(pictures) * points[m]);
+    if (groups[g].entering.empty())
+      for (const std::uint32_t m : groups[g].plan.meshes)
+        most[g] += std::size_t(kMost * double(pictures) * points[m]);
   return most;
 }
 

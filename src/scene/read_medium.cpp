@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <utility>
 
+#include "opaline/image/texture_file.h"
 #include "scene/presets.h"
 #include "scene/readers.h"
 
@@ -60,14 +62,41 @@ PhysicalMedium read_physical(const ObjectReader& medium) {
   return result;
 }
 
-ArtistMedium read_artist(const ObjectReader& medium) {
+/// Of a texture the medium is that of the mean colour, and what its texels are over it a tint.
+void take_color(const Value& value, ArtistMedium& coefficients, Medium& medium) {
+  ColorReading color = read_color(value);
+  coefficients.subsurface_color = color.color;
+  if (!color.texture) return;
+  Texture& texture = *color.texture;
+  const Texel mean = texture.file->mean();
+  for (std::size_t c = 0; c < 3; ++c) {
+    coefficients.subsurface_color[c] = std::clamp(mean[c] * texture.scale[c], 0.0, 1.0);
+    texture.scale[c] = mean[c] > 0 ? 1 / mean[c] : 1;
+  }
+  texture.is_relative = true;
+  medium.tint_texture = std::move(texture);
+}
+
+ArtistMedium read_artist(const ObjectReader& medium, Medium& owner) {
   ArtistMedium result;
-  result.subsurface_color = medium.need("subsurface_color").color();
+  take_color(medium.need("subsurface_color"), result, owner);
   result.subsurface_radius = medium.need("subsurface_radius").number_or_triple();
   if (const auto scale = medium.find("subsurface_radius_scale"))
     result.subsurface_radius = result.subsurface_radius * scale->number_or_triple();
   if (const auto g = medium.find("subsurface_scatter_anisotropy")) result.anisotropy = g->number();
   return result;
+}
+
+void read_tint(const ObjectReader& reader, Medium& medium) {
+  if (const auto mix = reader.find("texture_mix"))
+    medium.texture_mix = static_cast<TextureMix>(mix->choice());
+  const auto value = reader.find("tint");
+  if (!value) return;
+  if (medium.tint_texture)
+    value->fail_key("cannot stand beside a texture of 'subsurface_color'", "one of the two");
+  ColorReading tint = read_color(*value);
+  medium.tint = tint.color;
+  medium.tint_texture = std::move(tint.texture);
 }
 
 }  // namespace
@@ -84,7 +113,7 @@ Medium read_medium(const Value& value, double mm_per_unit) {
     medium.coefficients = preset.coefficients;
     medium.eta = preset.eta;
   } else if (form == "subsurface_color") {
-    medium.coefficients = read_artist(reader);
+    medium.coefficients = read_artist(reader, medium);
   } else {
     medium.coefficients = read_physical(reader);
   }
@@ -93,8 +122,12 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   const auto eta = reader.find("eta"), specular_ior = reader.find("specular_ior");
   if (eta && specular_ior) eta->fail_key("and 'specular_ior' are the same", "one of the two");
   if (eta || specular_ior) medium.eta = (eta ? eta : specular_ior)->number();
-  if (const auto roughness = reader.find("specular_roughness"))
-    medium.specular_roughness = roughness->number();
+  if (const auto rough = reader.find("specular_roughness")) {
+    NumberReading roughness = read_number(*rough);
+    medium.specular_roughness = roughness.number;
+    medium.roughness_texture = std::move(roughness.texture);
+  }
+  read_tint(reader, medium);
   if (const auto profile = reader.find("profile"))
     medium.profile = static_cast<ProfileKind>(profile->choice());
   if (const auto thickness = reader.find("thickness")) medium.thickness = thickness->length(mm_per_unit);

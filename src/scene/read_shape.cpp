@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
 #include <filesystem>
+#include <utility>
 
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/nearest_name.h"
@@ -88,13 +89,41 @@ std::size_t find_medium(const Value& value, const std::vector<Medium>& media) {
              names.empty() ? "a name from 'media', which is empty" : "one of " + printable(join(names)));
 }
 
+void read_gloss(const ObjectReader& reader, Shape& shape) {
+  const auto metalness = reader.find("metalness"), roughness = reader.find("specular_roughness"),
+             ior = reader.find("specular_ior");
+  for (const auto& key : {metalness, roughness, ior})
+    if (key && shape.medium) key->fail_key("is the medium's to say", "it in 'media', or an opaque shape");
+  if (ior && !metalness && !roughness)
+    ior->fail_key("has no meaning on a matte shape", "'specular_roughness' beside it");
+  if (!metalness && !roughness) return;
+  Gloss& gloss = shape.gloss.emplace();
+  if (metalness) {
+    NumberReading reading = read_number(*metalness);
+    gloss.metalness = reading.number;
+    gloss.metalness_texture = std::move(reading.texture);
+  }
+  if (roughness) {
+    NumberReading reading = read_number(*roughness);
+    gloss.roughness = reading.number;
+    gloss.roughness_texture = std::move(reading.texture);
+  }
+  if (ior) gloss.eta = ior->number();
+}
+
 void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shape) {
   const auto medium = reader.find("medium"), reflectance = reader.find("reflectance");
   const auto group = reader.find("group");
   if (medium && reflectance)
     reflectance->fail_key("cannot stand beside 'medium'", "one of the two: translucent or opaque");
   if (medium) shape.medium = find_medium(*medium, *context.media);
-  if (reflectance) shape.reflectance = reflectance->color();
+  if (reflectance) {
+    ColorReading color = read_color(*reflectance);
+    shape.reflectance = color.color;
+    shape.reflectance_texture = std::move(color.texture);
+  }
+  if (const auto map = reader.find("normal_map")) shape.normal_map = read_normal_map(*map);
+  read_gloss(reader, shape);
   if (!group) return;
   shape.group = group->string();
   if (!medium) group->fail_key("has no meaning without 'medium'");

@@ -19,6 +19,20 @@ struct ShapeContext {
   std::map<std::string, std::size_t> group_media;  ///< filled while reading
 };
 
+/// A colour, or a texture beside which the colour is 1. A file whose texels are all alike is read as that constant.
+struct ColorReading {
+  Rgb color{1, 1, 1};
+  std::optional<Texture> texture;
+};
+ColorReading read_color(const Value& value);
+/// The same of a number.
+struct NumberReading {
+  double number = 1;
+  std::optional<Texture> texture;
+};
+NumberReading read_number(const Value& value);
+Texture read_normal_map(const Value& value);
+
 Medium read_medium(const Value& value, double mm_per_unit);
 /// `name` is what the shape is called without one of its own.
 Shape read_shape(const Value& value, const std::string& name, ShapeContext& context);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -17,10 +18,17 @@
 namespace opaline {
 namespace {
 
+constexpr std::array<std::string_view, 4> kTextureChannels{"r", "g", "b", "a"};
+
 KeyInfo row(std::string_view section, std::string_view key, ValueType type, std::string_view unit,
             const Range& range, std::string default_value, std::string_view meaning,
             std::span<const std::string_view> choices = {}) {
   return {section, key, type, unit, range, std::move(default_value), meaning, choices};
+}
+
+KeyInfo textured(KeyInfo info) {
+  info.may_be_texture = true;
+  return info;
 }
 
 std::string_view profile_meaning() {
@@ -92,8 +100,10 @@ std::vector<KeyInfo> medium_rows() {
       row("medium", "g", number, "", {-1, 1, true, true}, "0",
           "mean cosine of the scattering angle, beside `sigma_s`: 0 even, towards 1 forward, towards -1 "
           "back"),
-      row("medium", "subsurface_color", color, "", kUnitInterval, "",
-          "how much of the light that enters comes out again"),
+      textured(row(
+          "medium", "subsurface_color", color, "", kUnitInterval, "",
+          "how much of the light that enters comes out again; of a texture the mean, and each texel over it "
+          "the `tint`")),
       row("medium", "subsurface_radius", number_or_triple, "mm", kNonNegative, "",
           "how far light goes before it is scattered or absorbed, 1/sigma_t; three numbers are red, green "
           "and blue, not x, y, z"),
@@ -108,9 +118,19 @@ std::vector<KeyInfo> medium_rows() {
       row("medium", "specular_ior", number, "", {.1, 10},
           "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
       row("medium", "eta", number, "", {.1, 10}, "", "another word for `specular_ior`; use one of the two"),
-      row("medium", "specular_roughness", number, "", kUnitInterval, "0",
+      textured(row(
+          "medium", "specular_roughness", number, "", kUnitInterval, "0",
           "of the surface as it mirrors: 0 smooth, .3 satin; alone a rough one shows highlights of lights "
-          "without size"),
+          "without size")),
+      textured(row(
+          "medium", "tint", color, "", kUnitInterval, "1",
+          "colours the light of any medium at its surface, by `texture_mix`; where it is even, what leaves "
+          "is times the tint")),
+      row("medium", "texture_mix", choice, "", kFiniteNumber, "`\"split\"`",
+          "where the tint is met: `\"pre\"` by light that enters, and blurred like it; `\"post\"` by light "
+          "that "
+          "leaves, sharp; `\"split\"` its root by both",
+          kTextureMixNames),
       row("medium", "thickness", length, "", kFiniteNumber, "that of the built-in plates, else thick",
           "for `\"multipole\"`: how thick the things made of it are; light that enters on the far side "
           "leaves on "
@@ -148,8 +168,18 @@ std::vector<KeyInfo> shape_rows() {
           "triangle flat",
           kNormalNames),
       row("shape", "medium", text, "", kFiniteNumber, "opaque", "name of a medium"),
-      row("shape", "reflectance", color, "", kUnitInterval, "0.5",
-          "colour of an opaque shape; not together with `medium`"),
+      textured(row("shape", "reflectance", color, "", kUnitInterval, "0.5",
+                   "colour of an opaque shape; not together with `medium`")),
+      textured(
+          row("shape", "metalness", number, "", kUnitInterval, "0",
+              "of an opaque shape: 1 mirrors in its `reflectance`, 0 under a clear coat; makes it glossy")),
+      textured(row("shape", "specular_roughness", number, "", kUnitInterval, "matte; beside `metalness` 1",
+                   "of an opaque shape as it mirrors: 0 smooth, .3 satin; makes it glossy")),
+      row("shape", "specular_ior", number, "", {.1, 10}, "1.5", "of a glossy opaque shape's coat"),
+      textured(row("shape", "normal_map", object, "", kFiniteNumber, "none",
+                   "normals of the file's details, around the mesh's own: red to the right, green up, blue "
+                   "out, 0 to 1 "
+                   "for -1 to 1; `scale` is of its slopes")),
       row("shape", "group", text, "", kFiniteNumber, "alone",
           "translucent shapes with the same group blend as one object, others never bleed into each other; a "
           "group has one medium"),
@@ -202,9 +232,32 @@ std::vector<KeyInfo> camera_rows() {
   };
 }
 
+std::vector<KeyInfo> texture_rows() {
+  using enum ValueType;
+  return {
+      row("texture", "texture", text, "", kFiniteNumber, "",
+          "EXR, HDR, PNG, JPEG or TIFF, relative to the scene file's folder; `<UDIM>` in its name stands for "
+          "1001 + "
+          "column + 10 row; `asset.glb#image/0` is an asset's image"),
+      row("texture", "color_space", choice, "", kFiniteNumber, "`\"automatic\"`",
+          "what its numbers are: `\"srgb\"` or `\"linear\"`; automatic: linear in files of floats, sRGB in "
+          "others, of "
+          "values that are no colours always linear",
+          kColorSpaceNames),
+      row("texture", "scale", number_or_triple, "", kNonNegative, "1", "times what it says"),
+      row("texture", "channel", choice, "", kFiniteNumber, "`\"r\"`",
+          "which a number is: `\"r\"`, `\"g\"`, `\"b\"` or `\"a\"`", kTextureChannels),
+      row("texture", "uv_scale", list, "", kFiniteNumber, "[1, 1]",
+          "how often it is repeated, to the right and down from its upper left corner"),
+      row("texture", "uv_rotation", number, "degrees", kFiniteNumber, "0",
+          "then turns the UVs about that corner"),
+      row("texture", "uv_offset", list, "", kFiniteNumber, "[0, 0]", "then moves them, right and down"),
+  };
+}
+
 std::vector<KeyInfo> all_rows() {
   std::vector<KeyInfo> rows;
-  for (const auto& part : {scene_rows(), medium_rows(), shape_rows(), built_in_shape_rows(),
+  for (const auto& part : {scene_rows(), medium_rows(), shape_rows(), built_in_shape_rows(), texture_rows(),
                            light_rows(static_cast<const LightSource*>(nullptr)), camera_rows()})
     rows.insert(rows.end(), part.begin(), part.end());
   for (const Member<Film>& member : film_members()) rows.push_back(member.info);
@@ -228,7 +281,7 @@ std::string range_text(const KeyInfo& info) {
   return fmt::format("{}{} to {}", range.without_low ? "> " : "", low, high);
 }
 
-std::string values_text(const KeyInfo& info) {
+std::string plain_values_text(const KeyInfo& info) {
   switch (info.type) {
     case ValueType::length:
       return "scene units, > 0";
@@ -250,6 +303,12 @@ std::string values_text(const KeyInfo& info) {
       return "";
   }
   return "";
+}
+
+std::string values_text(const KeyInfo& info) {
+  const std::string plain = plain_values_text(info);
+  if (!info.may_be_texture) return plain;
+  return plain.empty() ? "texture" : plain + ", or a texture";
 }
 
 }  // namespace

@@ -119,8 +119,8 @@ Vec3d Value::number_or_triple() const {
 }
 
 Rgb Value::color() const {
-  const std::string expected =
-      "a colour: [r, g, b] or one number, in " + text(info_->range) + ", or \"#rrggbb\"";
+  std::string expected = "a colour: [r, g, b] or one number, in " + text(info_->range) + ", or \"#rrggbb\"";
+  if (info_->may_be_texture) expected += ", or {\"texture\": \"file\"}";
   if (node_->kind == Node::Kind::number || node_->kind == Node::Kind::array) return number_or_triple();
   if (const std::optional<Rgb> color = hex_color(require_kind(Node::Kind::string, expected).text))
     return *color;

@@ -29,7 +29,7 @@ bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Setti
 /// What a body's results were computed from.
 struct BodyKeys {
   SampleOrigin origin;
-  StageKey samples_key, tree_key, kernel_key, exitance_key;
+  StageKey samples_key, tint_key, tree_key, kernel_key, exitance_key;
   StageKey lights_key;                      // of the tree's light as it comes from lights alone
   StageKey volume_key;                      // of Body::volume; of walks, but for their number
   StageKey diffusion_key;                   // of the cells

@@ -11,6 +11,7 @@
 #include "opaline/assets/import_asset.h"
 #include "opaline/core/error.h"
 #include "opaline/geometry/mesh_file.h"
+#include "opaline/image/texture_file.h"
 
 namespace opaline {
 namespace {
@@ -52,6 +53,8 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
   for (const Shape& shape : scene.shapes)
     if (const auto* mesh = std::get_if<MeshFile>(&shape.source))
       if (seen.insert(mesh->path).second) add(contents_of(shape, mesh->path));
+  for (const Shape& shape : scene.shapes)
+    for (const Texture* texture : textures_of(scene, shape)) add(std::to_string(texture->file->hash()));
   return hash.digest();
 }
 

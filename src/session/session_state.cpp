@@ -32,7 +32,7 @@ std::vector<std::optional<std::size_t>> kept_shapes(const std::vector<StageKey>&
 void Session::State::edit(Scene scene) {
   std::vector<StageKey> sources, keys;
   for (const Shape& shape : scene.shapes) {
-    sources.push_back(source_key(shape));
+    sources.push_back(source_key(shape, needs_uvs(scene, shape)));
     keys.push_back(shape_key(shape, sources.back()));
   }
   SessionWork work;
@@ -242,7 +242,7 @@ Image Session::State::recoloured(const Scene& scene, HeldView& view, Monitor* mo
   const std::vector<Light> lights = recentred_lights(scene, *world_);
   std::vector<Body> groups;
   for (const Body& group : bodies_) {
-    const std::vector<RgbF> irradiance = combine_lights(group.transfers, lights);
+    const std::vector<RgbF> irradiance = entered_irradiance(group, lights);
     groups.push_back({group.plan,
                       group.profile,
                       {},
@@ -251,6 +251,7 @@ Image Session::State::recoloured(const Scene& scene, HeldView& view, Monitor* mo
                       gather_flux(group.surface.samples, irradiance),
                       group.kernel});
     groups.back().cloud = group.cloud;
+    groups.back().entering = group.entering;
     if (group.kernel.far_side != nullptr) bound_normals(groups.back().octree);
     work_.nodes_built += groups.back().octree.nodes.size();
   }

@@ -23,9 +23,10 @@ struct AddSource {
 
 }  // namespace
 
-StageKey source_key(const Shape& shape) {
+StageKey source_key(const Shape& shape, bool with_uvs) {
   KeyBuilder key("source", 1);
   key.add(std::uint64_t(shape.source.index()));
+  if (with_uvs) key.add(with_uvs);
   try {
     std::visit(AddSource{key}, shape.source);
   } catch (const Error& failure) {

@@ -4,6 +4,7 @@
 #include <embree3/rtcore_config.h>
 
 #include "opaline/lights/light.h"
+#include "opaline/render/surface_textures.h"
 
 namespace opaline {
 namespace {
@@ -75,8 +76,17 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
   KeyBuilder key("surfaces in their light", 1);
   key.add(settings.seed).add(settings.tolerance).add(settings.evaluator).add(settings.max_solid_angle);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
-  for (const Shape& shape : input.scene.shapes)
-    if (!shape.medium) key.add(shape.reflectance);
+  for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
+    const Shape& shape = input.scene.shapes[i];
+    if (shape.medium) {
+      const Medium& medium = input.scene.media[*shape.medium];
+      key.add(medium.tint).add(medium.texture_mix);
+    } else {
+      key.add(shape.reflectance).add(shape.gloss.has_value()).add(shape.gloss ? shape.gloss->metalness : 0);
+    }
+    for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
+    if (needs_uvs(input.scene, shape)) key.add_array(std::span(input.world.meshes[i].uvs));
+  }
   for (const Light& light : lights) key.add(view_light_key(light)).add(emission(light));
   return key.key();
 }
@@ -103,6 +113,8 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
   for (const Shape& shape : input.scene.shapes) {
     key.add(shape.medium.has_value());
     if (shape.medium) key.add(input.scene.media[*shape.medium].eta);
+    if (shape.gloss) key.add(shape.gloss->eta);
+    if (shape.normal_map) add_to_key(key, *shape.normal_map);
   }
   for (const GroupPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));
   return key.key();
@@ -139,9 +151,10 @@ std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& sample
 }
 
 StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
-                    std::span<const Light> lights) {
+                    std::span<const Light> lights, const StageKey& tint) {
   KeyBuilder key("octree", kOctreeVersion);
   key.add(samples);
+  if (tint != StageKey{}) key.add(tint);
   for (std::size_t l = 0; l < lights.size(); ++l) key.add(transfers[l]).add(emission(lights[l]));
   return key.key();
 }

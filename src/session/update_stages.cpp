@@ -4,6 +4,7 @@
 
 #include "opaline/lights/light.h"
 #include "opaline/render/surface_caches.h"
+#include "opaline/render/surface_textures.h"
 #include "opaline/sampling/carry_samples.h"
 #include "session/session_state.h"
 
@@ -180,8 +181,18 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
 // Sums are of whole passes always: those that an interruption leaves stay.
 void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                   const std::vector<Light>& lights) {
-  const VolumeInput walks = walk_input(input, body, lights);
-  const std::vector<StageKey> keys = walk_keys(walks, known.samples_key, mesh_keys_);
+  VolumeInput walks = walk_input(input, body, lights);
+  const StageKey tint =
+      tint_key(scene_.media[body.plan.medium], *world_, body.plan.meshes, known.samples_key);
+  std::optional<SurfaceTextures> textures;
+  if (tint != StageKey{}) {
+    textures.emplace(scene_, *world_);
+    walks.entering_tint = [&](std::uint32_t mesh, std::uint32_t triangle, float u, float v) {
+      return textures->tint(textures->place(mesh, triangle, u, v, {})).entering;
+    };
+  }
+  const std::vector<StageKey> keys =
+      walk_keys(walks, tint == StageKey{} ? known.samples_key : tint, mesh_keys_);
   VolumeSums sums;
   for (const StageKey& key : keys) {
     const auto old = std::ranges::find(known.walk_keys, key);
@@ -217,14 +228,16 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
 
 void Session::State::update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                       const std::vector<Light>& lights) {
+  update_tint(body, known);
   KeyBuilder cells("diffusion cells", 1);
   cells.add(known.samples_key).add(body.profile.eta).add(body.plan.cell);
   cells.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
   for (const std::uint32_t mesh : body.plan.meshes) cells.add(mesh_keys_[mesh].shape);
   KeyBuilder builder("diffusion", 1);
   const StageKey cells_key = cells.key();
-  const StageKey key =
-      builder.add(cells_key).add(octree_key(known.samples_key, known.light_keys, lights)).key();
+  const StageKey key = builder.add(cells_key)
+                           .add(octree_key(known.samples_key, known.light_keys, lights, known.tint_key))
+                           .key();
   if (key == known.volume_key) return decide(body, "diffusion kept");
   known.volume_key = {};
   std::optional<VolumeExitance> found;
@@ -237,7 +250,7 @@ void Session::State::update_diffusion(Body& body, BodyKeys& known, const Precomp
     const bool at_hand = known.diffusion != nullptr && known.diffusion_key == cells_key;
     if (!at_hand) known.diffusion = std::make_shared<const VolumeDiffusion>(diffusion_of(input, body));
     known.diffusion_key = cells_key;
-    body.volume = known.diffusion->exitance(lights, body.transfers, input.monitor);
+    body.volume = known.diffusion->exitance(lights, body.transfers, body.entering, input.monitor);
     if (cache_ != nullptr) cache_->keep_volume(key, *body.volume);
     decide(body, at_hand ? "diffusion solved in the cells at hand" : "diffusion solved");
     if (!edits_) known.diffusion = nullptr;
@@ -247,13 +260,25 @@ void Session::State::update_diffusion(Body& body, BodyKeys& known, const Precomp
   known.volume_key = key;
 }
 
+void Session::State::update_tint(Body& body, BodyKeys& known) {
+  const Medium& medium = scene_.media[body.plan.medium];
+  const StageKey key = tint_key(medium, *world_, body.plan.meshes, known.samples_key);
+  if (key == known.tint_key) return;
+  known.tint_key = {};
+  body.entering.clear();
+  if (key != StageKey{})
+    body.entering = entering_tints(SurfaceTextures(scene_, *world_), body.surface.samples);
+  known.tint_key = key;
+}
+
 void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights) {
-  const StageKey key = octree_key(known.samples_key, known.light_keys, lights);
+  update_tint(body, known);
+  const StageKey key = octree_key(known.samples_key, known.light_keys, lights, known.tint_key);
   const bool may_hold_bounces = scene_.settings.bounces > 0 && known.tree_key != StageKey{};
   if (key == known.lights_key && (key == known.tree_key || may_hold_bounces))
     return decide(body, "tree kept");
   known.tree_key = known.lights_key = {};
-  body.irradiance = combine_lights(body.transfers, lights);
+  body.irradiance = entered_irradiance(body, lights);
   std::optional<Octree> found;
   if (cache_ != nullptr) found = cache_->find_octree(key, body.surface);
   if (found) {
@@ -287,12 +312,14 @@ void Session::State::update_bounces(const PrecomputeInput& input, const std::vec
     keys_[b].tree_key = key;
   };
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    bodies_[b].irradiance = combine_lights(bodies_[b].transfers, lights);
+    bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
     build(b, bodies_[b].irradiance, keys_[b].lights_key);
   }
   const std::vector<std::vector<RgbF>> bounced = bounced_at_samples(input, bodies_);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    for (std::size_t i = 0; i < bounced[b].size(); ++i) bodies_[b].irradiance[i] += bounced[b][i];
+    const std::vector<RgbF>& tints = bodies_[b].entering;
+    for (std::size_t i = 0; i < bounced[b].size(); ++i)
+      bodies_[b].irradiance[i] += tints.empty() ? bounced[b][i] : bounced[b][i] * tints[i];
     build(b, bodies_[b].irradiance, key_of(keys_[b]));
     decide(bodies_[b], "light of other surfaces gathered");
   }

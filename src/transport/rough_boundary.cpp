@@ -84,4 +84,22 @@ float RoughBoundary::value(const Vec3f& view, const Vec3f& light) const {
   return fresnel_reflectance(std::min(dot(view, normal), 1.0f), eta_) * both * facets(normal) / (4 * view.z);
 }
 
+RoughnessRange::RoughnessRange(double eta) {
+  for (std::size_t i = 0; i <= kSteps; ++i)
+    boundaries_.emplace_back(double(kLeast) + (1 - double(kLeast)) * double(i) / double(kSteps), eta);
+}
+
+RoughBoundary RoughnessRange::at(float roughness) const {
+  const float bounded = std::clamp(roughness, kLeast, 1.0f);
+  const float place = (bounded - kLeast) / (1 - kLeast) * float(kSteps);
+  const std::size_t i = std::min(std::size_t(place), kSteps - 1);
+  const float share = place - float(i);
+  RoughBoundary boundary = boundaries_[i];
+  boundary.alpha_ = bounded * bounded;
+  for (std::size_t c = 0; c < RoughBoundary::kCosines; ++c)
+    boundary.reflectances_[c] =
+        boundary.reflectances_[c] * (1 - share) + boundaries_[i + 1].reflectances_[c] * share;
+  return boundary;
+}
+
 }  // namespace opaline

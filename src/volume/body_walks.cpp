@@ -198,9 +198,12 @@ WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chu
     WalkNumbers numbers(job.seed, start);
     const double share = (double(k) + numbers.next()) / double(starts_);
     const double u = numbers.next(), v = numbers.next();
-    const SurfacePoint entry = points_.at(share, u, v, hint);
+    const EvenPoint at = points_.at(share, u, v, hint);
+    const SurfacePoint& entry = at.point;
     const ArrivedLight light = light_at(input_.rays, job.lights, job.unit_emission, entry, numbers);
-    const double irradiance = light.irradiance[job.channel];
+    double irradiance = light.irradiance[job.channel];
+    if (irradiance > 0 && input_.entering_tint)
+      irradiance *= double(input_.entering_tint(at.mesh, at.triangle, at.u, at.v)[job.channel]);
     if (!(irradiance > 0)) continue;
     Walker(*this, input_.media[job.channel], exits, counts,
            WalkNumbers(job.seed + 1 + 2 * job.channel, start),

@@ -159,7 +159,8 @@ void DiffusionBody::deposit(const EnteringLight& light, std::size_t l, std::size
   const BoundaryPoint& point = points_[i];
   const double weight = double(light.transfers[l].weights[point.sample]);
   if (!(weight > 0) || attached_[i].cell == DiffusionGrid::kNone) return;
-  const Rgb entering = emission(light.lights[l]) * weight;
+  Rgb entering = emission(light.lights[l]) * weight;
+  if (!light.tints.empty()) entering = entering * Rgb(light.tints[point.sample]);
   const Vec3f towards = towards_light(light.lights[l], point, media_[0].eta, i);
   const Vec3d normal(point.normal);
   const Vec3d inward = refracted_inward(-Vec3d(towards), normal, media_[0].eta);

@@ -18,6 +18,7 @@ namespace opaline {
 struct EnteringLight {
   std::span<const Light> lights;             ///< recentred
   std::span<const LightTransfer> transfers;  ///< one a light
+  std::span<const RgbF> tints;               ///< factors, one a sample; empty: none
 };
 
 /// Cells of one size at the surface. Holds on to `points`.

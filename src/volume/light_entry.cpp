@@ -82,7 +82,7 @@ EvenPoints::EvenPoints(const RayScene& rays, const World& world, std::span<const
   }
 }
 
-SurfacePoint EvenPoints::at(double share, double u, double v, std::size_t& hint) const {
+EvenPoint EvenPoints::at(double share, double u, double v, std::size_t& hint) const {
   const double area_before = share * area();
   constexpr std::size_t kSteps = 16;
   for (std::size_t step = 0; step < kSteps && hint + 1 < ends_.size() && ends_[hint] <= area_before; ++step)
@@ -95,7 +95,9 @@ SurfacePoint EvenPoints::at(double share, double u, double v, std::size_t& hint)
   const Piece& piece = pieces_[hint];
   if (u + v > 1) u = 1 - u, v = 1 - v;
   const auto [in_u, in_v] = place_in_piece(piece.pieces, piece.index, u, v);
-  return rays_.surface_point(piece.mesh, piece.triangle, float(in_u), float(in_v));
+  const auto place_u = float(in_u), place_v = float(in_v);
+  return {rays_.surface_point(piece.mesh, piece.triangle, place_u, place_v), piece.mesh, piece.triangle,
+          place_u, place_v};
 }
 
 // Places on a lamp that bring more are drawn more often: of some candidates one is taken by what it would bring, and

@@ -12,6 +12,13 @@
 
 namespace opaline {
 
+/// A point of a mesh's surface, and where that is.
+struct EvenPoint {
+  SurfacePoint point;
+  std::uint32_t mesh = 0, triangle = 0;
+  float u = 0, v = 0;  ///< barycentrics of the second and third corner
+};
+
 /// Points spread evenly over the area of some meshes, along a curve that stays near itself: points at regular
 /// shares of the area are regularly spread in space, too.
 class EvenPoints {
@@ -23,7 +30,7 @@ class EvenPoints {
 
   /// share: of the area, [0, 1); u, v: within a piece, [0, 1)
   /// hint: place of the last point, for shares that ascend; 0 will do
-  SurfacePoint at(double share, double u, double v, std::size_t& hint) const;
+  EvenPoint at(double share, double u, double v, std::size_t& hint) const;
 
  private:
   /// One of the pieces^2 equal pieces of a triangle.

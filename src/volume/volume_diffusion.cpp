@@ -60,8 +60,9 @@ std::size_t VolumeDiffusion::cells() const {
 }
 
 VolumeExitance VolumeDiffusion::exitance(std::span<const Light> lights,
-                                         std::span<const LightTransfer> transfers, Monitor* monitor) const {
-  const EnteringLight light{lights, transfers};
+                                         std::span<const LightTransfer> transfers,
+                                         std::span<const RgbF> tints, Monitor* monitor) const {
+  const EnteringLight light{lights, transfers, tints};
   const DiffusionBody::Solution rough = state_->coarse.solve(light, {}, monitor);
   const DiffusionBody::Solution solution =
       state_->fine.solve(light, state_->coarse.carried(rough, state_->fine), monitor);

@@ -37,7 +37,7 @@ TEST(SceneDocumentation, HasTheRowsOfTheSchema) {
 
 // Claim: the scenes that ship are valid. Fails if one of them has a mistake.
 TEST(SceneDocumentation, ShippedScenesLoad) {
-  for (const char* name : {"bunny-marble", "sphere", "backlit-slab"}) {
+  for (const char* name : {"bunny-marble", "sphere", "backlit-slab", "texture-mix"}) {
     Scene scene;
     ASSERT_NO_THROW(scene = load_scene(scenes + '/' + name + ".json")) << name;
     EXPECT_TRUE(std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const Shape& s) {

@@ -12,10 +12,14 @@
 
 namespace opaline {
 
+/// UVs at the corners of a triangle; v upwards.
+using CornerUvs = std::array<std::array<float, 2>, 3>;
+
 struct Mesh {
   std::vector<Vec3d> positions;                         ///< mm, world space
   std::vector<Vec3f> normals;                           ///< unit, one a vertex; empty: faceted
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
+  std::vector<CornerUvs> uvs{};  ///< one a triangle, where a texture needs them; else empty
 };
 
 /// What was found and mended while a mesh was made ready; counts are of triangles unless said.

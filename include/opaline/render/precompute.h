@@ -38,6 +38,7 @@ struct Body {
   VolumeSums walks = {};                           ///< of Method::volume
   std::optional<VolumeExitance> volume = {};       ///< what they amount to, or volume_diffusion
   std::shared_ptr<const CellFit> volume_fit = {};  ///< the same at any point
+  std::vector<RgbF> entering = {};                 ///< entering_tints, one a sample; empty: none
 };
 
 struct PrecomputeInput {
@@ -78,6 +79,10 @@ VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body);
 /// Irradiance at each body's samples from surfaces, translucent ones as their trees have it and opaque ones as lights
 /// alone light them; one list a body.
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies);
+
+/// The light that enters at a body's samples, tinted.
+/// in    lights: those of its transfers
+std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights);
 
 /// irradiance: one a sample.
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);

@@ -120,6 +120,26 @@ constexpr NameList names_of(InstructionSet) {
   return kInstructionSetNames;
 }
 
+/// How the numbers of a picture file stand for light.
+enum class ColorSpace {
+  automatic,  ///< of colours sRGB where the file holds whole numbers, else linear; of all other values linear
+  srgb,
+  linear
+};
+inline constexpr std::array<std::string_view, 3> kColorSpaceNames{"automatic", "srgb", "linear"};
+/// The words for its values, in their order.
+constexpr NameList names_of(ColorSpace) {
+  return kColorSpaceNames;
+}
+
+/// Where a translucent body's tint t colours light: as it enters (pre), as it leaves (post), or by its root at both.
+enum class TextureMix { pre, post, split };
+inline constexpr std::array<std::string_view, 3> kTextureMixNames{"pre", "post", "split"};
+/// The words for its values, in their order.
+constexpr NameList names_of(TextureMix) {
+  return kTextureMixNames;
+}
+
 enum class EntryStrategy { disc_axes, chords };
 inline constexpr std::array<std::string_view, 2> kEntryStrategyNames{"disc_axes", "chords"};
 /// The words for its values, in their order.

@@ -33,6 +33,22 @@ inline Vec3d transform_point(const Transform& t, const Vec3d& p) {
   return t.x * p.x + t.y * p.y + t.z * p.z + t.translation;
 }
 
+// ---- textures -------------------------------------------------------------------------------------------
+
+class TextureFile;
+/// A picture in place of a constant, laid over a surface by the UVs of its mesh.
+struct Texture {
+  std::shared_ptr<const TextureFile> file;
+  Rgb scale{1, 1, 1};       ///< times its colours; the first one times its numbers
+  std::size_t channel = 0;  ///< of the file, where a number is wanted
+  /// From UVs to the picture, about its upper left corner: scaled, turned (degrees), moved (KHR_texture_transform).
+  std::array<double, 2> uv_offset{0, 0}, uv_scale{1, 1};
+  double uv_rotation = 0;
+  bool is_relative = false;  ///< scaled to a mean of 1: its texels may exceed 1, other colours may not
+  SourcePlace place{};
+  friend bool operator==(const Texture&, const Texture&) = default;
+};
+
 // ---- media ----------------------------------------------------------------------------------------------
 
 /// Reduced coefficients per channel, 1/mm, finite and >= 0.
@@ -61,6 +77,10 @@ struct Medium {
   /// Of the plates and bodies made of it, mm, > 0; infinite: thick. ProfileKind::multipole alone asks.
   double thickness = std::numeric_limits<double>::infinity();
   double specular_roughness = 0;  ///< of the boundary as it mirrors, [0, 1]; its square is GGX's alpha
+  /// What colours its light besides: t = tint x texture, [0, 1] but for textures whose mean is 1.
+  Rgb tint{1, 1, 1};
+  std::optional<Texture> tint_texture{}, roughness_texture{};
+  TextureMix texture_mix = TextureMix::split;
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
@@ -111,6 +131,14 @@ struct TorusShape {  ///< axis along y
 
 using ShapeSource = std::variant<MeshFile, SphereShape, BoxShape, QuadShape, SlabShape, TorusShape>;
 
+/// What an opaque surface mirrors: facets (GGX) of a dielectric over its colour, or of a metal of that colour.
+struct Gloss {
+  double metalness = 0, roughness = 1;  ///< [0, 1]; the square of the latter is GGX's alpha
+  std::optional<Texture> metalness_texture{}, roughness_texture{};
+  double eta = 1.5;  ///< of the dielectric, outside air
+  friend bool operator==(const Gloss&, const Gloss&) = default;
+};
+
 struct Shape {
   std::string name;
   ShapeSource source;
@@ -122,7 +150,10 @@ struct Shape {
   /// Translucent shapes with the same non-empty group blend as one object; others never bleed into each
   /// other.
   std::string group;
-  SourcePlace place{};  ///< of its source
+  SourcePlace place{};                           ///< of its source
+  std::optional<Texture> reflectance_texture{};  ///< times the reflectance
+  std::optional<Texture> normal_map{};           ///< its scale is of the slopes
+  std::optional<Gloss> gloss{};                  ///< of an opaque shape; none: matte
   friend bool operator==(const Shape&, const Shape&) = default;
 };
 
@@ -251,5 +282,10 @@ struct Scene {
   std::size_t camera_frames = 1;
   friend bool operator==(const Scene&, const Scene&) = default;
 };
+
+/// The textures of a shape and of its medium.
+std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
+/// Whether a shape's mesh has to have UVs.
+bool needs_uvs(const Scene& scene, const Shape& shape);
 
 }  // namespace opaline

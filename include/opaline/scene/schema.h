@@ -48,6 +48,7 @@ struct KeyInfo {
   std::string default_value = {};  ///< as documented; empty: the key must be given, or has no default
   std::string_view meaning = {};   ///< one line of Markdown
   std::span<const std::string_view> choices = {};
+  bool may_be_texture = false;  ///< or an object of the section "texture"
 };
 
 /// All rows, in the order of scenes/README.md.

@@ -38,9 +38,9 @@ StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light);
 
-/// Of the tree: its samples, each light's transfer and colour.
+/// Of the tree: its samples, each light's transfer and colour, and what tints them as they enter (tint_key).
 StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
-                    std::span<const Light> lights);
+                    std::span<const Light> lights, const StageKey& tint);
 
 /// Of the shape of a profile that is walked, in mean free paths.
 StageKey walked_profile_key(double absorbed, double eta);
@@ -62,8 +62,8 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
 /// in    light: recentred
 StageKey view_light_key(const Light& light);
 
-/// Of the sums of random walks, one for each of their sources (VolumeSums): the samples, the media's coefficients, all
-/// meshes, where the source's light is and how large; its colour only where sources have several lights.
+/// Of the sums of random walks, one for each of their sources (VolumeSums): the samples (or their tint_key where one
+/// colours light that enters), the media's coefficients, all meshes, where the source's light is and how large; its colour only where sources have several lights.
 std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& samples,
                                 std::span<const MeshKeys> meshes);
 

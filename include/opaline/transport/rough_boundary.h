@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "opaline/core/vec3.h"
 
@@ -31,12 +32,27 @@ class RoughBoundary {
   float value(const Vec3f& view, const Vec3f& light) const;
 
  private:
+  friend class RoughnessRange;
   float smith(const Vec3f& direction) const;  ///< share of facets that are seen from there, G1
   float facets(const Vec3f& normal) const;    ///< their distribution, D
 
   static constexpr std::size_t kCosines = 33;
   float alpha_, eta_;
   std::array<float, kCosines> reflectances_{};
+};
+
+/// Boundaries of one index and any roughness, whose tables lie between those of a few.
+class RoughnessRange {
+ public:
+  explicit RoughnessRange(double eta);
+
+  /// in    roughness: [0, 1]; below kLeast it is that
+  RoughBoundary at(float roughness) const;
+
+ private:
+  static constexpr float kLeast = .04f;
+  static constexpr std::size_t kSteps = 16;
+  std::vector<RoughBoundary> boundaries_;
 };
 
 }  // namespace opaline

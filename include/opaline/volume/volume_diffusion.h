@@ -35,12 +35,13 @@ class VolumeDiffusion {
   VolumeDiffusion(VolumeDiffusion&&) noexcept;
   ~VolumeDiffusion();
 
-  /// in    lights: recentred; transfers: one a light, what enters at the samples
+  /// in    lights: recentred; transfers: one a light, what enters at the samples; tints: factors on it, one a sample,
+  ///       or empty
   /// out   exitance and error, one a sample, as of random walks. The error is the difference from cells of twice the
   ///       size, not that of diffusion itself. walks, relative_error, lost: 0. The same bits for any number of threads
   /// error Error{interrupted}
   VolumeExitance exitance(std::span<const Light> lights, std::span<const LightTransfer> transfers,
-                          Monitor* monitor = nullptr) const;
+                          std::span<const RgbF> tints = {}, Monitor* monitor = nullptr) const;
 
   /// Cells of the finer grid.
   std::size_t cells() const;

@@ -28,6 +28,8 @@ struct VolumeInput {
   std::uint64_t seed = 0;
   Monitor* monitor = nullptr;
   bool reenter = true;  ///< light that has left may meet the body again and enter
+  /// Factor on light from the lamps as it enters at a place: mesh, triangle and barycentrics. Empty: none.
+  std::function<RgbF(std::uint32_t mesh, std::uint32_t triangle, float u, float v)> entering_tint = {};
 };
 
 /// Walks a sample, channel and light where no error is asked for, and at the most.

@@ -38,6 +38,12 @@ Vec3f usable_normal(const Vec3d& normal) {
   return is_in_range(normal) ? Vec3f(normal) : Vec3f();
 }
 
+void give_uvs(SourceMesh& mesh, const std::vector<std::array<float, 2>>& uvs) {
+  if (uvs.empty()) return;
+  mesh.uvs.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) mesh.uvs.push_back({uvs[a], uvs[b], uvs[c]});
+}
+
 Error bad_line(const std::string& path, int line, std::string message, std::string expected,
                std::string got) {
   return Error(ErrorKind::bad_input, path, line, 0, std::move(message), std::move(expected), std::move(got));

@@ -51,6 +51,9 @@ class PolygonFan {
   std::size_t corners_ = 0;
 };
 
+/// To the corners of all triangles from their vertices; uvs: empty, or one a vertex.
+void give_uvs(SourceMesh& mesh, const std::vector<std::array<float, 2>>& uvs);
+
 /// Bad input at a line of a file.
 Error bad_line(const std::string& path, int line, std::string message, std::string expected = {},
                std::string got = {});

@@ -2,14 +2,15 @@
 // GLB and glTF 2.0: a primitive of a mesh, without the nodes it stands at.
 #include <utility>
 
+#include "file_checks.h"
 #include "mesh_format.h"
 #include "opaline/assets/gltf_part.h"
 
 namespace opaline {
 namespace {
 
-SourceMesh read_primitive(const std::string& path, const std::string& part, std::string&) {
-  GltfPart primitive = read_gltf_part(path, part);
+SourceMesh read_primitive(const std::string& path, const std::string& part, std::string&, bool with_uvs) {
+  GltfPart primitive = read_gltf_part(path, part, with_uvs);
   SourceMesh mesh;
   mesh.positions = std::move(primitive.positions);
   mesh.normals = std::move(primitive.normals);
@@ -21,12 +22,13 @@ SourceMesh read_primitive(const std::string& path, const std::string& part, std:
     else
       mesh.triangles.push_back(triangle);
   }
+  give_uvs(mesh, primitive.uvs);
   mesh.warnings = std::move(primitive.warnings);
   return mesh;
 }
 
-SourceMesh read_without_part(const std::string& path, std::string& bytes) {
-  return read_primitive(path, "", bytes);
+SourceMesh read_without_part(const std::string& path, std::string& bytes, bool with_uvs) {
+  return read_primitive(path, "", bytes, with_uvs);
 }
 
 }  // namespace

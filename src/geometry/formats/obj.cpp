@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wavefront OBJ: v, vn and f are read, and usemtl where the faces of one material are a part of the file; what
+// Wavefront OBJ: v, vn, vt and f are read, and usemtl where the faces of one material are a part of the file; what
 // else a file says is counted and said.
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 12> silent{"vt", "vp",  "g",      "o",        "s",        "usemtl",
                                                   "mg", "lod", "mtllib", "c_interp", "d_interp", "vc"};
 
-constexpr std::int64_t kNoNormal = -1;
+constexpr std::int64_t kNone = -1;  // the index of a normal or UV that a corner has not
 
 /// Faces give normals to their corners: a vertex met with several gets a copy for each, behind all vertices.
 class VertexVariants {
@@ -53,8 +53,8 @@ class VertexVariants {
 class ObjReader {
  public:
   /// part: the material whose faces are read; null: all faces
-  ObjReader(const std::string& path, const std::string* part, std::string& bytes)
-      : path_(path), part_(part), bytes_(bytes) {}
+  ObjReader(const std::string& path, const std::string* part, std::string& bytes, bool with_uvs)
+      : path_(path), part_(part), bytes_(bytes), with_uvs_(with_uvs) {}
 
   SourceMesh run() {
     if (bytes_.find('\0') != bytes_.npos)
@@ -67,7 +67,7 @@ class ObjReader {
 
  private:
   struct Corner {
-    std::int64_t vertex, normal;  // from 0; kNoNormal
+    std::int64_t vertex, normal, uv;  // from 0; kNone
   };
 
   /// A backslash at the end of a line continues it.
@@ -90,6 +90,7 @@ class ObjReader {
     if (keyword == "v") return vertex(at);
     if (keyword == "vn") return normal(at);
     if (keyword == "f") return face(at);
+    if (keyword == "vt" && with_uvs_) return uv(at);
     if (std::find(silent.begin(), silent.end(), keyword) == silent.end() && unread_++ == 0) {
       first_unread_ = quoted(keyword);
       first_unread_line_ = line(at);
@@ -117,6 +118,18 @@ class ObjReader {
 
   void normal(TextCursor& at) { normals_.push_back(usable_normal(three_numbers(at, "normal"))); }
 
+  void uv(TextCursor& at) {
+    std::array<float, 2>& uv = uvs_.emplace_back();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::string_view word = at.word();
+      double value = 0;
+      if (word.empty() && i == 1) return;  // a texture of one dimension
+      if (!parse_number(word, value))
+        throw bad_line(path_, line(at), "bad texture coordinate", "one to three numbers", quoted(word));
+      uv[i] = float(value);
+    }
+  }
+
   /// One index of a corner, made zero-based; negative ones count back from the latest.
   std::int64_t index(std::string_view text, std::size_t count, const char* what, const TextCursor& at) const {
     std::int64_t value = 0;
@@ -129,14 +142,19 @@ class ObjReader {
   /// "v", "v/vt", "v//vn" or "v/vt/vn".
   Corner corner(std::string_view text, const TextCursor& at) {
     const std::size_t slash = text.find('/');
-    const std::int64_t vertex = index(text.substr(0, slash), mesh_.positions.size(), "vertex", at);
-    remember_highest(highest_vertex_, vertex, at);
-    if (slash == text.npos) return {vertex, kNoNormal};
+    Corner corner{index(text.substr(0, slash), mesh_.positions.size(), "vertex", at), kNone, kNone};
+    remember_highest(highest_vertex_, corner.vertex, at);
+    if (slash == text.npos) return corner;
     const std::size_t second = text.find('/', slash + 1);
-    if (second == text.npos || second + 1 == text.size()) return {vertex, kNoNormal};
-    const std::int64_t normal = index(text.substr(second + 1), normals_.size(), "normal", at);
-    remember_highest(highest_normal_, normal, at);
-    return {vertex, normal};
+    const std::string_view uv = text.substr(slash + 1, second == text.npos ? second : second - slash - 1);
+    if (with_uvs_ && !uv.empty()) {
+      corner.uv = index(uv, uvs_.size(), "texture coordinate", at);
+      remember_highest(highest_uv_, corner.uv, at);
+    }
+    if (second == text.npos || second + 1 == text.size()) return corner;
+    corner.normal = index(text.substr(second + 1), normals_.size(), "normal", at);
+    remember_highest(highest_normal_, corner.normal, at);
+    return corner;
   }
 
   struct Highest {
@@ -169,8 +187,9 @@ class ObjReader {
     const auto& [a, b, c] = corners;
     const std::size_t before = mesh_.triangles.size();
     mesh_.triangles.push_back({std::uint32_t(a.vertex), std::uint32_t(b.vertex), std::uint32_t(c.vertex)});
-    if (corner_normals_.empty() && std::max({a.normal, b.normal, c.normal}) == kNoNormal) return;
-    corner_normals_.resize(before, {kNoNormal, kNoNormal, kNoNormal});
+    if (with_uvs_) corner_uvs_.push_back({a.uv, b.uv, c.uv});
+    if (corner_normals_.empty() && std::max({a.normal, b.normal, c.normal}) == kNone) return;
+    corner_normals_.resize(before, {kNone, kNone, kNone});
     corner_normals_.push_back({a.normal, b.normal, c.normal});
   }
 
@@ -198,6 +217,7 @@ class ObjReader {
     check_.throw_if_any(path_);
     check_range(highest_vertex_, mesh_.positions.size(), "vertex");
     check_range(highest_normal_, normals_.size(), "normal");
+    check_range(highest_uv_, uvs_.size(), "texture coordinate");
     if (unread_ > 0)
       mesh_.warnings.push_back(
           path_ + ":" + std::to_string(first_unread_line_) + ": " + std::to_string(unread_) +
@@ -207,14 +227,22 @@ class ObjReader {
                                ": materials and textures (mtllib, usemtl) are not read: the scene file says "
                                "what a shape is made of");
     if (!corner_normals_.empty()) give_normals();
+    if (!uvs_.empty()) give_uvs();
+  }
+
+  void give_uvs() {
+    mesh_.uvs.resize(corner_uvs_.size());
+    for (std::size_t t = 0; t < corner_uvs_.size(); ++t)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (corner_uvs_[t][i] != kNone) mesh_.uvs[t][i] = uvs_[std::size_t(corner_uvs_[t][i])];
   }
 
   void give_normals() {
-    corner_normals_.resize(mesh_.triangles.size(), {kNoNormal, kNoNormal, kNoNormal});
+    corner_normals_.resize(mesh_.triangles.size(), {kNone, kNone, kNone});
     VertexVariants variants(mesh_);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i)
-        if (const std::int64_t normal = corner_normals_[t][i]; normal != kNoNormal)
+        if (const std::int64_t normal = corner_normals_[t][i]; normal != kNone)
           mesh_.triangles[t][i] = variants.of(mesh_.triangles[t][i], normals_[std::size_t(normal)]);
   }
 
@@ -233,20 +261,24 @@ class ObjReader {
   std::vector<std::size_t> joined_;  // offsets of the newlines taken out
   std::vector<Vec3f> normals_;
   std::vector<std::array<std::int64_t, 3>> corner_normals_;  // of triangles, up to the last that has one
-  std::vector<Corner> corners_;                              // of the face at hand
+  bool with_uvs_;
+  std::vector<std::array<float, 2>> uvs_;
+  std::vector<std::array<std::int64_t, 3>> corner_uvs_;  // of triangles
+  std::vector<Corner> corners_;                          // of the face at hand
   std::unordered_set<std::int64_t> seen_;
   std::size_t unread_ = 0;
-  Highest highest_vertex_, highest_normal_;
+  Highest highest_vertex_, highest_normal_, highest_uv_;
   std::string first_unread_;
   int first_unread_line_ = 0, first_material_line_ = 0;
 };
 
-SourceMesh read_obj(const std::string& path, std::string& bytes) {
-  return ObjReader(path, nullptr, bytes).run();
+SourceMesh read_obj(const std::string& path, std::string& bytes, bool with_uvs) {
+  return ObjReader(path, nullptr, bytes, with_uvs).run();
 }
 
-SourceMesh read_material(const std::string& path, const std::string& part, std::string& bytes) {
-  return ObjReader(path, &part, bytes).run();
+SourceMesh read_material(const std::string& path, const std::string& part, std::string& bytes,
+                         bool with_uvs) {
+  return ObjReader(path, &part, bytes, with_uvs).run();
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PLY, text and binary. Of the vertices x, y, z and nx, ny, nz are read, of the faces their vertices; all
+// PLY, text and binary. Of the vertices x, y, z, nx, ny, nz and UVs are read, of the faces their vertices; all
 // other properties, and other elements before the faces, are passed over.
 #include <algorithm>
 #include <array>
@@ -116,16 +116,23 @@ class PlyValues {
   TextCursor text_;     // in a text file
 };
 
-constexpr std::array<std::string_view, 6> kept_names{"x", "y", "z", "nx", "ny", "nz"};
+// Programs call UVs by three pairs of names; behind the first one u is at even places.
+constexpr std::array<std::string_view, 12> kept_names{"x", "y", "z", "nx", "ny",        "nz",
+                                                      "u", "v", "s", "t",  "texture_u", "texture_v"};
+constexpr std::size_t kFirstUv = 6;
 
 class PlyReader {
  public:
-  PlyReader(const std::string& path, const std::string& bytes)
-      : path_(path), header_(read_ply_header(path, bytes)), values_(path, bytes, header_) {}
+  PlyReader(const std::string& path, const std::string& bytes, bool with_uvs)
+      : path_(path),
+        header_(read_ply_header(path, bytes)),
+        values_(path, bytes, header_),
+        has_uvs_(with_uvs) {}
 
   SourceMesh run() {
     for (const PlyElement* element : wanted_elements()) rows(*element);
     check_.throw_if_any(path_);
+    give_uvs(mesh_, uvs_);
     return std::move(mesh_);
   }
 
@@ -161,7 +168,7 @@ class PlyReader {
   }
 
   void find_kept_properties() {
-    std::array<int, 6> found{};
+    std::array<int, kept_names.size()> found{};
     for (const PlyProperty& p : vertices_->properties) {
       const auto name = std::ranges::find(kept_names, p.name);
       const bool is_kept = name != kept_names.end() && !p.is_list && is_floating(p.type);
@@ -172,6 +179,8 @@ class PlyReader {
       throw bad_file(path_, "PLY vertices without positions",
                      "properties x, y and z of type float or double");
     has_normals_ = found[3] == 1 && found[4] == 1 && found[5] == 1;
+    const auto pairs = [&](std::size_t k) { return found[k] == 1 && found[k + 1] == 1; };
+    has_uvs_ = has_uvs_ && (pairs(kFirstUv) || pairs(kFirstUv + 2) || pairs(kFirstUv + 4));
   }
 
   void rows(const PlyElement& element) {
@@ -197,16 +206,20 @@ class PlyReader {
 
   void vertex() {
     std::array<Vec3d, 2> read;  // position and normal
+    std::array<float, 2> uv{};
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       const PlyProperty& p = vertices_->properties[i];
-      if (const std::optional<std::size_t> slot = slots_[i])
-        read[*slot / 3][*slot % 3] = values_.next(p.type);
-      else
+      if (!slots_[i])
         values_.skip(p);
+      else if (*slots_[i] < kFirstUv)
+        read[*slots_[i] / 3][*slots_[i] % 3] = values_.next(p.type);
+      else
+        uv[*slots_[i] % 2] = float(values_.next(p.type));
     }
     check_.check(read[0], mesh_.positions.size(), values_.line());
     mesh_.positions.push_back(read[0]);
     if (has_normals_) mesh_.normals.push_back(usable_normal(read[1]));
+    if (has_uvs_) uvs_.push_back(uv);
   }
 
   void face(std::uint64_t number) {
@@ -235,13 +248,14 @@ class PlyReader {
   const PlyElement* faces_ = nullptr;
   const PlyProperty* indices_ = nullptr;
   std::vector<std::optional<std::size_t>> slots_;  // of each vertex property, its number in kept_names
-  bool has_normals_ = false;
+  bool has_normals_ = false, has_uvs_;
+  std::vector<std::array<float, 2>> uvs_;
   SourceMesh mesh_;
   VertexCheck check_;
 };
 
-SourceMesh read_ply(const std::string& path, std::string& bytes) {
-  return PlyReader(path, bytes).run();
+SourceMesh read_ply(const std::string& path, std::string& bytes, bool with_uvs) {
+  return PlyReader(path, bytes, with_uvs).run();
 }
 
 }  // namespace

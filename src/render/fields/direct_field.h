@@ -9,11 +9,12 @@ namespace opaline {
 
 class DirectField : public Field {
  public:
-  DirectField(const EntrySampler& sampler, float eta) : sampler_(sampler), eta_(eta) {}
+  DirectField(const EntrySampler& sampler, const SurfaceTextures& textures, float eta)
+      : sampler_(sampler), textures_(textures), eta_(eta) {}
 
-  LeavingLight at(const SurfaceHits&, PointIrradianceInput lighting, const Pass& pass,
+  LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface*) const override {
-    return {.exitance = direct_exitance({sampler_, lighting, pass.entry_samples}),
+    return {.exitance = direct_exitance({sampler_, lighting, pass.entry_samples, &textures_, hits.hits}),
             .irradiance = {},
             .error = {},
             .noise = {},
@@ -23,6 +24,7 @@ class DirectField : public Field {
 
  private:
   const EntrySampler& sampler_;
+  const SurfaceTextures& textures_;
   float eta_;
 };
 

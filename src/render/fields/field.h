@@ -10,6 +10,7 @@
 #include "opaline/geometry/ray_scene.h"
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/render/held_view.h"
+#include "render/hit_textures.h"
 
 namespace opaline {
 
@@ -23,14 +24,15 @@ struct Pass {
 /// The hits of a batch of camera rays that one field answers for, one entry a hit in each array.
 struct SurfaceHits {
   std::vector<SurfacePoint> points;
-  std::vector<Hit> hits;            ///< mesh, triangle, barycentrics
-  std::vector<std::uint64_t> keys;  ///< choose the random numbers of a hit
-  std::vector<std::uint32_t> rays;  ///< their places in the batch
+  std::vector<Hit> hits;              ///< mesh, triangle, barycentrics
+  std::vector<std::uint64_t> keys;    ///< choose the random numbers of a hit
+  std::vector<std::uint32_t> rays;    ///< their places in the batch
+  std::vector<HitTextures> textures;  ///< empty: the scene has none
 };
 
 /// Light that leaves, one entry a hit, W/mm^2; an array that the field does not know is empty.
 struct LeavingLight {
-  std::vector<RgbF> exitance;    ///< radiant exitance M_o
+  std::vector<RgbF> exitance;    ///< radiant exitance M_o, but for the factor SurfaceTint::leaving
   std::vector<RgbF> irradiance;  ///< E at the hit
   std::vector<RgbF> error;       ///< expected |error| of the exitance that neighbouring hits share
   std::vector<Rgb> noise;        ///< variance of the exitance of each hit by itself
@@ -50,7 +52,11 @@ class Field {
   virtual bool asks_samples() const { return false; }
 };
 
-/// Irradiance at the hits, from lights by shadow rays unless it is held, and from other surfaces.
+/// Irradiance at the hits, from lights by shadow rays unless it is held, and from other surfaces; without tints.
 std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, HeldView::Surface* held);
+
+/// What of it enters, and its variance: tinted.
+void tint_entering(std::span<const HitTextures> textures, std::span<RgbF> irradiance,
+                   std::span<Rgb> variance);
 
 }  // namespace opaline

@@ -18,6 +18,7 @@ LeavingLight LocalField::at(const SurfaceHits& hits, PointIrradianceInput lighti
   if (estimates_error_ && is_noisy_) light.noise.resize(hits.points.size());
   lighting.variance = light.noise;
   light.irradiance = irradiance_at_hits(lighting, held);
+  tint_entering(hits.textures, light.irradiance, light.noise);
   for (std::size_t i = 0; i < hits.points.size(); ++i) {
     const RgbF& albedo = albedos_[hits.hits[i].mesh];
     light.exitance.push_back(albedo * light.irradiance[i]);

@@ -27,7 +27,7 @@ struct Source {
 
 Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_samplers, std::size_t mesh) {
   const Shape& shape = input.scene.shapes[mesh];
-  if (!shape.medium) return {};
+  if (!shape.medium) return {.eta = shape.gloss ? float(shape.gloss->eta) : 0};
   Source source{.eta = float(input.scene.media[*shape.medium].eta)};
   if (has_samples(input.scene.settings.method))
     for (const Body& group : input.groups)
@@ -38,11 +38,11 @@ Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_s
 }
 
 std::unique_ptr<Field> make_field(const RenderInput& input, const Source& source,
-                                  std::span<const RgbF> albedos) {
+                                  const SurfaceTextures& textures, std::span<const RgbF> albedos) {
   if (source.group != nullptr && has_cells(input.scene.settings.method))
     return std::make_unique<VolumeField>(*source.group);
   if (source.group != nullptr) return std::make_unique<SampleField>(input, *source.group);
-  if (source.entries != nullptr) return std::make_unique<DirectField>(*source.entries, source.eta);
+  if (source.entries != nullptr) return std::make_unique<DirectField>(*source.entries, textures, source.eta);
   return std::make_unique<LocalField>(input, albedos, source.eta);
 }
 
@@ -56,7 +56,8 @@ std::vector<RgbF> albedos_of(const Scene& scene) {
 
 }  // namespace
 
-Fields make_fields(const RenderInput& input, std::span<const EntrySampler> entry_samplers) {
+Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
+                   std::span<const EntrySampler> entry_samplers) {
   const std::vector<RgbF> albedos = albedos_of(input.scene);
   Fields fields;
   std::vector<Source> sources;
@@ -66,13 +67,22 @@ Fields make_fields(const RenderInput& input, std::span<const EntrySampler> entry
     fields.of_mesh.push_back(std::size_t(known - sources.begin()));
     if (known != sources.end()) continue;
     sources.push_back(source);
-    fields.all.push_back(make_field(input, source, albedos));
+    fields.all.push_back(make_field(input, source, textures, albedos));
   }
   return fields;
 }
 
 bool has_area_lights(const Scene& scene) {
   return !std::ranges::all_of(scene.lights, is_delta);
+}
+
+void tint_entering(std::span<const HitTextures> textures, std::span<RgbF> irradiance,
+                   std::span<Rgb> variance) {
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    const RgbF& tint = textures[i].tint.entering;
+    irradiance[i] = irradiance[i] * tint;
+    if (!variance.empty()) variance[i] = variance[i] * Rgb(tint) * Rgb(tint);
+  }
 }
 
 namespace {

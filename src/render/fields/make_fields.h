@@ -17,8 +17,9 @@ struct Fields {
   std::vector<std::size_t> of_mesh;  ///< an index into `all` for each mesh of the world
 };
 
-/// in    entry_samplers: of Method::direct, one a group; must outlive the fields, as the input
-Fields make_fields(const RenderInput& input, std::span<const EntrySampler> entry_samplers);
+/// in    entry_samplers: of Method::direct, one a group; must outlive the fields, as the input and the textures
+Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
+                   std::span<const EntrySampler> entry_samplers);
 
 /// Whether any light is seen directly or has more than one direction, so that shadow rays are noisy.
 bool has_area_lights(const Scene& scene);

@@ -42,11 +42,13 @@ LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput light
     if (is_noisy_) lighting.variance = light.noise;
     light.irradiance = irradiance_at_hits(lighting, held);
     lighting.variance = {};
+    tint_entering(hits.textures, light.irradiance, light.noise);
   }
   std::vector<Exitance> exitance =
       group_.surface_cache ? looked_up(hits, light.irradiance)
                            : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
-  if (looks_near) refine_near_field(lighting, exitance, light, held);
+  // Beside a tint's edges the samples' irradiance differs from that of the point without a shadow's edge near.
+  if (looks_near && group_.entering.empty()) refine_near_field(lighting, exitance, light, held);
   for (std::vector<RgbF>* values : {&light.exitance, &light.error, &light.irradiance})
     values->reserve(exitance.size());
   for (const Exitance& e : exitance) {

@@ -13,8 +13,14 @@ const kForms = {
 };
 const kNumbers = ["number", "whole_number", "length"], kThrees = ["point", "triple"];
 const kColours = ["color", "number_or_triple"];
+// Shown where the scene has them.
+const kOptional = ["tint", "texture_mix", "thickness"];
+const kGloss = ["metalness", "specular_roughness", "specular_ior"];
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};
 const kWidestLinear = 1000, kDecade = 1;
+
+const isTexture = (value) => value !== null && typeof value === "object" && "texture" in value;
+const textured = (owner) => Object.keys(owner).filter((key) => isTexture(owner[key]));
 
 const make = (name, properties = {}, ...children) => {
   const element = Object.assign(document.createElement(name), properties);
@@ -65,8 +71,8 @@ export class Knobs {
     this.scene = scene;
     if (!this.rows) return;
     const media = scene.media || {}, lights = scene.lights || [], shapes = scene.shapes || [];
-    const shape = JSON.stringify([Object.entries(media).map(([name, m]) => [name, this.formOf(m), "eta" in m]),
-      lights.map((l) => [l.name, l.type]), shapes.map((s) => [s.name, "medium" in s])]);
+    const shape = JSON.stringify([Object.entries(media).map(([name, m]) => [name, this.formOf(m), "eta" in m, kOptional.filter((key) => key in m), textured(m)]),
+      lights.map((l) => [l.name, l.type]), shapes.map((s) => [s.name, "medium" in s, kGloss.filter((key) => key in s), textured(s)])]);
     if (shape !== this.shape) this.build(scene);
     this.shape = shape;
     for (const knob of this.knobs) {
@@ -89,7 +95,7 @@ export class Knobs {
     (scene.lights || []).forEach((light, i) => group(`lights.${i}`, `Light ${light.name || i}`, this.rowsOf(`light.${light.type}`, this.pathOf("lights", i), (s) => s.lights[i], ["type", "name"])));
     group("surroundings", "Surroundings", [this.knob("scene", "surroundings", "surroundings", (s) => s.surroundings)]);
     (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`,
-      (("medium" in shape) ? ["medium", "normals"] : ["reflectance", "normals"]).map((key) =>
+      [...("medium" in shape ? ["medium"] : ["reflectance", ...kGloss.filter((key) => key in shape)]), "normals"].map((key) =>
         this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))));
     group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera));
     group("film", "Picture", this.rowsOf("film", "film", (s) => s.film));
@@ -108,7 +114,7 @@ export class Knobs {
     select.onchange = () => this.set({[path]: this.converted(name, select.value)}, newStroke());
     const ior = "eta" in medium ? "eta" : "specular_ior";
     return [make("label", {className: "knob"}, make("span", {className: "name", textContent: "given by"}), select),
-      ...[...kForms[form].keys, ior, "specular_roughness", "profile", ...("thickness" in medium ? ["thickness"] : [])].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
+      ...[...kForms[form].keys, ior, "specular_roughness", "profile", ...kOptional.filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
   }
 
   // The same medium in another form, or where there is no telling one to start from.
@@ -143,7 +149,8 @@ export class Knobs {
 
   inputs(knob, set) {
     const {row} = knob, box = make("span", {className: "inputs"});
-    if (row.type === "flag") this.flag(knob, box, set);
+    if (isTexture(knob.value(this.scene))) this.text(knob, box);
+    else if (row.type === "flag") this.flag(knob, box, set);
     else if (row.type === "choice" || row.key === "medium") this.choice(knob, box, set);
     else if (kNumbers.includes(row.type)) this.number(knob, box, set);
     else if (kColours.includes(row.type)) this.colour(knob, box, set);
@@ -158,10 +165,10 @@ export class Knobs {
     box.append(input);
   }
 
-  // Files are those of the scene.
+  // Files are those of the scene, textures among them.
   text(knob, box) {
     const output = make("output", {ariaLabel: knob.row.key});
-    knob.show = (value) => { output.textContent = value ?? ""; };
+    knob.show = (value) => { output.textContent = isTexture(value) ? value.texture : value ?? ""; };
     box.append(output);
   }
 

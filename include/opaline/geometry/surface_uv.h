@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// UVs at a point of a mesh's surface, and how they change along it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "opaline/geometry/mesh.h"
+
+namespace opaline {
+
+struct SurfaceUv {
+  std::array<float, 2> uv{};     ///< v upwards
+  Vec3f gradient_u, gradient_v;  ///< along the surface, per length of the mesh's space
+};
+
+/// in    mesh: with UVs; u, v: barycentrics of the triangle's second and third corner
+SurfaceUv surface_uv(const Mesh& mesh, std::uint32_t triangle, float u, float v);
+
+}  // namespace opaline

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures on surfaces: files opened for filtered lookups, their colours linear.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "opaline/core/vec3.h"
+#include "opaline/scene/enumerations.h"
+
+namespace opaline {
+
+/// A place of a picture and the two sides of the parallelogram around it whose mean is wanted. u to the right, v
+/// downwards from the upper left corner, 1 the whole picture.
+struct TexturePlace {
+  float u = 0, v = 0;
+  std::array<float, 2> side_x{}, side_y{};
+};
+
+/// What looking at all of a texture takes, bytes.
+struct TextureMemory {
+  std::size_t decoded = 0;  ///< for a while, of the largest picture
+  std::size_t cached = 0;   ///< at all sizes; all textures together take no more than cache_limit
+};
+
+using Texel = std::array<double, 4>;  ///< red, green, blue, alpha; a grey picture has three alike
+
+class CachedPicture;
+
+/// A picture, repeated, or several side by side: "<UDIM>" in a file's name stands for 1001 + column + 10 x row, rows
+/// counted upwards. Texels are read where somebody looks, at the size that suits, and kept within a bound.
+class TextureFile {
+ public:
+  /// in    path: EXR, HDR, PNG, JPEG or TIFF, a name with "<UDIM>", or "asset.glb#image/3" by its index in the asset;
+  ///       space: not automatic
+  /// out   the same object while the file has not changed and somebody holds it
+  /// error Error{bad_input} naming the file: missing, damaged, no picture
+  static std::shared_ptr<const TextureFile> open(const std::string& path, ColorSpace space);
+  /// The space of colours in a file that does not declare another: linear if it holds floats, else sRGB.
+  /// error as open
+  static ColorSpace space_of_colors(const std::string& path);
+  ~TextureFile();
+
+  /// The mean over a place. Thread-safe.
+  /// error Error{bad_input} naming the file: it is damaged there
+  std::array<float, 4> at(const TexturePlace& place) const;
+  /// What all texels are, where they are alike.
+  const std::optional<Texel>& constant() const { return constant_; }
+  /// Over all texels; reads the whole picture the first time.
+  Texel mean() const;
+
+  const std::string& path() const { return path_; }
+  int channels() const { return channels_; }
+  TextureMemory memory() const;
+  /// Of the cache that all textures share, bytes.
+  static std::size_t cache_limit();
+  /// Whether there is a picture for the tile that v upwards and u count; a plain picture is everywhere.
+  bool has_tile(int column, int row) const;
+  /// Of the file's bytes and its colour space.
+  std::uint64_t hash() const { return hash_; }
+
+ private:
+  TextureFile() = default;
+  void add_picture(int tile, const std::string& path, ColorSpace space);
+
+  std::string path_;
+  std::map<int, std::unique_ptr<const CachedPicture>> pictures_;  // by tile; a plain one is 0
+  std::optional<Texel> constant_;
+  int channels_ = 0;
+  std::uint64_t hash_ = 0;
+};
+
+}  // namespace opaline

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the textures of a scene say at points of its surfaces.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "opaline/cache/stage_key.h"
+#include "opaline/geometry/surface_point.h"
+#include "opaline/geometry/surface_uv.h"
+#include "opaline/geometry/world.h"
+#include "opaline/sampling/sample_surface.h"
+
+namespace opaline {
+
+/// Two sides of the part of a surface that a lookup is to be the mean of, world units.
+struct Footprint {
+  Vec3f x{}, y{};
+};
+
+/// Factors on light as it enters a surface and as it leaves.
+struct SurfaceTint {
+  RgbF entering{1, 1, 1}, leaving{1, 1, 1};
+};
+
+class SurfaceTextures {
+ public:
+  /// Both must outlive it.
+  /// error Error{bad_input}: UVs reach a tile that a texture has not, told at the texture's place
+  SurfaceTextures(const Scene& scene, const World& world);
+
+  /// Whether any surface has other values at other points, or a tint.
+  bool empty() const { return is_empty_; }
+  /// Whether it has a tint that light meets as it enters.
+  bool tints_entering(std::uint32_t mesh) const;
+
+  /// One point of a mesh; its lookups all have one footprint.
+  struct Place {
+    std::uint32_t mesh;
+    std::optional<SurfaceUv> uv;  ///< none: no texture asks for it
+    Footprint footprint;
+  };
+  Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
+
+  /// Of an opaque surface what leaves is times the texture of its reflectance.
+  SurfaceTint tint(const Place& place) const;
+  /// None: the surface's own.
+  std::optional<float> roughness(const Place& place) const;
+  std::optional<float> metalness(const Place& place) const;
+  /// Turns the point's shading normal by the normal map, if there is one.
+  void bend(const Place& place, SurfacePoint& point) const;
+
+ private:
+  struct OfMesh {
+    const Texture *tint = nullptr, *roughness = nullptr, *metalness = nullptr, *normals = nullptr;
+    Rgb factor{1, 1, 1};               ///< times the tint's texture
+    double at_entry = 0, at_exit = 1;  ///< exponents of the tint
+    bool has_tint = false, needs_uv = false;
+  };
+
+  const World& world_;
+  std::vector<OfMesh> of_mesh_;
+  bool is_empty_ = true;
+};
+
+/// What colours light that enters a body at its samples: the tint's power, its mean over a sample's share of the
+/// surface; empty where no tint is met there.
+std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples);
+
+/// Of a scene's texture: its file's contents and how it is laid; with the UVs of some meshes.
+void add_to_key(KeyBuilder& key, const Texture& texture);
+/// Of entering_tints; a key of zeros where there are none.
+StageKey tint_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes,
+                  const StageKey& samples);
+
+/// Where a cone meets a surface.
+/// in    direction: of the ray, of any length; width: of the cone there
+Footprint footprint_of(const SurfacePoint& point, const Vec3f& direction, float width);
+
+}  // namespace opaline

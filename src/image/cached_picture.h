@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the module of OpenImageIO (image/picture_reader.h) gives textures.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "opaline/image/texture_file.h"
+
+namespace opaline {
+
+/// A picture's bytes: a file, or in memory.
+struct PictureSource {
+  std::string path;   ///< for messages, and to read unless there are bytes
+  std::string bytes;  ///< of the file
+  bool repeats = true;
+};
+
+/// One picture in the texture cache.
+class CachedPicture {
+ public:
+  virtual ~CachedPicture() = default;
+  virtual std::array<float, 4> at(const TexturePlace& place) const = 0;
+  /// The first texel, if all others are like it.
+  virtual std::optional<Texel> constant() const = 0;
+  virtual Texel mean() const = 0;
+  virtual int channels() const = 0;
+  virtual TextureMemory memory() const = 0;
+};
+
+struct TextureReader {
+  /// to_linear: of a picture in sRGB
+  std::unique_ptr<CachedPicture> (*open)(PictureSource source, bool to_linear);
+  /// Whether it holds floats.
+  bool (*is_float)(const PictureSource& source);
+  /// Of the cache, bytes.
+  std::size_t (*cache_limit)();
+};
+
+}  // namespace opaline
+
+/// What the module gives.
+extern "C" opaline::TextureReader opaline_texture_reader();

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A picture as the texture cache is to see it: from a file or from memory, its colours linear. Of the module
+// (picture_reader.h).
+#pragma once
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "image/cached_picture.h"
+
+namespace opaline {
+
+/// Decodes another input. sRGB becomes linear halves, whose rounding is below that of 8 bits; alpha stays as it is.
+/// Formats that are read from their beginning alone are decoded at once and held until each row was asked for: the cache
+/// asks for rows in any order, and OpenImageIO 2.4 goes back by opening the file anew, which a picture in memory does not survive.
+class LinearInput : public OIIO::ImageInput {
+ public:
+  /// What inputs of this name, of none of a file, read.
+  static void register_source(const std::string& name, std::shared_ptr<const PictureSource> source,
+                              bool to_linear);
+  static void forget_source(const std::string& name);
+  static OIIO::ImageInput* create() { return new LinearInput; }
+
+  /// The input of a source as it is.
+  /// error Error{bad_input} naming the file
+  struct Opened {
+    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
+    OIIO::ImageInput::unique_ptr input;  ///< destroyed first
+  };
+  static Opened open_source(const PictureSource& source);
+
+  const char* format_name() const override { return "opaline linear"; }
+  int supports(OIIO::string_view feature) const override {
+    return opened_.input != nullptr ? opened_.input->supports(feature) : 0;
+  }
+  bool open(const std::string& name, OIIO::ImageSpec& spec) override;
+  bool close() override;
+  int current_subimage() const override { return is_sequential_ ? 0 : opened_.input->current_subimage(); }
+  int current_miplevel() const override { return is_sequential_ ? 0 : opened_.input->current_miplevel(); }
+  bool seek_subimage(int subimage, int miplevel) override;
+  bool read_native_scanline(int subimage, int miplevel, int y, int z, void* data) override;
+  bool read_native_scanlines(int subimage, int miplevel, int y_begin, int y_end, int z, void* data) override;
+  bool read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) override;
+
+ private:
+  void take_spec();
+  bool reopen();
+  bool decode();
+  bool complain();
+  /// From values_ to what the cache gets.
+  bool make_linear(std::size_t pixels, void* data);
+
+  std::shared_ptr<const PictureSource> source_;
+  bool to_linear_ = false, is_sequential_ = false;
+  Opened opened_;
+  OIIO::TypeDesc native_;  // of the values in the file
+  std::mutex mutex_;       // of all below
+  std::vector<unsigned char> whole_;
+  std::vector<bool> is_given_;  // each row of it
+  std::vector<float> values_;
+};
+
+}  // namespace opaline

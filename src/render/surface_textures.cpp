@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/render/surface_textures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "opaline/core/error.h"
+#include "opaline/core/random.h"
+#include "opaline/image/texture_file.h"
+
+namespace opaline {
+namespace {
+
+/// UVs count from the lower left corner, textures from the upper left one.
+TexturePlace texture_place(const Texture& texture, const SurfaceUv& at, const Footprint& footprint) {
+  const double angle = texture.uv_rotation * std::numbers::pi / 180;
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  const auto turned = [&](double u, double v) {
+    const double x = u * texture.uv_scale[0], y = v * texture.uv_scale[1];
+    return std::array<double, 2>{cosine * x + sine * y, cosine * y - sine * x};
+  };
+  const auto side = [&](const Vec3f& along) {
+    const auto [u, v] = turned(double(dot(at.gradient_u, along)), -double(dot(at.gradient_v, along)));
+    return std::array<float, 2>{float(u), float(v)};
+  };
+  const auto [u, v] = turned(double(at.uv[0]), 1 - double(at.uv[1]));
+  return {float(u + texture.uv_offset[0]), float(v + texture.uv_offset[1]), side(footprint.x),
+          side(footprint.y)};
+}
+
+std::array<float, 4> looked_up(const Texture& texture, const SurfaceTextures::Place& place) {
+  return texture.file->at(texture_place(texture, *place.uv, place.footprint));
+}
+
+float number_of(const Texture& texture, const SurfaceTextures::Place& place) {
+  return std::clamp(looked_up(texture, place)[texture.channel] * float(texture.scale.x), 0.0f, 1.0f);
+}
+
+// A whole number of 8 bits has no middle of the range: both beside it are as good.
+float slope_of(float value) {
+  const float slope = 2 * value - 1;
+  return std::abs(slope) < 1.01f / 255 ? 0 : slope;
+}
+
+/// error unless the file has a picture wherever the mesh's triangles have their middles
+void check_tiles(const Texture& texture, const Mesh& mesh, const std::string& shape) {
+  if (texture.file->has_tile(-1, -1)) return;
+  for (const CornerUvs& uvs : mesh.uvs) {
+    SurfaceUv middle;
+    for (const auto& corner : uvs)
+      for (std::size_t k = 0; k < 2; ++k) middle.uv[k] += corner[k] / 3;
+    const TexturePlace place = texture_place(texture, middle, {});
+    const int column = int(std::floor(place.u)), row = int(std::floor(1 - place.v));
+    if (texture.file->has_tile(column, row)) continue;
+    throw told_at(texture.place,
+                  bad_file(texture.file->path(), "has no tile where the UVs of '" + shape + "' need one",
+                           "a file " + std::to_string(1001 + column + 10 * row)));
+  }
+}
+
+RgbF powered(const RgbF& value, double exponent) {
+  RgbF result;
+  for (std::size_t c = 0; c < 3; ++c)
+    result[c] = exponent == 1    ? value[c]
+                : exponent == .5 ? std::sqrt(value[c])
+                : exponent == 0  ? 1.0f
+                                 : std::pow(value[c], float(exponent));
+  return result;
+}
+
+const Texture* pointer_to(const std::optional<Texture>& texture) {
+  return texture ? &*texture : nullptr;
+}
+
+}  // namespace
+
+SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world_(world) {
+  for (std::size_t m = 0; m < scene.shapes.size(); ++m) {
+    const Shape& shape = scene.shapes[m];
+    OfMesh& own = of_mesh_.emplace_back();
+    own.normals = pointer_to(shape.normal_map);
+    if (shape.medium) {
+      const Medium& medium = scene.media[*shape.medium];
+      own.tint = pointer_to(medium.tint_texture);
+      own.roughness = pointer_to(medium.roughness_texture);
+      own.factor = medium.tint;
+      own.at_entry = medium.texture_mix == TextureMix::pre    ? 1
+                     : medium.texture_mix == TextureMix::post ? 0
+                                                              : .5;
+      own.at_exit = 1 - own.at_entry;
+    } else {
+      own.tint = pointer_to(shape.reflectance_texture);
+      if (shape.gloss) own.roughness = pointer_to(shape.gloss->roughness_texture);
+      if (shape.gloss) own.metalness = pointer_to(shape.gloss->metalness_texture);
+    }
+    own.has_tint = own.tint != nullptr || own.factor != Rgb(1);
+    own.needs_uv = needs_uvs(scene, shape);
+    is_empty_ = is_empty_ && !own.has_tint && !own.needs_uv;
+    for (const Texture* texture : textures_of(scene, shape))
+      check_tiles(*texture, world.meshes[m], shape.name);
+  }
+}
+
+bool SurfaceTextures::tints_entering(std::uint32_t mesh) const {
+  return of_mesh_[mesh].has_tint && of_mesh_[mesh].at_entry > 0;
+}
+
+SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t triangle, float u, float v,
+                                              const Footprint& footprint) const {
+  Place place{mesh, {}, footprint};
+  if (of_mesh_[mesh].needs_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
+  return place;
+}
+
+SurfaceTint SurfaceTextures::tint(const Place& place) const {
+  const OfMesh& own = of_mesh_[place.mesh];
+  if (!own.has_tint) return {};
+  RgbF tint(own.factor);
+  if (own.tint != nullptr) {
+    const std::array<float, 4> texel = looked_up(*own.tint, place);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float value = std::max(0.0f, texel[c]) * float(own.tint->scale[c]);
+      tint[c] *= own.tint->is_relative ? value : std::min(value, 1.0f);
+    }
+  }
+  return {powered(tint, own.at_entry), powered(tint, own.at_exit)};
+}
+
+std::optional<float> SurfaceTextures::roughness(const Place& place) const {
+  const Texture* const texture = of_mesh_[place.mesh].roughness;
+  if (texture == nullptr) return {};
+  return number_of(*texture, place);
+}
+
+std::optional<float> SurfaceTextures::metalness(const Place& place) const {
+  const Texture* const texture = of_mesh_[place.mesh].metalness;
+  if (texture == nullptr) return {};
+  return number_of(*texture, place);
+}
+
+// Around the normal, the way that u goes and the way that v does.
+void SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
+  const Texture* const texture = of_mesh_[place.mesh].normals;
+  if (texture == nullptr) return;
+  const std::array<float, 4> texel = looked_up(*texture, place);
+  const float x = slope_of(texel[0]) * float(texture->scale.x),
+              y = slope_of(texel[1]) * float(texture->scale.x);
+  if (x == 0 && y == 0) return;
+  const Vec3f across_v = cross(place.uv->gradient_v, point.geometric);
+  const float side = dot(place.uv->gradient_u, across_v);
+  if (!(std::abs(side) > 0)) return;
+  const Vec3f along = across_v * (side > 0 ? 1.0f : -1.0f);
+  const Vec3f tangent = normalized(along - point.normal * dot(along, point.normal));
+  const Vec3f bitangent = cross(point.normal, tangent) * (side > 0 ? 1.0f : -1.0f);
+  point.normal =
+      normalized(tangent * x + bitangent * y + point.normal * std::max(2 * texel[2] - 1, 1.0f / 255));
+}
+
+std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples) {
+  std::vector<RgbF> tints;
+  if (samples.empty() || !textures.tints_entering(samples.front().mesh)) return tints;
+  tints.reserve(samples.size());
+  for (const SurfaceSample& s : samples) {
+    Footprint footprint;
+    tangent_frame(s.normal, footprint.x, footprint.y);
+    footprint.x *= std::sqrt(s.area);
+    footprint.y *= std::sqrt(s.area);
+    tints.push_back(textures.tint(textures.place(s.mesh, s.triangle, s.u, s.v, footprint)).entering);
+  }
+  return tints;
+}
+
+void add_to_key(KeyBuilder& key, const Texture& texture) {
+  key.add(texture.file->hash())
+      .add(texture.scale)
+      .add(std::uint64_t(texture.channel))
+      .add(texture.is_relative);
+  key.add(texture.uv_offset).add(texture.uv_scale).add(texture.uv_rotation);
+}
+
+StageKey tint_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes,
+                  const StageKey& samples) {
+  if (medium.texture_mix == TextureMix::post || (medium.tint == Rgb(1) && !medium.tint_texture)) return {};
+  KeyBuilder key("entering tint", 1);
+  key.add(samples).add(medium.tint).add(medium.texture_mix);
+  if (!medium.tint_texture) return key.key();
+  add_to_key(key, *medium.tint_texture);
+  for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
+  return key.key();
+}
+
+Footprint footprint_of(const SurfacePoint& point, const Vec3f& direction, float width) {
+  constexpr float kLeastCosine = 1.0f / 32;  // as oblong as textures are filtered
+  const Vec3f d = normalized(direction);
+  const float cosine = std::abs(dot(point.geometric, d));
+  Vec3f across, along;
+  tangent_frame(point.geometric, across, along);
+  if (cosine < .999f) across = normalized(cross(point.geometric, d));
+  along = cross(point.geometric, across);
+  return {across * width, along * (width / std::max(cosine, kLeastCosine))};
+}
+
+}  // namespace opaline

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
+#include "opaline/core/error.h"
+#include "opaline/image/texture_file.h"
+#include "scene/readers.h"
+
+namespace opaline {
+namespace {
+
+bool is_texture(const Value& value) {
+  return value.node().kind == Node::Kind::object;
+}
+
+std::array<double, 2> read_pair(const Value& value) {
+  const std::vector<Value> numbers = value.list(2, "a list of 2 numbers");
+  return {numbers[0].number(), numbers[1].number()};
+}
+
+ColorSpace space_of(const ObjectReader& reader, const std::string& path, bool is_color) {
+  ColorSpace space = ColorSpace::automatic;
+  if (const auto declared = reader.find("color_space")) space = static_cast<ColorSpace>(declared->choice());
+  if (space != ColorSpace::automatic) return space;
+  return is_color ? TextureFile::space_of_colors(path) : ColorSpace::linear;
+}
+
+Texture read_texture(const Value& value, bool is_color) {
+  const ObjectReader reader(value, "texture");
+  Texture texture;
+  texture.place = value.place();
+  const Value file = reader.need("texture");
+  try {
+    const std::string path = file.file_path();
+    texture.file = TextureFile::open(path, space_of(reader, path, is_color));
+  } catch (const Error& failure) {
+    throw told_at(file.place(), failure);
+  }
+  if (const auto scale = reader.find("scale")) texture.scale = scale->number_or_triple();
+  if (const auto channel = reader.find("channel")) texture.channel = channel->choice();
+  if (const auto uv_scale = reader.find("uv_scale")) texture.uv_scale = read_pair(*uv_scale);
+  if (const auto rotation = reader.find("uv_rotation")) texture.uv_rotation = rotation->number();
+  if (const auto offset = reader.find("uv_offset")) texture.uv_offset = read_pair(*offset);
+  return texture;
+}
+
+/// error unless it is in the range of the value's row
+double checked(const Value& value, double number) {
+  const Range& range = value.info().range;
+  if (!(number >= range.low && number <= range.high))
+    value.fail("is out of range everywhere", "a texture times its scale that suits the key's range");
+  return number;
+}
+
+}  // namespace
+
+ColorReading read_color(const Value& value) {
+  if (!is_texture(value)) return {value.color(), {}};
+  Texture texture = read_texture(value, true);
+  if (value.member("channel", value.info())) value.fail("is a colour", "no 'channel'");
+  const std::optional<Texel>& constant = texture.file->constant();
+  if (!constant) return {Rgb(1), std::move(texture)};
+  Rgb color;
+  for (std::size_t c = 0; c < 3; ++c) color[c] = checked(value, (*constant)[c] * texture.scale[c]);
+  return {color, {}};
+}
+
+NumberReading read_number(const Value& value) {
+  if (!is_texture(value)) return {value.number(), {}};
+  Texture texture = read_texture(value, false);
+  const std::optional<Texel>& constant = texture.file->constant();
+  if (!constant) return {1, std::move(texture)};
+  return {checked(value, (*constant)[texture.channel] * texture.scale.x), {}};
+}
+
+Texture read_normal_map(const Value& value) {
+  return read_texture(value, false);
+}
+
+std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) {
+  std::vector<const Texture*> textures;
+  const auto add = [&](const std::optional<Texture>& texture) {
+    if (texture) textures.push_back(&*texture);
+  };
+  add(shape.reflectance_texture);
+  add(shape.normal_map);
+  if (shape.gloss) {
+    add(shape.gloss->metalness_texture);
+    add(shape.gloss->roughness_texture);
+  }
+  if (!shape.medium) return textures;
+  add(scene.media[*shape.medium].tint_texture);
+  add(scene.media[*shape.medium].roughness_texture);
+  return textures;
+}
+
+bool needs_uvs(const Scene& scene, const Shape& shape) {
+  return !textures_of(scene, shape).empty();
+}
+
+}  // namespace opaline

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "asset_test.h"
+#include "opaline/image/texture_file.h"
+#include "support/pictures.h"
+
+namespace opaline::asset_test {
+namespace {
+
+/// The bytes of a PNG whose left half is `left` and whose right half is black.
+std::string png_of(int left) {
+  const ScratchFolder folder;
+  test::put_png(folder.file("p.png"), 4, 2, [&](int x, int) {
+    return x < 2 ? test::Bytes{left, left, left} : test::Bytes{0, 0, 0};
+  });
+  return bytes_of(folder.file("p.png"));
+}
+
+/// A triangle with UVs (0, 0), (1, 0), (0, 1) as glTF counts them, of this material, which has texture 0.
+Asset textured_triangle(const Json& material, const Json& image) {
+  Asset asset;
+  const int positions = asset.accessor<float>("VEC3", kFloat, {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const int uvs = asset.accessor<float>("VEC2", kFloat, {0, 0, 1, 0, 0, 1});
+  asset.mesh({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}},
+              {"material", asset.material(material)}});
+  asset.root(asset.node({{"mesh", 0}}));
+  asset.json["images"] = Json::array({image});
+  asset.json["textures"] = Json::array({{{"source", 0}}});
+  return asset;
+}
+
+Json colored(const Json& texture_info = {{"index", 0}}) {
+  return {{"pbrMetallicRoughness", {{"baseColorTexture", texture_info}, {"metallicFactor", 0}}}};
+}
+
+/// Appends an image's bytes as a buffer view.
+Json embedded(Asset& asset, const std::string& bytes) {
+  asset.json["bufferViews"].push_back(
+      {{"buffer", 0}, {"byteOffset", asset.buffer.size()}, {"byteLength", bytes.size()}});
+  asset.buffer += bytes;
+  return {{"bufferView", asset.json["bufferViews"].size() - 1}, {"mimeType", "image/png"}};
+}
+
+double left_texel(const TextureFile& texture) {
+  return double(texture.at({.25f, .5f, {}, {}})[0]);
+}
+
+// Claim: images are found in the asset, in its text, and beside it under an encoded name; colours are sRGB. No file is
+// left. Fails if one of the three is not, or bytes go through a file.
+TEST(GltfTextures, AreFoundWhereverTheyAre) {
+  const std::string png = png_of(128);
+  Asset inside = textured_triangle(colored(), {});
+  inside.json["images"][0] = embedded(inside, png);
+  const Asset in_text = textured_triangle(colored(), {{"uri", "data:image/png;base64," + base64(png)}});
+  const Asset beside = textured_triangle(colored(), {{"uri", "a%20picture.png"}});
+  for (const Asset& asset : {inside, in_text, beside}) {
+    const ScratchFolder folder;
+    put_bytes(folder.file("a picture.png"), png);
+    put_bytes(folder.file("a.glb"), asset.glb());
+    const Scene scene = load_scene(folder.file("a.glb"));
+    const std::optional<Texture>& texture = scene.shapes.at(0).reflectance_texture;
+    ASSERT_TRUE(texture);
+    EXPECT_NEAR(left_texel(*texture->file), test::linear_of_byte(128), 2e-4);
+    EXPECT_EQ(folder.entries(), 2u);
+  }
+}
+
+// Claim: a picture within an asset is looked up in any order. Fails if going back opens it anew as a file.
+TEST(GltfTextures, AreLookedUpInAnyOrder) {
+  const ScratchFolder folder;
+  test::put_png(folder.file("p.png"), 8, 1024, [](int, int y) { return test::Bytes{y / 4, 0, 255}; });
+  Asset asset = textured_triangle(colored(), {});
+  asset.json["images"][0] = embedded(asset, bytes_of(folder.file("p.png")));
+  put_bytes(folder.file("a.glb"), asset.glb());
+  const auto texture = TextureFile::open(folder.file("a.glb#image/0"), ColorSpace::linear);
+  for (int i = 0; i < 64; ++i) {
+    const int row = (i * 37 + 63) % 64 * 16 + 2;
+    EXPECT_NEAR(double(texture->at({.5f, (float(row) + .5f) / 1024, {}, {}})[0]) * 255, row / 4, .01) << row;
+  }
+}
+
+// Claim: v is turned upwards, once: the corner that glTF calls (0, 1) is at the picture's lower edge. Fails if it is at
+// its upper one.
+TEST(GltfTextures, CountUpwards) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("a.glb"), textured_triangle(Json::object(), {{"uri", "x.png"}}).glb());
+  Shape shape;
+  shape.source = MeshFile{folder.file("a.glb"), false, {}, "0/0"};
+  const Mesh mesh = make_mesh(shape, true).mesh;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d& p = mesh.positions[mesh.triangles[0][k]];
+    EXPECT_EQ(mesh.uvs.at(0)[k], (std::array<float, 2>{float(p.x), float(1 - p.y)}));
+  }
+}
+
+// Claim: what glTF says of textures becomes what the scene says: factors, channels, KHR_texture_transform, the strength of
+// normals; of a translucent body a tint and a roughness. Fails if a channel is another or a factor is lost.
+TEST(GltfTextures, BecomeTheScenes) {
+  const Json transform = {{"offset", {.25, .5}}, {"rotation", 1.5707963267948966}, {"scale", {2, 3}}};
+  Json material = {
+      {"name", "paint"},
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {.5, 1, 1, 1}},
+        {"baseColorTexture", {{"index", 0}, {"extensions", {{"KHR_texture_transform", transform}}}}},
+        {"metallicRoughnessTexture", {{"index", 0}}},
+        {"metallicFactor", .75},
+        {"roughnessFactor", .5}}},
+      {"normalTexture", {{"index", 0}, {"scale", 2}}}};
+  const Json image = {{"uri", "data:image/png;base64," + base64(png_of(200))}};
+  const Shape opaque = scene_of(textured_triangle(material, image).glb(), "a.glb").shapes.at(0);
+  const Texture& color = opaque.reflectance_texture.value();
+  EXPECT_EQ(color.scale, Rgb(.5, 1, 1));
+  EXPECT_EQ(color.uv_offset, (std::array<double, 2>{.25, .5}));
+  EXPECT_EQ(color.uv_scale, (std::array<double, 2>{2, 3}));
+  EXPECT_NEAR(color.uv_rotation, 90, 1e-12);
+  const Gloss& gloss = opaque.gloss.value();
+  EXPECT_EQ(gloss.metalness_texture.value().channel, 2u);
+  EXPECT_EQ(gloss.metalness_texture->scale.x, .75);
+  EXPECT_EQ(gloss.roughness_texture.value().channel, 1u);
+  EXPECT_EQ(gloss.roughness_texture->scale.x, .5);
+  EXPECT_NEAR(left_texel(*gloss.roughness_texture->file), 200 / 255., 1e-6);
+  EXPECT_EQ(opaque.normal_map.value().scale.x, 2);
+
+  material["extensions"] = {
+      {"KHR_materials_volume",
+       {{"thicknessFactor", 1}, {"attenuationDistance", .01}, {"attenuationColor", {.5, .4, .3}}}},
+      {"KHR_materials_volume_scatter", {{"multiscatterColor", {.8, .6, .4}}}}};
+  const Scene scene = scene_of(textured_triangle(material, image).glb(), "a.glb");
+  EXPECT_EQ(scene.media.at(0).tint_texture.value().scale, Rgb(.5, 1, 1));
+  EXPECT_EQ(scene.media.at(0).roughness_texture.value().channel, 1u);
+  EXPECT_TRUE(scene.shapes.at(0).normal_map);
+  EXPECT_FALSE(scene.shapes.at(0).gloss);
+}
+
+// Claim: a texture that cannot be had leaves its factor, and is said; the rest of the asset is read. Fails if it is an
+// error, or goes unsaid.
+TEST(GltfTextures, ThatCannotBeHadAreSaid) {
+  const Json good = {{"uri", "data:image/png;base64," + base64(png_of(200))}};
+  const auto expect = [](const Asset& asset, const std::string& what) {
+    const ImportedAsset result = imported(asset);
+    EXPECT_TRUE(has(result.not_carried, "baseColorTexture: ") && has(result.not_carried, what)) << what;
+    EXPECT_FALSE(scene_of(asset.glb(), "a.glb").shapes.at(0).reflectance_texture);
+  };
+  expect(textured_triangle(colored({{"index", 7}}), good), "textures[7] is not there");
+  expect(textured_triangle(colored({{"index", 0}, {"texCoord", 1}}), good), "another set of UVs");
+  expect(textured_triangle(colored(), {{"uri", "absent.png"}}), "no such file");
+  expect(textured_triangle(colored(), {{"uri", "data:image/png;base64," + base64("no picture")}}),
+         "images[0]");
+  expect(textured_triangle(colored(), {{"bufferView", 99}}), "images[0].bufferView");
+  Asset other = textured_triangle(colored(), good);
+  other.json["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+  expect(other, "no image that is read");
+}
+
+// Claim: OBJ's map_Kd is taken from beside its library, with Kd, where there are UVs; options are not understood, and
+// said. Fails if paths start at another folder.
+TEST(ObjTextures, AreTakenFromLibraries) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder.path / "maps");
+  put_bytes(folder.file("maps/p.png"), png_of(128));
+  put_bytes(folder.file("maps/a.mtl"),
+            "newmtl wood\nKd .8 .6 .4\nmap_Kd p.png\nnewmtl odd\nKd 0 0 0\nmap_Kd -s 2 2 2 p.png\n");
+  const std::string mesh = "mtllib maps/a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+  const std::string faces = "usemtl wood\nf 1/1 2/2 3/3\nusemtl odd\nf 1/1 2/2 4/3\n";
+  put_bytes(folder.file("a.obj"), mesh + "vt 0 0\nvt 1 0\nvt 0 1\n" + faces);
+  const Scene scene = load_scene(folder.file("a.obj"));
+  ASSERT_TRUE(scene.shapes.at(0).reflectance_texture);
+  EXPECT_EQ(scene.shapes[0].reflectance_texture->scale, Rgb(.8, .6, .4));
+  EXPECT_NEAR(left_texel(*scene.shapes[0].reflectance_texture->file), test::linear_of_byte(128), 2e-4);
+  EXPECT_FALSE(scene.shapes.at(1).reflectance_texture);
+  EXPECT_TRUE(has(import_asset(folder.file("a.obj"), "a.obj").not_carried, "map_Kd '-s 2 2 2 p.png'"));
+}
+
+}  // namespace
+}  // namespace opaline::asset_test

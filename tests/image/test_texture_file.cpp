@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "../core/scratch_folder.h"
+#include "opaline/core/error.h"
+#include "opaline/image/texture_file.h"
+#include "support/pictures.h"
+
+namespace opaline::test {
+namespace {
+
+Bytes checker(int x, int y) {
+  return (x + y) % 2 == 0 ? Bytes{255, 255, 255} : Bytes{0, 0, 0};
+}
+
+/// A lookup at a point without a footprint.
+TexturePlace at(double u, double v) {
+  return {float(u), float(v), {}, {}};
+}
+
+std::string message_of(const std::string& path) {
+  try {
+    TextureFile::open(path, ColorSpace::srgb);
+  } catch (const Error& failure) {
+    EXPECT_EQ(failure.kind, ErrorKind::bad_input);
+    return failure.what();
+  }
+  return "";
+}
+
+// Claim: u runs to the right and v down from the upper left corner, and pictures repeat. Tolerance: halves, .0005.
+// Fails if an axis is turned round, or edges are clamped.
+TEST(TextureFile, LooksUpTexels) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("four.png");
+  put_png(path, 2, 2, [](int x, int y) { return Bytes{255 * x, 255 * y, 0}; });
+  const auto texture = TextureFile::open(path, ColorSpace::linear);
+  EXPECT_FALSE(texture->constant());
+  for (const double shift : {0., 1., -3.}) {
+    EXPECT_NEAR(double(texture->at(at(.75 + shift, .25))[0]), 1, 5e-4);
+    EXPECT_NEAR(double(texture->at(at(.75 + shift, .25))[1]), 0, 5e-4);
+    EXPECT_NEAR(double(texture->at(at(.25, .75 + shift))[1]), 1, 5e-4);
+  }
+}
+
+// Claim: a byte is linear light by IEC 61966-2-1 in sRGB, and its share of 255 in linear; files of floats are linear by
+// themselves. Tolerance: halves, relative 2^-11. Fails if a file is linearized twice or not at all.
+TEST(TextureFile, KnowsColourSpaces) {
+  const ScratchFolder folder;
+  const std::string bytes = folder.file("bytes.png"), floats = folder.file("floats.exr");
+  put_png(bytes, 8, 8, [](int x, int) { return Bytes{128, x < 4 ? 60 : 61, 0}; });
+  put_exr(floats, 8, 8, [](int x, int) { return std::array<double, 3>{.5, x < 4 ? .1 : .2, 3}; });
+  EXPECT_EQ(TextureFile::space_of_colors(bytes), ColorSpace::srgb);
+  EXPECT_EQ(TextureFile::space_of_colors(floats), ColorSpace::linear);
+  EXPECT_NEAR(double(TextureFile::open(bytes, ColorSpace::srgb)->at(at(.2, .5))[0]), linear_of_byte(128),
+              2e-4);
+  EXPECT_NEAR(double(TextureFile::open(bytes, ColorSpace::srgb)->at(at(.2, .5))[1]), linear_of_byte(60),
+              2e-4);
+  EXPECT_NEAR(double(TextureFile::open(bytes, ColorSpace::linear)->at(at(.2, .5))[0]), 128 / 255., 2e-4);
+  EXPECT_EQ(TextureFile::open(floats, ColorSpace::linear)->at(at(.2, .5))[2], 3);
+}
+
+// Claim: JPEG and TIFF are read, too. Tolerance: 2 of 255, JPEG's. Fails if a format's first bytes are not known.
+TEST(TextureFile, ReadsJpegAndTiff) {
+  const ScratchFolder folder;
+  for (const char* name : {"p.jpg", "p.tif"}) {
+    const std::string path = folder.file(name);
+    const auto output = OIIO::ImageOutput::create(path);
+    std::vector<unsigned char> bytes;
+    for (int i = 0; i < 64 * 64; ++i)
+      for (const int value : {i % 64 < 32 ? 40 : 200, 100, 50})
+        bytes.push_back(static_cast<unsigned char>(value));
+    ASSERT_TRUE(output->open(path, OIIO::ImageSpec(64, 64, 3, OIIO::TypeUInt8)));
+    ASSERT_TRUE(output->write_image(OIIO::TypeUInt8, bytes.data()) && output->close());
+    const auto texture = TextureFile::open(path, ColorSpace::linear);
+    EXPECT_NEAR(double(texture->at(at(.25, .75))[0]) * 255, 40, 2);
+    EXPECT_NEAR(double(texture->at(at(.75, .25))[0]) * 255, 200, 2);
+    EXPECT_NEAR(double(texture->at(at(.75, .25))[2]) * 255, 50, 2);
+  }
+}
+
+// Claim: where all texels are alike their value is exact, that of "#808080" in a scene file; one other texel makes the
+// difference. Tolerance: none. Fails if the constant is found by a filtered lookup, or only the first rows are looked at.
+TEST(TextureFile, FindsConstants) {
+  const ScratchFolder folder;
+  put_png(folder.file("even.png"), 96, 300, Bytes{128, 0, 255});
+  const auto texture = TextureFile::open(folder.file("even.png"), ColorSpace::srgb);
+  ASSERT_TRUE(texture->constant());
+  EXPECT_EQ(*texture->constant(), (Texel{linear_of_byte(128), 0, 1, 1}));
+  put_png(folder.file("spot.png"), 96, 300, [](int x, int y) {
+    return Bytes{x == 95 && y == 299 ? 129 : 128, 0, 255};
+  });
+  EXPECT_FALSE(TextureFile::open(folder.file("spot.png"), ColorSpace::srgb)->constant());
+}
+
+// Claim: a footprint as large as the picture gives its mean, of linear light, wherever it lies, and so does mean().
+// Tolerance: halves and the sizes' rounding, .002. Fails if smaller sizes are made of sRGB numbers (.5 becomes .2), or
+// lookups ignore the footprint.
+TEST(TextureFile, FiltersCheckers) {
+  const ScratchFolder folder;
+  put_png(folder.file("checker.png"), 256, 256, checker);
+  const auto texture = TextureFile::open(folder.file("checker.png"), ColorSpace::srgb);
+  EXPECT_NEAR(texture->mean()[0], .5, 1e-12);
+  for (int i = 0; i < 50; ++i) {
+    const TexturePlace place{float(i) * .137f, float(i) * .291f, {.25f, 0}, {0, .25f}};
+    EXPECT_NEAR(double(texture->at(place)[0]), .5, .002) << i;
+    const TexturePlace oblong{float(i) * .137f, float(i) * .291f, {.5f, .1f}, {-.02f, .1f}};
+    EXPECT_NEAR(double(texture->at(oblong)[1]), .5, .002) << i;
+  }
+}
+
+// Claim: tiles of a set stand side by side, 1001 + column + 10 row with rows upwards; where there is none the set says
+// so. Tolerance: halves. Fails if rows count downwards, or the wrong tile is taken beside its edge.
+TEST(TextureFile, PutsTilesSideBySide) {
+  const ScratchFolder folder;
+  for (const int tile : {1001, 1002, 1011}) {
+    const int value = tile - 1000;
+    put_png(folder.file("paint." + std::to_string(tile) + ".png"), 4, 4, Bytes{10 * value, 20, 0});
+  }
+  const auto texture = TextureFile::open(folder.file("paint.<UDIM>.png"), ColorSpace::linear);
+  EXPECT_FALSE(texture->constant());
+  EXPECT_TRUE(texture->has_tile(1, 0) && texture->has_tile(0, 1));
+  EXPECT_FALSE(texture->has_tile(1, 1) || texture->has_tile(-1, 0) || texture->has_tile(10, 0));
+  const auto red = [&](double u, double v_up) { return double(texture->at(at(u, 1 - v_up))[0]) * 255; };
+  EXPECT_NEAR(red(.999, .5), 10, .05);
+  EXPECT_NEAR(red(1.001, .5), 20, .05);
+  EXPECT_NEAR(red(.5, 1.5), 110, .1);
+  EXPECT_NE(message_of(folder.file("none.<UDIM>.png")).find("has no tiles"), std::string::npos);
+}
+
+// Claim: what cannot be read is an error that names the file, when it is opened. Fails if a damaged file waits until it is
+// looked up, or is shown as grey.
+TEST(TextureFile, RefusesBrokenFiles) {
+  const ScratchFolder folder;
+  put_png(folder.file("good.png"), 64, 64, checker);
+  const std::string good = bytes_of(folder.file("good.png"));
+  put_bytes(folder.file("short.png"), good.substr(0, good.size() / 2));
+  std::string changed = good;
+  changed[good.size() / 2] = char(changed[good.size() / 2] ^ 1);
+  put_bytes(folder.file("changed.png"), changed);
+  put_bytes(folder.file("empty.png"), "");
+  put_bytes(folder.file("text.png"), "a text, and no picture");
+  put_bytes(folder.file("short.jpg"), std::string("\xff\xd8\xff\xe0\0\x10JFIF\0\1\1\0\0\1\0\1\0\0", 20));
+  std::filesystem::create_directory(folder.file("folder.png"));
+  std::filesystem::create_symlink("/dev/zero", folder.file("endless.png"));
+  const std::pair<const char*, const char*> broken[] = {{"short.png", "truncated"},
+                                                        {"changed.png", "damaged"},
+                                                        {"empty.png", "empty"},
+                                                        {"text.png", "EXR, HDR"},
+                                                        {"absent.png", "cannot read"},
+                                                        {"folder.png", "not a regular file"},
+                                                        {"endless.png", "not a regular file"},
+                                                        {"short.jpg", "truncated"}};
+  for (const auto& [name, what] : broken) {
+    const std::string message = message_of(folder.file(name));
+    EXPECT_NE(message.find(folder.file(name)), std::string::npos) << message;
+    EXPECT_NE(message.find(what), std::string::npos) << message;
+  }
+}
+
+// Claim: an unchanged file is the same object, a changed one is read again and has another hash. Fails if old texels come
+// from a cache under the file's name.
+TEST(TextureFile, IsReadAgainWhenItChanges) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("paint.png");
+  const auto put = [&](int value) {
+    put_png(path, 8, 8, [&](int x, int) { return Bytes{value, x, 0}; });
+    std::filesystem::last_write_time(path, std::filesystem::file_time_type() + std::chrono::hours(value));
+  };
+  put(100);
+  const auto first = TextureFile::open(path, ColorSpace::linear);
+  EXPECT_EQ(first, TextureFile::open(path, ColorSpace::linear));
+  EXPECT_NE(first->hash(), TextureFile::open(path, ColorSpace::srgb)->hash());
+  put(200);
+  const auto second = TextureFile::open(path, ColorSpace::linear);
+  EXPECT_NE(first->hash(), second->hash());
+  EXPECT_NEAR(double(second->at(at(.5, .5))[0]) * 255, 200, .1);
+}
+
+}  // namespace
+}  // namespace opaline::test

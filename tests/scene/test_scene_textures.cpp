@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "../core/scratch_folder.h"
+#include "opaline/image/texture_file.h"
+#include "scene_test.h"
+#include "support/pictures.h"
+
+namespace opaline {
+namespace {
+
+struct TextureFolder {
+  ScratchFolder folder;
+
+  TextureFolder() {
+    test::put_png(folder.file("two.png"), 2, 1, [](int x, int) {
+      return x == 0 ? test::Bytes{255, 128, 0} : test::Bytes{255, 0, 0};
+    });
+    test::put_png(folder.file("even.png"), 2, 1, test::Bytes{128, 128, 128});
+  }
+  Scene scene(const std::string& text) const { return parse_scene(text, folder.file("scene.json"), {}); }
+  Error error(const std::string& text) const {
+    try {
+      scene(text);
+    } catch (const Error& failure) {
+      return failure;
+    }
+    ADD_FAILURE() << "no error for: " << text;
+    return bad_file("", "");
+  }
+};
+
+std::string shape(const std::string& keys) {
+  return "{\"shapes\": [\n{\"sphere\": {\"radius\": 1}, " + keys + "}]}";
+}
+std::string medium(const std::string& keys) {
+  return "{\"media\": {\n\"m\": {" + keys + "}}}";
+}
+
+// Claim: a texture stands where a constant may; its scale, channel and laying are read; its medium is that of its mean,
+// and its texels are over that. Tolerance: none; of the mean 1e-12. Fails if a key is passed over.
+TEST(SceneTextures, AreRead) {
+  const TextureFolder files;
+  const Scene scene = files.scene(
+      R"({"media": {"m": {"subsurface_color": {"texture": "two.png"}, "subsurface_radius": 1,
+          "specular_roughness": {"texture": "two.png", "channel": "g", "scale": 0.5}, "texture_mix": "post"}},
+          "shapes": [{"quad": {"corner": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1, 0]},
+          "reflectance": {"texture": "two.png", "scale": [1, 0.5, 0.25], "uv_scale": [2, 3], "uv_offset": [0.5, 0.25],
+          "uv_rotation": 90}, "normal_map": {"texture": "two.png", "scale": 2}}]})");
+  const Medium& medium = scene.media[0];
+  const Rgb color = std::get<ArtistMedium>(medium.coefficients).subsurface_color;
+  EXPECT_EQ(color.x, 1);
+  EXPECT_NEAR(color.y, test::linear_of_byte(128) / 2, 1e-12);
+  EXPECT_EQ(color.z, 0);
+  ASSERT_TRUE(medium.tint_texture && medium.roughness_texture);
+  EXPECT_NEAR(medium.tint_texture->scale.y * color.y, 1, 1e-12);
+  EXPECT_EQ(medium.roughness_texture->channel, 1u);
+  EXPECT_EQ(medium.roughness_texture->scale.x, .5);
+  EXPECT_EQ(medium.texture_mix, TextureMix::post);
+  const Texture& texture = scene.shapes[0].reflectance_texture.value();
+  EXPECT_EQ(texture.scale, Rgb(1, .5, .25));
+  EXPECT_EQ(texture.uv_scale, (std::array<double, 2>{2, 3}));
+  EXPECT_EQ(texture.uv_offset, (std::array<double, 2>{.5, .25}));
+  EXPECT_EQ(texture.uv_rotation, 90);
+  EXPECT_EQ(scene.shapes[0].reflectance, Rgb(1));
+  EXPECT_EQ(scene.shapes[0].normal_map->scale.x, 2);
+  EXPECT_TRUE(needs_uvs(scene, scene.shapes[0]));
+}
+
+// Claim: a texture of one colour is read as that colour: the scenes are equal. Fails if it stays a texture.
+TEST(SceneTextures, OfOneColourAreConstants) {
+  const TextureFolder files;
+  const Scene textured = files.scene(shape(R"("reflectance": {"texture": "even.png", "scale": 0.5})"));
+  EXPECT_FALSE(textured.shapes[0].reflectance_texture);
+  EXPECT_EQ(textured.shapes[0].reflectance, Rgb(test::linear_of_byte(128) * .5));
+  EXPECT_FALSE(needs_uvs(textured, textured.shapes[0]));
+  EXPECT_EQ(files.scene(shape(R"("reflectance": {"texture": "even.png"})")),
+            files.scene(shape(R"("reflectance": "#808080")")));
+}
+
+// Claim: what is wrong with a texture is said at its place in the scene, line 2 here, with the file's name. Fails if a
+// missing file waits for the picture, or a key that cannot vary takes a texture.
+TEST(SceneTextures, AreRefusedWhereTheyStand) {
+  const TextureFolder files;
+  const auto expect = [&](const std::string& text, const std::vector<std::string>& fragments) {
+    const Error error = files.error(text);
+    EXPECT_EQ(error.line, 2) << error.what();
+    expect_fragments(error, fragments);
+  };
+  expect(shape(R"("reflectance": {"texture": "absent.png"})"), {"absent.png", "scene.json"});
+  expect(shape(R"("reflectance": {"texture": "two.png", "chanel": "g"})"), {"unknown key 'chanel'"});
+  expect(shape(R"("reflectance": {"texture": "two.png", "channel": "g"})"), {"is a colour"});
+  expect(shape(R"("reflectance": {"texture": "two.png", "uv_scale": [1]})"), {"uv_scale", "2 numbers"});
+  expect(shape(R"("reflectance": {"scale": 1})"), {"texture"});
+  expect(shape(R"("reflectance": {"texture": "even.png", "scale": 9})"), {"reflectance", "out of range"});
+  expect(shape(R"("specular_ior": 1.4)"), {"specular_ior", "matte"});
+  expect(medium(R"("subsurface_color": 0.5, "subsurface_radius": {"texture": "two.png"})"),
+         {"subsurface_radius"});
+  expect(medium(R"("subsurface_color": {"texture": "two.png"}, "subsurface_radius": 1, "tint": 0.5)"),
+         {"tint", "subsurface_color"});
+}
+
+}  // namespace
+}  // namespace opaline
