@@ -142,7 +142,7 @@ void Depositor::deposit(const Vec3d& position, std::uint32_t fallback, std::size
   double left = 1;
   if (found != DiffusionGrid::kNone) {
     const DiffusionGrid::Cell& cell = space_.grid.cells()[home];
-    const float edge = std::max(1.f, std::cbrt(cell.volume));
+    const float edge = cell.volume > 64 ? 8 : cell.volume > 8 ? 4 : cell.volume > 1 ? 2 : 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float offset = place[axis] - cell.centre[axis];
       Vec3f beside = cell.centre;
