@@ -12,6 +12,8 @@ namespace {
 // Measured on smooth fields without noise and with (src/volume/README.md).
 constexpr float kFitRadius = 2.6f, kBlendRadius = 1.2f, kSurpriseRadius = 2.4f;  // spacings
 constexpr int kSurpriseRounds = 3;
+constexpr float kCube =
+    2.6f;  // spacings: against 1, three quarters of the time on the bunny; above 2 all alike
 constexpr double kShapePerSurprise = 1.4;
 constexpr float kBlendedNoise = .9f;  ///< over that of one fit
 constexpr double kLeastCosine = .4;   // between normals that have to do with each other
@@ -97,7 +99,7 @@ void CellFit::for_alike(const Vec3f& position, const Vec3f& normal, float spacin
 
 CellFit::CellFit(std::span<const SurfaceSample> samples, const World& world, std::span<const RgbF> means,
                  std::span<const RgbF> errors)
-    : cells_(samples, &world), fits_(samples.size()) {
+    : cells_(samples, &world, kCube), fits_(samples.size()) {
   double area = 0;
   for (const SurfaceSample& s : samples) area += double(s.area);
   if (area > 0) spacing_ = float(std::sqrt(area / double(samples.size())));

@@ -6,20 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "opaline/irradiance/irradiance.h"
-#include "volume/boundary_points.h"
-#include "volume/calibrated_medium.h"
-#include "volume/diffusion_grid.h"
-#include "volume/diffusion_solver.h"
+#include "volume/first_collisions.h"
 
 namespace opaline {
-
-/// Lights and what of them enters at the samples.
-struct EnteringLight {
-  std::span<const Light> lights;             ///< recentred
-  std::span<const LightTransfer> transfers;  ///< one a light
-  std::span<const RgbF> tints;               ///< factors, one a sample; empty: none
-};
 
 /// Cells of one size at the surface. Holds on to `points`.
 class DiffusionBody {
@@ -43,24 +32,16 @@ class DiffusionBody {
   const DiffusionGrid& grid() const { return grid_; }
 
  private:
-  /// A boundary point in its cell.
-  struct Attached {
-    std::uint32_t cell = DiffusionGrid::kNone;
-    double depth = 0;  // of the cell's centre under it, world units
-  };
-
-  Vec3d in_lattice(const BoundaryPoint& point) const { return lattice_.into(Vec3d(point.position)); }
+  DiffusionSpace space() const { return {lattice_, grid_, media_, points_, attached_}; }
   void attach();
   std::vector<Channels> losses() const;
-  std::uint32_t last_cell(const Vec3d& from, const Vec3d& way, std::uint32_t first) const;
-  void deposit(const EnteringLight& light, std::size_t l, std::size_t point, std::vector<Channels>& source,
-               RgbF& at_once) const;
+  void read(Solution& solution) const;
 
   std::span<const BoundaryPoint> points_;
   const std::array<CalibratedMedium, 3>& media_;
   Lattice lattice_;
   DiffusionGrid grid_;
-  std::vector<Attached> attached_;  // one a point
+  std::vector<AttachedPoint> attached_;  // one a point
 };
 
 }  // namespace opaline

@@ -55,9 +55,10 @@ class Flags {
 };
 
 /// Which cells of size 2 the surface meets.
-Flags met_by_surface(const InsideLines& lines, const Lattice& lattice, std::span<const Vec3f> surface) {
+Flags met_by_surface(const InsideLines& lines, const Lattice& lattice,
+                     std::span<const DiffusionGrid::Facet> surface) {
   Flags met(lattice.nx / 2, lattice.ny / 2, lattice.nz / 2);
-  for (const Vec3f& p : surface) met.set(int(p.x) / 2, int(p.y) / 2, int(p.z) / 2);
+  for (const auto& [p, normal] : surface) met.set(int(p.x) / 2, int(p.y) / 2, int(p.z) / 2);
   for (int row = 0; row < lines.rows(); ++row)
     for (int column = 0; column < lines.columns(); ++column)
       for (const float z : lines.bounds(column, row))
@@ -66,11 +67,31 @@ Flags met_by_surface(const InsideLines& lines, const Lattice& lattice, std::span
   return met;
 }
 
+/// Of the unit cube, what lies behind a plane (Scardovelli & Zaleski 2000).
+/// in    normal: outward; height: of the plane over the cube's centre, along the normal
+double volume_behind(const Vec3d& normal, double height) {
+  constexpr double kLeast = .01;  // of a component: it divides
+  std::array<double, 3> m{};
+  for (std::size_t axis = 0; axis < 3; ++axis) m[axis] = std::max(kLeast, std::abs(normal[axis]));
+  const double from_corner = height + .5 * (m[0] + m[1] + m[2]);
+  double sum = 0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    double over = from_corner, sign = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if ((corner >> axis & 1) != 0) {
+        over -= m[axis];
+        sign = -sign;
+      }
+    if (over > 0) sum += sign * over * over * over;
+  }
+  return sum / (6 * m[0] * m[1] * m[2]);
+}
+
 }  // namespace
 
 struct DiffusionGrid::Builder {
   Builder(DiffusionGrid& grid_, const InsideLines& lines_, const Lattice& lattice,
-          std::span<const Vec3f> surface)
+          std::span<const Facet> surface)
       : grid(grid_), lines(lines_), levels{met_by_surface(lines_, lattice, surface)} {
     while (levels.size() < 3) levels.push_back(levels.back().halved());
     for (Flags& level : levels) level = level.widened();
@@ -133,6 +154,31 @@ struct DiffusionGrid::Builder {
                                     ((corner[0] + x) & 7))] = index;
   }
 
+  // Lines tell how much of a cell is inside to a quarter where the surface runs along them. Where it is one plane, its
+  // facets tell it exactly.
+  void weigh_by_planes(std::span<const Facet> surface) {
+    constexpr double kLeastAgreement = .97;  // of the facets' normals
+    struct Plane {
+      Vec3d normal{};
+      double height = 0, facets = 0;
+    };
+    std::vector<Plane> planes(grid.cells_.size());
+    for (const auto& [position, normal] : surface) {
+      const std::uint32_t cell = grid.at(position);
+      if (cell == kNone || sizes[cell] > 1) continue;
+      const auto& [i, j, k] = corners[cell];
+      planes[cell].normal += Vec3d(normal);
+      planes[cell].height += dot(Vec3d(position) - Vec3d(i + .5, j + .5, k + .5), Vec3d(normal));
+      planes[cell].facets += 1;
+    }
+    for (std::size_t cell = 0; cell < planes.size(); ++cell) {
+      const auto& [normal, height, facets] = planes[cell];
+      if (!(facets > 0 && length(normal) > kLeastAgreement * facets)) continue;
+      grid.cells_[cell].volume =
+          float(std::clamp(volume_behind(normalized(normal), height / facets), kLeastVolume, 1.0));
+    }
+  }
+
   // Of the lattice face below (i, j, k) along an axis, how much is inside.
   double aperture(int i, int j, int k, int axis) const {
     double sum = 0;
@@ -168,17 +214,41 @@ struct DiffusionGrid::Builder {
       }
   }
 
+  struct Pair {
+    std::uint32_t a, b;
+    float conductance;
+  };
+
+  // Between the small cells at one side of a larger one: the flow through that side is that of their mean fluence. Each
+  // for itself they would lead light along the side, through the larger cell.
+  void link_across(std::uint32_t cell, std::size_t axis, int step, std::vector<Pair>& pairs) const {
+    const int size = sizes[cell], half = size / 2;
+    std::array<std::uint32_t, 4> others;
+    std::size_t count = 0;
+    for (int v = 0; v < 2; ++v)
+      for (int u = 0; u < 2; ++u) {
+        std::array<int, 3> p = corners[cell];
+        p[axis] += step > 0 ? size : -1;
+        p[(axis + 1) % 3] += u * half;
+        p[(axis + 2) % 3] += v * half;
+        const std::uint32_t other = grid.at(p[0], p[1], p[2]);
+        if (other != kNone && sizes[other] == half) others[count++] = other;
+      }
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        pairs.push_back({others[i], others[j], -float(half * half / (.75 * size * double(count)))});
+  }
+
   void link() {
-    struct Pair {
-      std::uint32_t a, b;
-      float conductance;
-    };
     std::vector<Pair> pairs;
     for (std::uint32_t cell = 0; cell < grid.cells_.size(); ++cell)
-      for (int axis = 0; axis < 3; ++axis)
+      for (int axis = 0; axis < 3; ++axis) {
         link_above(cell, axis, [&](std::uint32_t other, float conductance) {
           pairs.push_back({cell, other, conductance});
         });
+        for (const int step : {-1, 1})
+          if (sizes[cell] > 1) link_across(cell, std::size_t(axis), step, pairs);
+      }
     std::vector<std::uint32_t>& first = grid.first_link_;
     first.assign(grid.cells_.size() + 1, 0);
     for (const Pair& pair : pairs) ++first[pair.a + 1], ++first[pair.b + 1];
@@ -199,7 +269,7 @@ struct DiffusionGrid::Builder {
   std::vector<int> sizes;
 };
 
-DiffusionGrid::DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Vec3f> surface)
+DiffusionGrid::DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Facet> surface)
     : bricks_of_{lattice.nx / kLargest, lattice.ny / kLargest, lattice.nz / kLargest},
       bricks_(std::size_t(bricks_of_[0]) * std::size_t(bricks_of_[1]) * std::size_t(bricks_of_[2]), kNone) {
   Builder builder(*this, lines, lattice, surface);
@@ -207,6 +277,7 @@ DiffusionGrid::DiffusionGrid(const InsideLines& lines, const Lattice& lattice, s
     for (int j = 0; j < bricks_of_[1]; ++j)
       for (int i = 0; i < bricks_of_[0]; ++i, ++builder.brick)
         builder.fill(i * kLargest, j * kLargest, k * kLargest, kLargest);
+  builder.weigh_by_planes(surface);
   builder.link();
 }
 

@@ -28,9 +28,14 @@ class DiffusionGrid {
     float conductance;  ///< area of the common face over the distance of the centres
   };
 
-  /// in    surface: points in lattice units; every lattice cell that the surface meets has one in it or beside it
+  /// Of the surface: a point and its normal, outward.
+  struct Facet {
+    Vec3f position, normal;
+  };
+
+  /// in    surface: facets of about equal area; every lattice cell that the surface meets has one in it or beside it
   ///       lattice: nx, ny, nz multiples of kLargest
-  DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Vec3f> surface);
+  DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Facet> surface);
 
   std::span<const Cell> cells() const { return cells_; }
   std::span<const Link> links(std::size_t cell) const {

@@ -35,7 +35,7 @@ constexpr auto kNeighbours = [] {
 
 }  // namespace
 
-NearestSample::NearestSample(std::span<const SurfaceSample> samples, const World* world) {
+NearestSample::NearestSample(std::span<const SurfaceSample> samples, const World* world, float cube_edge) {
   const auto bits = std::bit_width(2 * samples.size() + 1);
   slots_.resize(std::size_t(1) << bits);
   shift_ = 64 - int(bits);
@@ -48,7 +48,7 @@ NearestSample::NearestSample(std::span<const SurfaceSample> samples, const World
     area += double(s.area);
   }
   const float widest = max_component(high - low_);
-  edge_ = std::max(float(std::sqrt(area / double(samples.size()))), widest / kWidest);
+  edge_ = std::max(cube_edge * float(std::sqrt(area / double(samples.size()))), widest / kWidest);
   if (!(edge_ > 0)) edge_ = 1;
   inverse_edge_ = 1 / edge_;
   std::vector<std::size_t> slots(samples.size());

@@ -8,7 +8,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kPointSpacing = .7;  // of boundary points, at most, in cells
+constexpr double kPointSpacing = 1;  // of boundary points, at most, in cells
 
 std::array<CalibratedMedium, 3> calibrated(const std::array<HomogeneousMedium, 3>& media) {
   return {CalibratedMedium(media[0]), CalibratedMedium(media[1]), CalibratedMedium(media[2])};

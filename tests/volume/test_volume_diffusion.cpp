@@ -45,8 +45,8 @@ double entered_mean(const LitBody& body, const LightSource& source, double eta) 
 }
 
 // Claim: a body that absorbs nothing sends out all that enters, evenly where light enters evenly. Source:
-// conservation; symmetry. Tolerance: 1e-3 of the whole, as asked of it; 3.5 % rms from sample to sample, which are smaller
-// than the cells (measured 2.8 and 1.5). Fails if: areas
+// conservation; symmetry. Tolerance: 1e-3 of the whole, as asked of it; 2.5 % rms from sample to sample, which are smaller
+// than the cells (measured 2.2 and 1.3; 2.8 where each cell has one fluence). Fails if: areas
 // of the boundary or sources are lost between cells, or what collides at once leaves twice.
 TEST(VolumeDiffusion, WhiteFurnace) {
   for (const double eta : {1.0, 1.5}) {
@@ -57,13 +57,13 @@ TEST(VolumeDiffusion, WhiteFurnace) {
     EXPECT_NEAR(body.mean_where(solved, everywhere).value / entered, 1, 1e-3) << eta;
     double square = 0;
     for (const RgbF& exitance : solved.exitance) square += std::pow(double(exitance.x) / entered - 1, 2);
-    EXPECT_LT(std::sqrt(square / double(solved.exitance.size())), .035) << eta;
+    EXPECT_LT(std::sqrt(square / double(solved.exitance.size())), .025) << eta;
   }
 }
 
 // Claim: a thick body's flat face returns what a half space does, whatever the light's direction. Source: HalfSpace.
-// Tolerance: 1 %. Fails if: first collisions are not along the refracted ray, or cells cut by the face are not
-// weighed by what of them is inside.
+// Tolerance: 1 %, wherever in a cell the face lies. Fails if: first collisions are not along the refracted ray, or the
+// volume of cells that the face cuts is not that behind it.
 TEST(VolumeDiffusion, FlatFaceIsAHalfSpace) {
   const LitBody body(SlabShape{{}, 30, 30, 10}, 6000, NormalMode::faceted);
   const auto middle = [&](const SurfaceSample& s) {
@@ -71,19 +71,41 @@ TEST(VolumeDiffusion, FlatFaceIsAHalfSpace) {
     return s.normal.y > .5f && std::abs(x) < 8 && std::abs(z) < 8;
   };
   for (const double eta : {1.0, 1.4})
-    for (const Vec3d& direction : {Vec3d(0, -1, 0), normalized(Vec3d(1.5, -1, 0))}) {
-      const HomogeneousMedium medium{.05, 2, 0, eta};
-      const DirectionalLight light{direction, Rgb(1)};
-      const VolumeExitance solved = diffused(body, grey(medium), light, .5);
-      const double outside = -direction.y;
-      const double entered = outside * fresnel_transmittance(outside, eta);
-      const double inside = std::sqrt(1 - (1 - outside * outside) / (eta * eta));
-      const double expected = entered * HalfSpace(1 - medium.albedo(), eta).share(inside);
-      EXPECT_NEAR(body.mean_where(solved, middle).value / expected, 1, .01) << eta << " " << direction.x;
-    }
+    for (const double cell : {.5, .25})
+      for (const Vec3d& direction : {Vec3d(0, -1, 0), normalized(Vec3d(1.5, -1, 0))}) {
+        const HomogeneousMedium medium{.05, 2, 0, eta};
+        const DirectionalLight light{direction, Rgb(1)};
+        const VolumeExitance solved = diffused(body, grey(medium), light, cell);
+        const double outside = -direction.y;
+        const double entered = outside * fresnel_transmittance(outside, eta);
+        const double inside = std::sqrt(1 - (1 - outside * outside) / (eta * eta));
+        const double expected = entered * HalfSpace(1 - medium.albedo(), eta).share(inside);
+        EXPECT_NEAR(body.mean_where(solved, middle).value / expected, 1, .01)
+            << eta << " " << cell << " " << direction.x;
+      }
 }
 
-// Claim: on a sphere lit from one side, cell for cell what random walks give. Source: the walks. Tolerance: 4 % rms of
+// Claim: a plate of three mean free paths sends back and lets through what a slab does. Source: random walks in a slab.
+// Tolerance: 2.5 %. Fails if: light that crosses the plate without a collision stays in it.
+TEST(VolumeDiffusion, ThinPlateIsASlab) {
+  const HomogeneousMedium medium{.01, 2, 0, 1.4};
+  constexpr double kThickness = 1.5;
+  const LitBody body(SlabShape{{}, 24, 24, kThickness}, 4000, NormalMode::faceted);
+  const DirectionalLight light{{0, -1, 0}, Rgb(1)};
+  const VolumeExitance solved = diffused(body, grey(medium), light, .5);
+  const SlabWalks walks = walk_slab(medium, {kThickness}, kNormalEntry, walks_of_seed(100000, 3));
+  for (const double side : {1., -1.}) {
+    const auto middle = [&](const SurfaceSample& s) {
+      const double x = double(s.position.x) * body.world.unit, z = double(s.position.z) * body.world.unit;
+      return double(s.normal.y) * side > .5 && std::abs(x) < 6 && std::abs(z) < 6;
+    };
+    const double expected =
+        fresnel_transmittance(1., medium.eta) * (side > 0 ? walks.back : walks.through).total.value;
+    EXPECT_NEAR(body.mean_where(solved, middle).value / expected, 1, .025) << side;
+  }
+}
+
+// Claim: on a sphere lit from one side, cell for cell what random walks give. Source: the walks. Tolerance: 3 % rms of
 // the mean, walks' noise taken out. Fails if: light inside does not go where it should.
 TEST(VolumeDiffusion, SphereAsWalked) {
   LitBody body(SphereShape{{}, 5}, 400);
@@ -97,7 +119,7 @@ TEST(VolumeDiffusion, SphereAsWalked) {
   for (std::size_t i = 0; i < walked.exitance.size(); ++i)
     square += std::pow(double(solved.exitance[i].x - walked.exitance[i].x), 2) -
               std::pow(double(walked.error[i].x), 2);
-  EXPECT_LT(std::sqrt(std::max(0.0, square / double(walked.exitance.size()))) / mean, .04);
+  EXPECT_LT(std::sqrt(std::max(0.0, square / double(walked.exitance.size()))) / mean, .03);
   EXPECT_NEAR(body.mean_where(solved, everywhere).value / mean, 1, .02);
 }
 

@@ -20,7 +20,9 @@ class NearestSample {
 
   /// world: where the samples lie. With it sheets are told by the triangles' normals, as by the areas of the
   /// samples, and the nearest sample's cell holds the point. Without it the samples' own normals are taken.
-  explicit NearestSample(std::span<const SurfaceSample> samples, const World* world = nullptr);
+  /// cube_edge: of the cubes that for_near visits, in mean spacings of the samples; radii of its size are the fastest
+  explicit NearestSample(std::span<const SurfaceSample> samples, const World* world = nullptr,
+                         float cube_edge = 1);
 
   /// Index of the nearest sample of the sheet; of any sheet where none of the point's is near.
   std::uint32_t at(const Vec3f& position, const Vec3f& normal) const;

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where light that enters a body collides for the first time, or leaves it without a collision.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "opaline/irradiance/irradiance.h"
+#include "volume/boundary_points.h"
+#include "volume/calibrated_medium.h"
+#include "volume/diffusion_grid.h"
+#include "volume/diffusion_solver.h"
+
+namespace opaline {
+
+/// Lights and what of them enters at the samples.
+struct EnteringLight {
+  std::span<const Light> lights;             ///< recentred
+  std::span<const LightTransfer> transfers;  ///< one a light
+  std::span<const RgbF> tints;               ///< factors, one a sample; empty: none
+};
+
+/// A boundary point in its cell.
+struct AttachedPoint {
+  std::uint32_t cell = DiffusionGrid::kNone;
+  double depth = 0;  ///< of the cell's centre under it, world units
+};
+
+/// A body's cells and boundary.
+struct DiffusionSpace {
+  const Lattice& lattice;
+  const DiffusionGrid& grid;
+  const std::array<CalibratedMedium, 3>& media;
+  std::span<const BoundaryPoint> points;
+  std::span<const AttachedPoint> attached;  ///< one a point
+
+  Vec3d in_lattice(const Vec3f& position) const { return lattice.into(Vec3d(position)); }
+};
+
+/// Flux by cell, and what leaves at each point at once, per area.
+struct FirstCollisions {
+  std::vector<Channels> source;
+  std::vector<RgbF> leaving;
+};
+
+FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light);
+
+}  // namespace opaline
