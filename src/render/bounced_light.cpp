@@ -18,6 +18,7 @@ constexpr std::uint64_t kSeed = 4000;
 // pixels around it; from a hit that nothing stands for.
 constexpr int kOfSample = 16, kOfPlace = 192, kOfHit = 24;
 constexpr int kAcross = 64;  // places along the picture's longer side
+constexpr int kAround = 2;   // beyond each border
 // Distance from a place's plane, over the places' spacing, at which it stands for a hit half as well.
 constexpr float kOffPlane = 0.2f;
 constexpr float kLeastWeight = 0.05f;  // of all places around a hit, where a place at the hit has 1
@@ -88,16 +89,13 @@ BouncedLight::BouncedLight(const RenderInput& input, const Shader& shader)
     : input_(input), shader_(shader), camera_(input.scene.camera, input.scene.film, input.world) {
   const Film& film = input.scene.film;
   step_ = std::max(1, std::max(film.resolution[0], film.resolution[1]) / kAcross);
-  const Rectangle part = rendered_part(film);
-  const auto before = [&](int pixel) { return int(std::floor(double(pixel) / step_)) - 1; };
-  first_column_ = before(part.x0);
-  first_row_ = before(part.y0);
-  columns_ = before(part.x1) + 4 - first_column_;
-  rows_ = before(part.y1) + 4 - first_row_;
+  // Of the whole picture, so that a crop is a piece of it; and a little around it.
+  columns_ = film.resolution[0] / step_ + 1 + 2 * kAround;
+  rows_ = film.resolution[1] / step_ + 1 + 2 * kAround;
   std::vector<TracedRay> rays;
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column)
-      rays.push_back({camera_.ray((first_column_ + column) * step_, (first_row_ + row) * step_, 0), {}});
+      rays.push_back({camera_.ray((column - kAround) * step_, (row - kAround) * step_, 0), {}});
   input.rays.intersect(rays);
   places_.resize(rays.size());
   gather_places(rays);
@@ -146,7 +144,7 @@ bool BouncedLight::interpolate(const SurfacePoint& point, float eta, RgbF& irrad
   const CameraRays::FilmPlace seen = camera_.film_place(Vec3d(point.position));
   if (!(seen.depth > 0)) return false;
   // In places, from the first one.
-  const double x = (seen.x - .5) / step_ - first_column_, y = (seen.y - .5) / step_ - first_row_;
+  const double x = (seen.x - .5) / step_ + kAround, y = (seen.y - .5) / step_ + kAround;
   if (!(x >= 0 && y >= 0 && x < columns_ && y < rows_)) return false;
   RgbF sum;
   float weights = 0;

@@ -50,7 +50,7 @@ class BouncedLight {
   const Shader& shader_;
   CameraRays camera_;
   int step_;  // pixels from one place to the next
-  int first_column_, first_row_, columns_, rows_;
+  int columns_, rows_;
   std::vector<Place> places_;  // row after row
 };
 

@@ -153,6 +153,19 @@ TEST(BouncedLight, FollowsEdits) {
   EXPECT_TRUE(is_as_new());
 }
 
+// Claim: a crop is a piece of the whole picture, to the bit. Source: Film::crop. Fails if: places of the picture draw
+// their rays by their number in the crop.
+TEST(BouncedLight, OfACropIsThatOfTheWhole) {
+  Scene scene = ball_beside_wall();
+  const Image whole = Prepared(scene).picture();
+  scene.film.crop = {{16, 9, 29, 20}};
+  const Image part = Prepared(scene).picture();
+  for (int y = 9; y < 20; ++y)
+    for (int x = 16; x < 29; ++x)
+      EXPECT_EQ(channel(part, x - 16, y - 9, "diffuse.R"), channel(whole, x, y, "diffuse.R"))
+          << x << ' ' << y;
+}
+
 // Claim: methods that know no light between things refuse the setting by name. Fails if: they ignore it.
 TEST(BouncedLight, IsRefusedWhereItIsNotKnown) {
   Scene scene = ball_beside_wall();
