@@ -5,12 +5,14 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <pugixml.hpp>
 
 #include "assets/asset_bytes.h"
 #include "assets/asset_scene.h"
 #include "opaline/core/error.h"
+#include "opaline/core/srgb.h"
 
 namespace opaline {
 namespace {
@@ -45,10 +47,6 @@ const SurfaceModel* find_model(const pugi::xml_node& node) {
   const auto found = std::ranges::find_if(
       models, [&](const SurfaceModel& model) { return node.name() == std::string_view(model.node); });
   return found == models.end() ? nullptr : &*found;
-}
-
-double linear_of_srgb(double value) {
-  return value <= .04045 ? value / 12.92 : std::pow((value + .055) / 1.055, 2.4);
 }
 
 /// ACEScg (AP1, D60) to Rec.709 (D65), adapted by Bradford's method.
@@ -173,7 +171,7 @@ class SurfaceReader {
       space = at.attribute("colorspace").value();
     if (!own || space.empty() || space == "lin_rec709" || space == "none") return color;
     if (space == "srgb_texture")
-      return {linear_of_srgb(color.x), linear_of_srgb(color.y), linear_of_srgb(color.z)};
+      return {srgb_to_linear(color.x), srgb_to_linear(color.y), srgb_to_linear(color.z)};
     if (space == "acescg" || space == "lin_ap1") return rec709_of_acescg(color);
     scene_.not_carried.push_back(label_ + ": the colour space " + in_quotes(space) + " of " + name);
     return color;

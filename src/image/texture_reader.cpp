@@ -17,6 +17,7 @@
 #include "image/png_chunks.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
+#include "opaline/core/srgb.h"
 
 namespace opaline {
 namespace {
@@ -64,11 +65,6 @@ void check_whole(const PictureSource& source) {
   if (source.bytes.empty()) return check_png_chunks(source.path);
   std::istringstream bytes(source.bytes);
   check_png_chunks(bytes, source.bytes.size(), source.path);
-}
-
-/// As the colours of a scene file (IEC 61966-2-1).
-double srgb_to_linear(double v) {
-  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
 /// Calls visit(red, green, blue, alpha) for all texels as they stand in the file, while it returns true.

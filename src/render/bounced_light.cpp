@@ -102,9 +102,7 @@ BouncedLight::BouncedLight(const RenderInput& input, const Shader& shader)
 }
 
 void BouncedLight::gather_places(std::span<const TracedRay> rays) {
-  const Film& film = input_.scene.film;
-  const double pixel =
-      2 * std::tan(input_.scene.camera.field_of_view * std::numbers::pi / 360) / film.resolution[1];
+  const double apart = step_ * pixel_width(input_.scene.camera, input_.scene.film);  // at depth 1
   std::vector<std::uint64_t> keys(rays.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = i;
   parallel_chunks(rays.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -117,7 +115,7 @@ void BouncedLight::gather_places(std::span<const TracedRay> rays) {
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
         const std::size_t place = begin + hits.rays[i];
         places_[place] = {true, hits.points[i], irradiance[i], eta,
-                          float(pixel * step_ * double(rays[place].ray.far))};
+                          float(apart * double(rays[place].ray.far))};
       }
     }
   });

@@ -20,12 +20,16 @@ double filter_place(PixelFilter filter, double u) {
 
 }  // namespace
 
+double pixel_width(const Camera& camera, const Film& film) {
+  return 2 * std::tan(camera.field_of_view * std::numbers::pi / 360) / film.resolution[1];
+}
+
 CameraRays::CameraRays(const Camera& camera, const Film& film, const World& world)
     : position_(into_world(world, camera.position)),
       forward_(normalized(camera.look_at - camera.position)),
       center_x_(0.5 * film.resolution[0]),
       center_y_(0.5 * film.resolution[1]) {
-  const double pixel = 2 * std::tan(camera.field_of_view * std::numbers::pi / 360) / film.resolution[1];
+  const double pixel = pixel_width(camera, film);
   const Vec3d right = normalized(cross(forward_, camera.up));
   right_ = right * pixel;
   down_ = cross(forward_, right) * pixel;

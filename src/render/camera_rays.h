@@ -9,6 +9,9 @@
 
 namespace opaline {
 
+/// Width of a pixel at depth 1.
+double pixel_width(const Camera& camera, const Film& film);
+
 /// Rays through the film. Directions have length 1 along the view axis: a ray's time is the depth Z. All
 /// pixels share one pattern of sub-pixel places, drawn from the filter's density; a single sample is the
 /// centre.

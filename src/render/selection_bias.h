@@ -22,7 +22,7 @@ struct SelectionBiasInput {
 /// Signed error of the exitance, one a point, because a point's near field is refined when its irradiance
 /// differs from its neighbours' by chance: the other points keep theirs, and their mean is off.
 /// in    points in an order in which neighbours follow each other
-/// from  README.md of src/evaluate, "Choices made by noise"
+/// from  README.md of src/exitance, "Choices made by noise"
 std::vector<RgbF> selection_bias(const SelectionBiasInput& input);
 
 }  // namespace opaline

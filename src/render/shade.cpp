@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "opaline/transport/fresnel.h"
 #include "render/bounced_light.h"
+#include "render/camera_rays.h"
 
 namespace opaline {
 namespace {
@@ -43,11 +43,9 @@ Appearance mesh_appearance(const Scene& scene, const Shape& shape) {
 // Of the cones around some 64 directions over a hemisphere, for textures that they meet.
 constexpr float kGatheringSpread = 0.25f;
 
-// Full angle of a pixel's ray.
-float pixel_spread(const Scene& scene) {
-  constexpr double kHalf = std::numbers::pi / 360;  // degrees of a full angle to radians of its half
-  const double pixel = 2 * std::tan(scene.camera.field_of_view * kHalf) / scene.film.resolution[1];
-  return float(pixel / std::sqrt(scene.film.samples_per_pixel));
+// Full angle of a camera ray.
+float camera_ray_spread(const Scene& scene) {
+  return float(pixel_width(scene.camera, scene.film) / std::sqrt(scene.film.samples_per_pixel));
 }
 
 SurfacePoint point_of(const Hit& hit, const RayScene& rays) {
@@ -67,7 +65,7 @@ std::vector<SurfacePoint> points_of(std::span<const TracedRay> traced, const Ray
 Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers)
     : input_(input),
       textures_(input.scene, input.world),
-      pixel_spread_(pixel_spread(input.scene)),
+      pixel_spread_(camera_ray_spread(input.scene)),
       fields_(make_fields(input, textures_, entry_samplers)) {
   for (const Light& light : input.scene.lights) {
     lights_.push_back(recentred(light, input.world.origin, input.world.unit));
@@ -103,7 +101,8 @@ std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_
     if (hits.points.empty()) continue;
     const Field& field = *fields_.all[f];
     std::vector<RgbF> bounced;
-    if (bounced_ != nullptr && pass.is_seen) bounced = bounced_->at(hits, field.eta());
+    if (bounced_ != nullptr && pass.is_seen && field.asks_irradiance())
+      bounced = bounced_->at(hits, field.eta());
     const PointIrradianceInput lighting{input_.rays,
                                         hits.points,
                                         hits.keys,
@@ -135,7 +134,8 @@ std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedR
   std::vector<SurfaceHits> hits = collect({rays, keys, lights, pixel_spread_, {}}, nullptr);
   std::vector<SeenSurfaces> seen;
   for (std::size_t f = 0; f < hits.size(); ++f)
-    if (!hits[f].points.empty()) seen.push_back({std::move(hits[f]), fields_.all[f]->eta()});
+    if (!hits[f].points.empty() && fields_.all[f]->asks_irradiance())
+      seen.push_back({std::move(hits[f]), fields_.all[f]->eta()});
   return seen;
 }
 

@@ -29,7 +29,8 @@ class Shader {
   /// What surfaces send back along rays that met them, diffusely, W/(mm^2 sr); by a ray to each light.
   std::vector<RgbF> diffuse_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys) const;
 
-  /// Hits of rays that met surfaces, and the boundary that light enters through there; 0: none.
+  /// Hits of rays that met surfaces whose light depends on the irradiance at the hit, and the boundary that light
+  /// enters through there; 0: none.
   struct SeenSurfaces {
     SurfaceHits hits;
     float eta;

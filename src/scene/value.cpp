@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "opaline/core/srgb.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/nearest_name.h"
 
@@ -37,11 +38,6 @@ int hex_digit(char c) {
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
   if (c >= 'A' && c <= 'F') return c - 'A' + 10;
   return -1;
-}
-
-/// IEC 61966-2-1.
-double srgb_to_linear(double v) {
-  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
 /// "#rrggbb" as linear values, or nothing.

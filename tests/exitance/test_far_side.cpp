@@ -21,16 +21,6 @@ const Cloud& plate() {
   return cloud;
 }
 
-std::vector<Query> places() {
-  std::vector<Query> queries;
-  for (std::uint64_t i = 0; i < 400; ++i) {
-    const auto [u, v] = r2_point(i, {.5, .5});
-    const float up = i % 2 ? 1.f : -1.f;
-    queries.push_back({Vec3f(Vec3d{10 * u - 5, .5 * double(up), 10 * v - 5}), {0, up, 0}});
-  }
-  return queries;
-}
-
 std::array<double, 4> reach_of(const Vec3f& p) {
   const double x = double(p.x), z = double(p.z);
   return {20 - x, 20 - z, 20 + x, 20 + z};
@@ -61,8 +51,8 @@ TEST(FarSide, BothFacesOfAPlate) {
     ASSERT_NE(kernel.far_side, nullptr);
     for (const EvaluatorKind evaluator : kEvaluators) {
       const Difference d =
-          difference(evaluated_by(evaluator, octree, kernel, places(), .01), [&](std::size_t i) {
-            const Vec3f p = places()[i].position;
+          difference(evaluated_by(evaluator, octree, kernel, places_on_plate(), .01), [&](std::size_t i) {
+            const Vec3f p = places_on_plate()[i].position;
             return from_own_face(profile.channels[0], p) + from_far_face(profile.channels[0], p);
           });
       const std::string name = std::string(name_of(evaluator)) + ", " + std::to_string(mean_free_path);
@@ -79,7 +69,7 @@ TEST(FarSide, FromBehind) {
   const Octree octree =
       with_cones(plate().tree([](const SurfaceSample& s) { return RgbF(s.normal.y < -.5f ? 1.f : 0.f); }));
   std::vector<Query> front;
-  for (const Query& q : places())
+  for (const Query& q : places_on_plate())
     if (q.normal.y > 0) front.push_back(q);
   for (const double mean_free_path : {.3, 1., 3.}) {
     const DiffuseProfile profile = multipole(mean_free_path, .02);
@@ -100,7 +90,7 @@ TEST(FarSide, FromBehind) {
 TEST(FarSide, NodesStandForTheirSamples) {
   const Octree bounded = with_cones(plate().tree(coloured_light)), bare = plate().tree(coloured_light);
   const SplitKernel kernel = plate().kernel(multipole(.5, .001));
-  std::vector<Query> queries = places();
+  std::vector<Query> queries = places_on_plate();
   queries.push_back({{20, 0, 3}, {1, 0, 0}});
   queries.push_back({{19.9f, .5f, 19.9f}, normalized(Vec3f{1, 1, 1})});
   const auto a = brute_force(bounded, kernel, queries), b = brute_force(bare, kernel, queries);

@@ -17,16 +17,6 @@ double expected_at(const ChannelProfile& profile, const Vec3f& p) {
   return rectangle_integral(within, reach) + rectangle_integral(within, reach, 1);
 }
 
-std::vector<Query> places() {
-  std::vector<Query> queries;
-  for (std::uint64_t i = 0; i < 400; ++i) {
-    const auto [u, v] = r2_point(i, {.5, .5});
-    const float up = i % 2 ? 1.f : -1.f;
-    queries.push_back({Vec3f(Vec3d{10 * u - 5, .5 * double(up), 10 * v - 5}), {0, up, 0}});
-  }
-  return queries;
-}
-
 // Claim: under E = 1 on both faces of a plate 1 mm thick each face's exitance is its own plus 1 -
 // CDF(thickness) of the total from the far one, for mean free paths of .1, .5 and 2 mm. Source: polar
 // quadrature of both faces. Tolerance: mean 1 % at 30,000 samples (spacing .33), any place 4 %. Fails if:
@@ -38,9 +28,9 @@ TEST(ThinSlab, FarFaceAdds) {
     const DiffuseProfile profile = make_diffuse_profile(grey_medium(mean_free_path, .05, 1.3));
     const SplitKernel kernel = cloud.kernel(profile);
     for (const EvaluatorKind evaluator : {EvaluatorKind::brute_force, EvaluatorKind::dual_tree}) {
-      const Difference d =
-          difference(evaluated_by(evaluator, octree, kernel, places(), .01),
-                     [&](std::size_t i) { return expected_at(profile.channels[0], places()[i].position); });
+      const Difference d = difference(
+          evaluated_by(evaluator, octree, kernel, places_on_plate(), .01),
+          [&](std::size_t i) { return expected_at(profile.channels[0], places_on_plate()[i].position); });
       const std::string name =
           name_of(evaluator) + std::string(", mean free path ") + std::to_string(mean_free_path);
       report(name + ", bias %", 100 * d.bias);
@@ -60,7 +50,7 @@ TEST(ThinSlab, FromBehind) {
   const Octree octree =
       cloud.tree([](const SurfaceSample& s) { return RgbF(s.normal.y < -.5f ? 1.f : 0.f); });
   std::vector<Query> front;
-  for (Query q : places()) {
+  for (Query q : places_on_plate()) {
     q.position.y = .25f;
     q.normal = {0, 1, 0};
     front.push_back(q);
@@ -86,7 +76,7 @@ TEST(ThinSlab, ConvergesWithSamples) {
   const DiffuseProfile profile = make_diffuse_profile(grey_medium(.5, .05, 1.3));
   const auto run = [&](std::size_t count) {
     const Cloud cloud(SlabShape{{}, 40, 40, 1}, count);
-    return brute_force(cloud.tree(RgbF(1)), cloud.kernel(profile), places());
+    return brute_force(cloud.tree(RgbF(1)), cloud.kernel(profile), places_on_plate());
   };
   const std::vector<Exitance> many = run(300000);
   const Difference d = difference(run(30000), [&](std::size_t i) { return many[i].exitance.x; });

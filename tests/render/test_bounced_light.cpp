@@ -166,6 +166,19 @@ TEST(BouncedLight, OfACropIsThatOfTheWhole) {
           << x << ' ' << y;
 }
 
+// Claim: where a body's samples tell all of its light no ray gathers at its hits: the picture takes the camera's rays
+// and those of the places alone. Source: Field::asks_irradiance. Fails if: hits gather what nobody asks for.
+TEST(BouncedLight, IsGatheredWhereItIsAskedFor) {
+  Scene scene = ball_beside_wall();
+  scene.shapes.erase(scene.shapes.begin(), scene.shapes.begin() + 2);
+  scene.settings.near_irradiance = NearIrradiance::samples;
+  const Prepared prepared(scene);
+  const std::uint64_t before = prepared.rays.statistics().rays;
+  prepared.picture();
+  const std::uint64_t across = 32 + 1 + 2 * 2;
+  EXPECT_EQ(prepared.rays.statistics().rays - before, 32u * 32u + across * across);
+}
+
 // Claim: methods that know no light between things refuse the setting by name. Fails if: they ignore it.
 TEST(BouncedLight, IsRefusedWhereItIsNotKnown) {
   Scene scene = ball_beside_wall();

@@ -27,6 +27,17 @@ inline void report(const std::string& name, double value) {
   testing::Test::RecordProperty(key, std::to_string(value));
 }
 
+/// In the middle of both faces of a horizontal plate 1 mm thick.
+inline std::vector<Query> places_on_plate() {
+  std::vector<Query> queries;
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    const auto [u, v] = r2_point(i, {.5, .5});
+    const float up = i % 2 ? 1.f : -1.f;
+    queries.push_back({Vec3f(Vec3d{10 * u - 5, .5 * double(up), 10 * v - 5}), {0, up, 0}});
+  }
+  return queries;
+}
+
 /// Samples of one shape, at most `count` or so.
 struct Cloud {
   World world;

@@ -48,6 +48,8 @@ class Field {
                           HeldView::Surface* held) const = 0;
   /// Index of refraction of the boundary that light enters through; 0: none, an opaque surface.
   virtual float eta() const = 0;
+  /// Whether the exitance depends on the irradiance at the hits themselves.
+  virtual bool asks_irradiance() const { return false; }
   /// Whether the exitance is summed over samples, point by point.
   virtual bool asks_samples() const { return false; }
 };

@@ -18,6 +18,7 @@ class SampleField : public Field {
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
   float eta() const override { return float(group_.profile.eta); }
+  bool asks_irradiance() const override { return near_field_.has_value(); }
   bool asks_samples() const override { return true; }
 
  private:
