@@ -155,11 +155,37 @@ void average(const IrradianceInput& input, std::uint32_t light, std::span<const 
   }
 }
 
-double relative_shift(double shift, std::span<const SurfaceSample> samples, std::span<const float> weights) {
+/// What refined samples are moved by, times their areas.
+struct Shift {
+  double sum = 0, squares = 0, ray_noise = 0;
+
+  void add(double moved, double noise) {
+    sum += moved;
+    squares += moved * moved;
+    ray_noise += noise * noise;
+  }
+  /// The sum beyond its own noise, as far as it was the noise of few rays that chose the samples.
+  double by_chance() const {
+    if (!(squares > 0)) return 0;
+    return std::copysign(std::sqrt(std::max(0.0, sum * sum - squares)), sum) *
+           std::min(1.0, ray_noise / squares);
+  }
+};
+
+/// Standard deviation of a weight found by so many rays, of which each sees a light or not. Of one ray the mean over
+/// the cell tells.
+double ray_noise(float weight, float mean, float unblocked, int rays) {
+  if (!(unblocked > 0)) return 0;
+  const double seen = std::clamp(double((rays > 1 ? weight : mean) / unblocked), 0.0, 1.0);
+  return double(unblocked) * std::sqrt(seen * (1 - seen) / std::max(1, rays - 1));
+}
+
+double relative_shift(const Shift& shift, std::span<const SurfaceSample> samples,
+                      std::span<const float> weights) {
   double sum = 0;
-  for (std::size_t i = 0; shift != 0 && i < samples.size(); ++i)
+  for (std::size_t i = 0; shift.sum != 0 && i < samples.size(); ++i)
     sum += double(samples[i].area) * double(weights[i]);
-  return sum > 0 ? shift / sum : 0;
+  return sum > 0 ? shift.by_chance() / sum : 0;
 }
 
 }  // namespace
@@ -187,11 +213,13 @@ void refine_shadow_edges(const IrradianceInput& input, std::span<const std::vect
     for (std::uint32_t l = 0; l < transfers.size(); ++l) average(input, l, marks[l], points, refined[chunk]);
     advance(input.monitor, 0);
   });
-  std::vector<double> shifts(transfers.size());
+  std::vector<Shift> shifts(transfers.size());
   for (const std::vector<Refined>& part : refined)
     for (const Refined& r : part) {
       float& weight = transfers[r.light].weights[r.sample];
-      shifts[r.light] += double(input.samples[r.sample].area) * double(r.weight - weight);
+      const double cell = double(input.samples[r.sample].area),
+                   noise = ray_noise(weight, r.weight, unblocked[r.light][r.sample], input.light_samples);
+      shifts[r.light].add(cell * double(r.weight - weight), cell * noise);
       weight = r.weight;
     }
   for (std::size_t l = 0; l < transfers.size(); ++l)

@@ -105,5 +105,14 @@ TEST(TwoSheets, ShareTheirCells) {
   }
 }
 
+// Claim: samples of two sheets of which one is dark are not taken for chosen by chance: each sees all of the
+// surroundings or nothing, by any number of rays. Source: nothing is seen from the gap between nested spheres.
+// Tolerance: none. Fails if: what moves the chosen samples is all put down to the noise of few rays (-.021).
+TEST(TwoSheets, AreNotChosenByChance) {
+  const LitWorld lit(world_of({SphereShape{{}, 10}, SphereShape{{.2, 0, 0}, 9.56}}));
+  const SurfaceSamples surface = samples_on(lit.world, 1600);
+  EXPECT_EQ(lit.transfer(surface.samples, unit_surroundings(), 1.1, 5).edge_shift, 0);
+}
+
 }  // namespace
 }  // namespace opaline

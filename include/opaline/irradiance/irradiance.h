@@ -35,7 +35,8 @@ struct LightTransfer {
   double relative_error = 0;
   /// Relative change of this light's total (area x weight, summed over the samples) that came from replacing
   /// weights beside shadow edges by means over cells. With few rays a sample, neighbours also differ by
-  /// chance; samples are then chosen for replacement because of their noise, and the total becomes biased.
+  /// chance; samples are then chosen for replacement because of their noise, and the total becomes biased. Only
+  /// that: no change within its own noise, nor one that the noise of rays does not explain.
   double edge_shift = 0;
 };
 
