@@ -66,12 +66,6 @@ MeasuredError worst_channel(const Image& picture, const Image& reference, const 
 }  // namespace
 
 MeasuredError measure_error(const Session& session, double expected, Monitor* monitor) {
-  if (session.scene().settings.bounces > 0)
-    throw Error(
-        ErrorKind::bad_input, session.scene().file, 0, 0,
-        "settings.bounces: 1: the picture is measured against the method direct, where things are lit by "
-        "lights alone",
-        "--set settings.bounces=0");
   Scene scene = sparse_scene(session, monitor);
   const Image picture = probe_picture(session, scene, 0, monitor).image;
   scene.settings.method = Method::direct;

@@ -23,6 +23,15 @@ struct Differences {
   }
 };
 
+void blacken_opaque(RenderResult& result) {
+  const std::vector<std::string>& channels = result.image.channels;
+  for (const char* channel : {"diffuse.R", "diffuse.G", "diffuse.B"}) {
+    const auto place = std::size_t(std::ranges::find(channels, channel) - channels.begin());
+    for (std::size_t p = 0; p < result.translucent.size(); ++p)
+      if (result.translucent[p] == 0) result.image.pixels[p * channels.size() + place] = 0;
+  }
+}
+
 double error_of(const Differences& d) {
   const double t = std::exp2(error_slope(d.second, d.first)), step = (t - 1) * (t - 1);
   // Pattern s and noise n of a, squared: first_square = s (t - 1)^2 + n (1 + t^2), product = s t (t - 1)^2 -
@@ -40,7 +49,9 @@ Scene probe_scene(const Scene& scene, double most_pixels) {
   Film& film = probe.film;
   film.samples_per_pixel = 1;
   film.filter = PixelFilter::box;
-  for (Shape& shape : probe.shapes) shape.reflectance = {};
+  // Opaque surfaces, whose light is not looked at, are dark, unless they light others.
+  if (scene.settings.bounces == 0)
+    for (Shape& shape : probe.shapes) shape.reflectance = {};
   const std::array<int, 4> part =
       film.crop.value_or(std::array<int, 4>{0, 0, film.resolution[0], film.resolution[1]});
   const double pixels = double(part[2] - part[0]) * double(part[3] - part[1]),
@@ -59,7 +70,9 @@ Scene probe_scene(const Scene& scene, double most_pixels) {
 
 RenderResult probe_picture(const Session& session, Scene probe, std::uint64_t noise, Monitor* monitor) {
   probe.settings.seed = hash_bits(probe.settings.seed, noise);
-  return render({probe, session.world(), session.rays(), session.bodies(), monitor});
+  RenderResult result = render({probe, session.world(), session.rays(), session.bodies(), monitor});
+  blacken_opaque(result);
+  return result;
 }
 
 std::vector<std::uint8_t> translucent_pixels(const Image& picture) {

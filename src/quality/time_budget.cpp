@@ -103,8 +103,10 @@ void BudgetSearch::try_first(const FinishPicture& finish) {
   // As it will be, opaque surfaces and all.
   Scene whole = probe_scene(search_.scene, search_.probe_pixels);
   whole.shapes = search_.scene.shapes;
-  finishing_ = finishing_cost(probe_picture(search_.session, whole, 0, search_.monitor).image,
-                              search_.scene.film, finish);
+  const Session& session = search_.session;
+  finishing_ = finishing_cost(
+      render({whole, session.world(), session.rays(), session.bodies(), search_.monitor}).image,
+      search_.scene.film, finish);
 }
 
 void BudgetSearch::try_samples(double samples) {

@@ -70,8 +70,7 @@ void keep_hits(Gathered& gathered) {
 
 }  // namespace
 
-std::vector<RgbF> gathered_irradiance(const GatherInput& input) {
-  std::vector<RgbF> irradiance(input.points.size());
+void for_each_gathered(const GatherInput& input, const UseOfGathered& use) {
   for (std::size_t begin = 0; begin < input.points.size(); begin += kPointsAtOnce) {
     const std::size_t end = std::min(begin + kPointsAtOnce, input.points.size());
     Gathered gathered;
@@ -80,8 +79,13 @@ std::vector<RgbF> gathered_irradiance(const GatherInput& input) {
     keep_hits(gathered);
     const std::vector<RgbF> radiance = input.shader.diffuse_along(gathered.rays, gathered.keys);
     for (std::size_t r = 0; r < radiance.size(); ++r)
-      irradiance[gathered.points[r]] += radiance[r] * gathered.weights[r];
+      use(gathered.points[r], gathered.rays[r].ray.direction, radiance[r] * gathered.weights[r]);
   }
+}
+
+std::vector<RgbF> gathered_irradiance(const GatherInput& input) {
+  std::vector<RgbF> irradiance(input.points.size());
+  for_each_gathered(input, [&](std::size_t p, const Vec3f&, const RgbF& light) { irradiance[p] += light; });
   return irradiance;
 }
 

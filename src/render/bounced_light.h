@@ -2,6 +2,7 @@
 // Light that surfaces send to other surfaces.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,7 +22,13 @@ struct GatherInput {
   std::uint64_t seed = 0;
 };
 
-/// Irradiance, one a point, W/mm^2; of what comes through the boundary where there is one.
+/// Light that reaches a point from a surface: index of the point, unit direction towards the surface, irradiance of what
+/// comes through the boundary where there is one.
+using UseOfGathered = std::function<void(std::size_t point, const Vec3f& towards, const RgbF& irradiance)>;
+
+void for_each_gathered(const GatherInput& input, const UseOfGathered& use);
+
+/// Their sums, one a point, W/mm^2.
 std::vector<RgbF> gathered_irradiance(const GatherInput& input);
 
 /// The same at the hits of a picture: gathered at what the camera sees at 64 places along the picture's longer

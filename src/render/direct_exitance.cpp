@@ -4,6 +4,7 @@
 #include "opaline/core/random.h"
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/lights/light.h"
+#include "render/bounced_light.h"
 
 namespace opaline {
 namespace {
@@ -35,6 +36,13 @@ RgbF entering_tint(const DirectExitanceInput& input, const Entry& entry, std::si
   return input.textures->tint(place).entering;
 }
 
+/// How much of the light that enters there from a direction leaves at the exit.
+RgbF weight_of(const EntrySampler& sampler, const SurfacePoint& exit, const Entry& entry,
+               const Vec3f& towards_light) {
+  if (!sampler.is_directional() || !(entry.inverse_density > 0)) return entry.weight;
+  return sampler.directional(exit, entry.point, towards_light) * entry.inverse_density;
+}
+
 /// Where the profile asks for the light's direction: ray by ray.
 void add_directed_light(const DirectExitanceInput& input, const PointIrradianceInput& at,
                         std::span<const Entry> entries, std::span<const std::size_t> exits,
@@ -43,13 +51,23 @@ void add_directed_light(const DirectExitanceInput& input, const PointIrradianceI
     const RgbF colour(emission(at.lights[l]));
     for_each_ray(at, l, [&](std::size_t e, const Vec3f& towards_light, float irradiance) {
       const Entry& entry = entries[e];
-      const RgbF weight = entry.inverse_density > 0 ? input.sampler.directional(input.exits.points[exits[e]],
-                                                                                entry.point, towards_light) *
-                                                          entry.inverse_density
-                                                    : entry.weight;
+      const RgbF weight = weight_of(input.sampler, input.exits.points[exits[e]], entry, towards_light);
       exitance[exits[e]] += weight * colour * irradiance * entry.tint;
     });
   }
+}
+
+/// What surfaces send to the entries, by a ray each.
+void add_bounced_light(const DirectExitanceInput& input, const PointIrradianceInput& at,
+                       std::span<const Entry> entries, std::span<const std::size_t> exits,
+                       std::vector<RgbF>& exitance) {
+  constexpr std::uint64_t kSeed = 5;
+  for_each_gathered(
+      {at.rays, *input.gathers, at.points, at.keys, float(at.eta), 1, hash_bits(at.seed, kSeed)},
+      [&](std::size_t e, const Vec3f& towards, const RgbF& irradiance) {
+        const RgbF weight = weight_of(input.sampler, input.exits.points[exits[e]], entries[e], towards);
+        exitance[exits[e]] += weight * irradiance * entries[e].tint;
+      });
 }
 
 }  // namespace
@@ -94,6 +112,7 @@ std::vector<RgbF> direct_exitance(const DirectExitanceInput& input) {
     for (std::size_t e = 0; e < taken.size(); ++e)
       exitance[exits[e]] += taken[e].weight * entered[e] * taken[e].tint;
   }
+  if (input.gathers != nullptr) add_bounced_light(input, at, taken, exits, exitance);
   if (input.entry_samples > 0)
     for (RgbF& m : exitance) m *= 1 / float(input.entry_samples);
   return exitance;

@@ -8,6 +8,8 @@
 
 namespace opaline {
 
+class Shader;
+
 struct DirectExitanceInput {
   const EntrySampler& sampler;
   PointIrradianceInput exits;  ///< points that light leaves, their keys, lights and boundary
@@ -15,10 +17,11 @@ struct DirectExitanceInput {
   /// What tints light that enters, and where the exits are; null: nothing.
   const SurfaceTextures* textures = nullptr;
   std::span<const Hit> hits = {};
+  const Shader* gathers = nullptr;  ///< as Pass::gathers
 };
 
 /// Unbiased estimates of M_o at each point, W/mm^2: the mean over the samples of weight x E at their entries,
-/// with one shadow ray to each light from each entry.
+/// with one shadow ray to each light from each entry, and one ray to what else may send light there.
 std::vector<RgbF> direct_exitance(const DirectExitanceInput& input);
 
 }  // namespace opaline

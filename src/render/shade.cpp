@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "opaline/core/random.h"
 #include "opaline/transport/fresnel.h"
 #include "render/bounced_light.h"
 #include "render/camera_rays.h"
@@ -42,6 +43,8 @@ Appearance mesh_appearance(const Scene& scene, const Shape& shape) {
 
 // Of the cones around some 64 directions over a hemisphere, for textures that they meet.
 constexpr float kGatheringSpread = 0.25f;
+
+constexpr std::uint64_t kGatheringSeed = 1;
 
 // Full angle of a camera ray.
 float camera_ray_spread(const Scene& scene) {
@@ -100,9 +103,8 @@ std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_
     const SurfaceHits& hits = all_hits[f];
     if (hits.points.empty()) continue;
     const Field& field = *fields_.all[f];
-    std::vector<RgbF> bounced;
-    if (bounced_ != nullptr && pass.is_seen && field.asks_irradiance())
-      bounced = bounced_->at(hits, field.eta());
+    const std::vector<RgbF> bounced =
+        field.asks_irradiance() ? bounced_at(hits, field.eta(), pass) : std::vector<RgbF>{};
     const PointIrradianceInput lighting{input_.rays,
                                         hits.points,
                                         hits.keys,
@@ -118,10 +120,18 @@ std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_
   return all_hits;
 }
 
+std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const Pass& pass) const {
+  if (!pass.is_seen) return {};
+  if (bounced_ != nullptr) return bounced_->at(hits, eta);
+  if (pass.gathers == nullptr) return {};
+  return gathered_irradiance({input_.rays, *pass.gathers, hits.points, hits.keys, eta, 1,
+                              hash_bits(point_irradiance_seed(input_.scene.settings), kGatheringSeed)});
+}
+
 std::vector<RgbF> Shader::diffuse_along(std::span<const TracedRay> rays,
                                         std::span<const std::uint64_t> keys) const {
   std::vector<PixelSample> seen(rays.size());
-  shade_diffuse({rays, keys, seen, kGatheringSpread, {}}, 1, {.is_seen = false}, nullptr);
+  shade_diffuse({rays, keys, seen, kGatheringSpread, {}}, 1, {.entry_samples = 1, .is_seen = false}, nullptr);
   std::vector<RgbF> radiance;
   radiance.reserve(seen.size());
   for (const PixelSample& sample : seen) radiance.push_back(sample.diffuse);

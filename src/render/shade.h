@@ -67,6 +67,8 @@ class Shader {
   /// What leaves where rays meet surfaces, and lights that they meet. Returns the hits of each field.
   std::vector<SurfaceHits> shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
                                          HeldView::Batch* held) const;
+  /// What other surfaces send to hits; empty: nothing.
+  std::vector<RgbF> bounced_at(const SurfaceHits& hits, float eta, const Pass& pass) const;
   void write(const SurfaceHits& hits, const LeavingLight& light, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;
   // What boundaries mirror: shade_specular.cpp.

@@ -14,7 +14,8 @@ class DirectField : public Field {
 
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface*) const override {
-    return {.exitance = direct_exitance({sampler_, lighting, pass.entry_samples, &textures_, hits.hits}),
+    return {.exitance = direct_exitance(
+                {sampler_, lighting, pass.entry_samples, &textures_, hits.hits, pass.gathers}),
             .irradiance = {},
             .error = {},
             .noise = {},

@@ -14,11 +14,15 @@
 
 namespace opaline {
 
+class Shader;
+
 /// One of several independent estimates of the same picture; only `direct` makes more than one.
 struct Pass {
   std::uint64_t index = 0;
   int entry_samples = 0;  ///< of each camera ray
   bool is_seen = true;    ///< false: by rays that spread light; no near fields are looked into for them
+  /// `direct`: what surfaces send to places where light enters is found by a ray from each; null: lights alone.
+  const Shader* gathers = nullptr;
 };
 
 /// The hits of a batch of camera rays that one field answers for, one entry a hit in each array.
