@@ -50,7 +50,7 @@ Scene probe_scene(const Scene& scene, double most_pixels) {
   film.samples_per_pixel = 1;
   film.filter = PixelFilter::box;
   // Opaque surfaces, whose light is not looked at, are dark, unless they light others.
-  if (scene.settings.bounces == 0)
+  if (bounces_of(scene) == 0)
     for (Shape& shape : probe.shapes) shape.reflectance = {};
   const std::array<int, 4> part =
       film.crop.value_or(std::array<int, 4>{0, 0, film.resolution[0], film.resolution[1]});

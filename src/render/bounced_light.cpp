@@ -89,8 +89,8 @@ std::vector<RgbF> gathered_irradiance(const GatherInput& input) {
   return irradiance;
 }
 
-BouncedLight::BouncedLight(const RenderInput& input, const Shader& shader)
-    : input_(input), shader_(shader), camera_(input.scene.camera, input.scene.film, input.world) {
+BouncedPlaces::BouncedPlaces(const RenderInput& input, const Shader& shader)
+    : camera_(input.scene.camera, input.scene.film, input.world) {
   const Film& film = input.scene.film;
   step_ = std::max(1, std::max(film.resolution[0], film.resolution[1]) / kAcross);
   // Of the whole picture, so that a crop is a piece of it; and a little around it.
@@ -102,20 +102,20 @@ BouncedLight::BouncedLight(const RenderInput& input, const Shader& shader)
       rays.push_back({camera_.ray((column - kAround) * step_, (row - kAround) * step_, 0), {}});
   input.rays.intersect(rays);
   places_.resize(rays.size());
-  gather_places(rays);
+  gather(input, shader, rays);
 }
 
-void BouncedLight::gather_places(std::span<const TracedRay> rays) {
-  const double apart = step_ * pixel_width(input_.scene.camera, input_.scene.film);  // at depth 1
+void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, std::span<const TracedRay> rays) {
+  const double apart = step_ * pixel_width(input.scene.camera, input.scene.film);  // at depth 1
   std::vector<std::uint64_t> keys(rays.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = i;
   parallel_chunks(rays.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end, std::size_t) {
     const std::vector<Shader::SeenSurfaces> seen =
-        shader_.surfaces_along(rays.subspan(begin, end - begin), std::span(keys).subspan(begin, end - begin));
+        shader.surfaces_along(rays.subspan(begin, end - begin), std::span(keys).subspan(begin, end - begin));
     for (const auto& [hits, eta] : seen) {
       const std::vector<RgbF> irradiance =
-          gathered_irradiance({input_.rays, shader_, hits.points, hits.keys, eta, kOfPlace,
-                               hash_bits(input_.scene.settings.seed, kSeed)});
+          gathered_irradiance({input.rays, shader, hits.points, hits.keys, eta, kOfPlace,
+                               hash_bits(input.scene.settings.seed, kSeed)});
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
         const std::size_t place = begin + hits.rays[i];
         places_[place] = {true, hits.points[i], irradiance[i], eta,
@@ -125,13 +125,22 @@ void BouncedLight::gather_places(std::span<const TracedRay> rays) {
   });
 }
 
+BouncedLight::BouncedLight(const RenderInput& input, const Shader& shader)
+    : input_(input),
+      shader_(shader),
+      places_(input.bounced != nullptr ? input.bounced
+                                       : std::make_shared<const BouncedPlaces>(input, shader)) {}
+
 std::vector<RgbF> BouncedLight::at(const SurfaceHits& hits, float eta) const {
   std::vector<RgbF> irradiance(hits.points.size());
   std::vector<SurfacePoint> points;
   std::vector<std::uint64_t> keys;
   std::vector<std::size_t> alone;
   for (std::size_t i = 0; i < hits.points.size(); ++i) {
-    if (interpolate(hits.points[i], eta, irradiance[i])) continue;
+    if (const std::optional<RgbF> known = places_->at(hits.points[i], eta)) {
+      irradiance[i] = *known;
+      continue;
+    }
     alone.push_back(i);
     points.push_back(hits.points[i]);
     keys.push_back(hits.keys[i]);
@@ -142,12 +151,12 @@ std::vector<RgbF> BouncedLight::at(const SurfaceHits& hits, float eta) const {
   return irradiance;
 }
 
-bool BouncedLight::interpolate(const SurfacePoint& point, float eta, RgbF& irradiance) const {
+std::optional<RgbF> BouncedPlaces::at(const SurfacePoint& point, float eta) const {
   const CameraRays::FilmPlace seen = camera_.film_place(Vec3d(point.position));
-  if (!(seen.depth > 0)) return false;
+  if (!(seen.depth > 0)) return {};
   // In places, from the first one.
   const double x = (seen.x - .5) / step_ + kAround, y = (seen.y - .5) / step_ + kAround;
-  if (!(x >= 0 && y >= 0 && x < columns_ && y < rows_)) return false;
+  if (!(x >= 0 && y >= 0 && x < columns_ && y < rows_)) return {};
   RgbF sum;
   float weights = 0;
   for (int row = std::max(0, int(y) - 1); row <= std::min(rows_ - 1, int(y) + 2); ++row)
@@ -165,9 +174,12 @@ bool BouncedLight::interpolate(const SurfacePoint& point, float eta, RgbF& irrad
       sum += place.irradiance * weight;
       weights += weight;
     }
-  if (!(weights > kLeastWeight)) return false;
-  irradiance = sum * (1 / weights);
-  return true;
+  if (!(weights > kLeastWeight)) return {};
+  return sum * (1 / weights);
+}
+
+std::shared_ptr<const BouncedPlaces> bounced_places(const RenderInput& input) {
+  return std::make_shared<const BouncedPlaces>(input, Shader(input));
 }
 
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input,

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,16 +33,15 @@ void for_each_gathered(const GatherInput& input, const UseOfGathered& use);
 /// Their sums, one a point, W/mm^2.
 std::vector<RgbF> gathered_irradiance(const GatherInput& input);
 
-/// The same at the hits of a picture: gathered at what the camera sees at 64 places along the picture's longer
-/// side, and interpolated between places on the same plane. Hits that no such place stands for gather for themselves.
+/// The same at what a camera sees at 64 places along its picture's longer side.
 /// from  Ward, Rubinstein & Clear 1988
-class BouncedLight {
+class BouncedPlaces {
  public:
-  /// shader: without bounced light; both must outlive it
-  BouncedLight(const RenderInput& input, const Shader& shader);
+  /// shader: without bounced light
+  BouncedPlaces(const RenderInput& input, const Shader& shader);
 
-  /// One a hit, W/mm^2.
-  std::vector<RgbF> at(const SurfaceHits& hits, float eta) const;
+  /// Between places on the plane of the point; none where no place stands for it.
+  std::optional<RgbF> at(const SurfacePoint& point, float eta) const;
 
  private:
   struct Place {
@@ -50,15 +51,28 @@ class BouncedLight {
     float eta = 0;
     float spacing = 0;  // to the next ones, across the view
   };
-  void gather_places(std::span<const TracedRay> rays);
-  bool interpolate(const SurfacePoint& point, float eta, RgbF& irradiance) const;
+  void gather(const RenderInput& input, const Shader& shader, std::span<const TracedRay> rays);
 
-  const RenderInput& input_;
-  const Shader& shader_;
   CameraRays camera_;
   int step_;  // pixels from one place to the next
   int columns_, rows_;
   std::vector<Place> places_;  // row after row
+};
+
+/// At the hits of a picture: by RenderInput::bounced, or places of its own. Hits that no place stands for gather for
+/// themselves.
+class BouncedLight {
+ public:
+  /// shader: without bounced light; both must outlive it
+  BouncedLight(const RenderInput& input, const Shader& shader);
+
+  /// One a hit, W/mm^2.
+  std::vector<RgbF> at(const SurfaceHits& hits, float eta) const;
+
+ private:
+  const RenderInput& input_;
+  const Shader& shader_;
+  std::shared_ptr<const BouncedPlaces> places_;
 };
 
 }  // namespace opaline

@@ -45,7 +45,7 @@ class DirectRenderer {
   void add_pass(DirectState& state) const {
     const int samples = scene_.film.samples_per_pixel;
     const Pass pass{state.passes, entry_samples_per_ray(scene_.film), true,
-                    scene_.settings.bounces > 0 ? &shader_ : nullptr};
+                    bounces_of(scene_) > 0 ? &shader_ : nullptr};
     std::vector<RgbF> radiance(pixels());
     for_each_tile(pass, [&](std::size_t pixel, const PixelSample& sum) {
       radiance[pixel] = sum.diffuse * (1 / float(samples));

@@ -30,7 +30,7 @@ std::uint64_t key_of(const Vec3f& p) {
 
 bool can_hold_own_light(const Scene& scene, const World& world, const Body& group) {
   const auto& own = group.kernel.own_irradiance;
-  return scene.settings.bounces == 0 && group.kernel.needs_irradiance() &&
+  return bounces_of(scene) == 0 && group.kernel.needs_irradiance() &&
          std::ranges::all_of(own, [](float s) { return s <= kSharp; }) &&
          std::ranges::none_of(group.plan.meshes,
                               [&](std::uint32_t m) { return world.meshes[m].normals.empty(); });

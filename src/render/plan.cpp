@@ -149,7 +149,7 @@ void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan
 /// error where a method knows no light between things
 void check_bounces(const Scene& scene) {
   const Method method = scene.settings.method;
-  if (scene.settings.bounces == 0 || !has_cells(method)) return;
+  if (bounces_of(scene) == 0 || !has_cells(method)) return;
   throw Error(
       ErrorKind::bad_input, scene.file, 0, 0,
       fmt::format("settings.bounces: 1: with the method {} things are lit by lights alone", name_of(method)),
@@ -299,7 +299,7 @@ void list_stages(const Scene& scene, Plan& plan) {
       plan.stages.push_back(evaluation_stage(scene.settings));
     }
   }
-  if (scene.settings.bounces > 0)
+  if (bounces_of(scene) > 0)
     plan.stages.push_back(
         method == Method::direct
             ? "bounces: light between things, once, by a ray from each place where light enters"

@@ -56,7 +56,7 @@ RenderResult render(const RenderInput& input) {
   result.translucent.resize(std::size_t(result.image.width) * std::size_t(result.image.height));
   Shader shader(input);
   std::optional<BouncedLight> bounced;
-  if (input.scene.settings.bounces > 0) shader.set_bounced_light(&bounced.emplace(input, shader));
+  if (bounces_of(input.scene) > 0) shader.set_bounced_light(&bounced.emplace(input, shader));
   const TileRenderer renderer(input, shader);
   const std::vector<Rectangle> tiles = tiles_of(film);
   HeldView* const view = view_of(input, tiles.size());

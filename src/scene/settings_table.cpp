@@ -234,10 +234,11 @@ std::span<const Member<Settings>> settings_members() {
           "volume: light that has left a body, or was mirrored by it, may meet the same "
           "body again and enter, as in hollows and between ears; `false`: it is gone, as "
           "with all other methods"),
-      member<&Settings::bounces>("bounces", whole_number, "", {0, 1}, "",
-                                 "hierarchical, lambert: 1: light that leaves a surface lights others, once: "
-                                 "a floor the thing that stands on "
-                                 "it, a red wall the marble beside it; 0: things are lit by lights alone"),
+      member<&Settings::bounces>(
+          "bounces", whole_number, "", {0, 1}, "1 where one thing can light another",
+          "hierarchical, lambert, direct: 1: light that leaves a surface lights others, once: "
+          "a floor the thing that stands on "
+          "it, a red wall the marble beside it, and a body itself; 0: things are lit by lights alone"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
                               "of all random numbers; the same seed gives the same picture"),
       member<&Settings::reference_frame>("reference_frame", whole_number, "", {0, 1e9}, "",

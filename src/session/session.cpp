@@ -60,6 +60,10 @@ const Plan& Session::plan() const {
 const RayScene& Session::rays() const {
   return *state_->rays_;
 }
+std::shared_ptr<const BouncedPlaces> Session::bounced_places() const {
+  return state_->bounced_;
+}
+
 std::span<const Body> Session::bodies() const {
   return state_->bodies_;
 }

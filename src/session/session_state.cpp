@@ -44,6 +44,7 @@ void Session::State::edit(Scene scene) {
   }
   Plan plan = make_plan(scene, *world);
   scene_ = std::move(scene);
+  if (world != world_) bounced_.reset();
   world_ = std::move(world);
   shape_keys_ = std::move(keys);
   mesh_keys_ = std::move(meshes);
@@ -188,7 +189,7 @@ void Session::State::prepare(Monitor* monitor) {
     update_tree(body, known, lights);
     update_kernel(body, known);
   });
-  if (scene_.settings.bounces > 0) {
+  if (bounces_of(scene_) > 0) {
     const Stopwatch watch;
     update_bounces(input, lights);
     costs_.push_back(watch.cost("bounces"));
@@ -219,9 +220,26 @@ RenderResult Session::State::render(Monitor* monitor, const AfterTile& after_til
       return result;
     }
   }
-  RenderResult result = opaline::render({scene_, *world_, *rays_, bodies_, monitor, after_tile, view});
+  RenderInput input{scene_, *world_, *rays_, bodies_, monitor, after_tile, view};
+  if (bounces_of(scene_) > 0) update_bounced_places(input);
+  input.bounced = bounced_;
+  RenderResult result = opaline::render(input);
   work_.queries += result.queries;
   return result;
+}
+
+/// Kept while the camera sees the same in the same light, and for drafts after that.
+void Session::State::update_bounced_places(const RenderInput& input) {
+  const PrecomputeInput precompute{scene_, *world_, *rays_, plan_, input.monitor};
+  KeyBuilder builder("bounced places", 1);
+  builder.add(view_key(precompute, mesh_keys_));
+  builder.add(surfaces_key(precompute, mesh_keys_, recentred_lights(scene_, *world_)));
+  for (const BodyKeys& known : keys_) builder.add(known.tree_key).add(known.kernel_key);
+  const StageKey key = builder.key();
+  const bool is_known = is_needed();  // lambert has no keys of bodies
+  if (bounced_ != nullptr && is_known && key == bounced_key_) return;
+  bounced_ = opaline::bounced_places(input);
+  bounced_key_ = key;
 }
 
 void Session::State::ready_light_mix(Monitor* monitor) {
@@ -233,7 +251,7 @@ void Session::State::ready_light_mix(Monitor* monitor) {
 
 /// After prepare.
 bool Session::State::can_mix() const {
-  return mixes_lights_ && !has_cells(scene_.settings.method) && scene_.settings.bounces == 0 &&
+  return mixes_lights_ && !has_cells(scene_.settings.method) && bounces_of(scene_) == 0 &&
          std::ranges::none_of(bodies_, [](const Body& g) { return g.surface_cache.has_value(); });
 }
 

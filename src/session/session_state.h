@@ -52,6 +52,7 @@ struct Session::State {
   void update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
                         const std::vector<Light>& lights);
   HeldView* held_view();
+  void update_bounced_places(const RenderInput& input);
   bool can_mix() const;
   Image recoloured(const Scene& scene, HeldView& view, Monitor* monitor);
   void decide(const Body& body, const std::string& text);
@@ -71,6 +72,8 @@ struct Session::State {
   std::size_t pictures_ = 1;
   bool holds_view_ = false, mixes_lights_ = false;
   HeldView view_;
+  std::shared_ptr<const BouncedPlaces> bounced_;  // of the last picture in which light bounced
+  StageKey bounced_key_;
   LightMix mix_;
   StageKey view_key_, view_surfaces_key_;
   std::vector<StageKey> view_light_keys_;

@@ -274,7 +274,7 @@ void Session::State::update_tint(Body& body, BodyKeys& known) {
 void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights) {
   update_tint(body, known);
   const StageKey key = octree_key(known.samples_key, known.light_keys, lights, known.tint_key);
-  const bool may_hold_bounces = scene_.settings.bounces > 0 && known.tree_key != StageKey{};
+  const bool may_hold_bounces = bounces_of(scene_) > 0 && known.tree_key != StageKey{};
   if (key == known.lights_key && (key == known.tree_key || may_hold_bounces))
     return decide(body, "tree kept");
   known.tree_key = known.lights_key = {};

@@ -155,7 +155,10 @@ void ViewRenderer::draw_draft(const Wanted& wanted, int stride, PictureStep step
   Scene scene = wanted.scene;
   scene.film = coarse_film(scene.film, stride);
   const Clock::time_point start = Clock::now();
-  Image image = render({scene, session_->world(), session_->rays(), session_->bodies(), monitor}).image;
+  RenderInput input{scene, session_->world(), session_->rays(), session_->bodies(), monitor};
+  input.bounced = session_->bounced_places();
+  if (input.bounced == nullptr) scene.settings.bounces = 0;
+  Image image = render(input).image;
   const double seconds = seconds_since(start);
   seconds_per_pixel_ += .5 * (seconds / pixels_of(scene.film) - seconds_per_pixel_);
   publish(wanted, step, std::move(image));

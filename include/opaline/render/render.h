@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,9 @@ Rectangle rendered_part(const Film& film);
 /// may be written meanwhile.
 using AfterTile = std::function<void(const Image& image, const Rectangle& done)>;
 
+/// Light that surfaces send to what a camera sees, at places of its picture.
+class BouncedPlaces;
+
 struct RenderInput {
   const Scene& scene;
   const World& world;
@@ -34,6 +38,9 @@ struct RenderInput {
   Monitor* monitor = nullptr;
   AfterTile after_tile = {};
   HeldView* view = nullptr;  ///< of an earlier picture that saw the same, or new; kept up to kMostHeldBytes
+  /// Where light bounces: gathered for this or another view of the same surfaces in the same light; null: for this one,
+  /// by render.
+  std::shared_ptr<const BouncedPlaces> bounced = {};
 };
 
 /// A larger view is not held, bytes.
@@ -54,6 +61,9 @@ struct RenderResult {
 /// weight F. Opaque surfaces are Lambertian.
 /// Lights light all of them, and with settings.bounces surfaces light each other, once.
 RenderResult render(const RenderInput& input);
+
+/// For RenderInput::bounced, with what else the input has.
+std::shared_ptr<const BouncedPlaces> bounced_places(const RenderInput& input);
 
 /// Mean over the lit pixels of what the `error` layer expects of |error| / max(diffuse, 1e-3 of its p99), the
 /// worst channel; 0 without that layer.

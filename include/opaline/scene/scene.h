@@ -258,10 +258,10 @@ struct Settings {
   EntryStrategy entry_strategy = EntryStrategy::disc_axes;  ///< direct: how entry points are drawn
   std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
   std::optional<double>
-      until_error;         ///< direct, volume: stop at this estimated relative error of the pixels, cells
-  bool reenter = true;     ///< volume: light that has left a body may enter it again elsewhere
-  double cell_size = 1.5;  ///< volume_diffusion: of the cells at the surface, mean free paths
-  int bounces = 0;         ///< hierarchical, lambert: 1: surfaces that are lit light others, once
+      until_error;             ///< direct, volume: stop at this estimated relative error of the pixels, cells
+  bool reenter = true;         ///< volume: light that has left a body may enter it again elsewhere
+  double cell_size = 1.5;      ///< volume_diffusion: of the cells at the surface, mean free paths
+  std::optional<int> bounces;  ///< 1: surfaces that are lit light others, once; none: bounces_of()
   std::uint64_t seed = 0;
   int reference_frame = 1;  ///< of frame ranges: samples are placed there and go along to all others
   friend bool operator==(const Settings&, const Settings&) = default;
@@ -283,6 +283,9 @@ struct Scene {
   friend bool operator==(const Scene&, const Scene&) = default;
 };
 
+/// How often light goes from one surface to another: Settings::bounces, or 1 where one thing that sends light back can
+/// light another and the method knows of it. A body does not light itself unless it is asked for.
+int bounces_of(const Scene& scene);
 /// The textures of a shape and of its medium.
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
 /// Whether a shape's mesh has to have UVs.

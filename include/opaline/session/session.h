@@ -142,7 +142,9 @@ class Session {
   const Plan& plan() const;
   const RayScene& rays() const;          ///< after prepare
   std::span<const Body> bodies() const;  ///< after prepare
-  const SessionWork& work() const;       ///< of the last edit and since
+  /// Of the last picture in which light bounced, of whichever view and light; null: none of these shapes.
+  std::shared_ptr<const BouncedPlaces> bounced_places() const;
+  const SessionWork& work() const;  ///< of the last edit and since
   /// What was kept, and what not; a line each.
   const std::vector<std::string>& decisions() const;
   /// Rays, sampling, irradiance, octree, and exitance where there are surface caches.
