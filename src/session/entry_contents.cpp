@@ -142,6 +142,16 @@ std::optional<LightTransfer> get_light(const BlobReader& entry, std::size_t samp
   return transfer;
 }
 
+void put_bounced(BlobWriter& file, std::span<const RgbF> bounced) {
+  file.put("irradiance", bounced);
+}
+
+std::optional<std::vector<RgbF>> get_bounced(const BlobReader& entry, std::size_t samples) {
+  auto bounced = entry.get<RgbF>("irradiance");
+  if (!bounced || !are_values_of(*bounced, samples)) return {};
+  return bounced;
+}
+
 void put_walked_profile(BlobWriter& file, const RadialTable& table) {
   file.put("logarithms", std::span(table.logarithms()));
   file.put("decay", table.reference().decay);
@@ -242,6 +252,10 @@ constexpr std::uint64_t kAroundSets = 1 << 16;  // what HDF5 adds, generously
 
 std::uint64_t most_bytes_of_samples(const SampledSurface& surface) {
   return most_samples(surface) * sizeof(SurfaceSample) + kAroundSets;
+}
+
+std::uint64_t most_bytes_of_bounced(std::size_t samples) {
+  return samples * sizeof(RgbF) + kAroundSets;
 }
 
 std::uint64_t most_bytes_of_light(std::size_t samples) {

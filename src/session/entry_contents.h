@@ -28,6 +28,9 @@ void put_exitance(BlobWriter& file, const SurfaceCache& exitance, std::span<cons
 std::optional<SurfaceCache> get_exitance(const BlobReader& entry, const World& world,
                                          std::span<const std::uint32_t> meshes);
 
+void put_bounced(BlobWriter& file, std::span<const RgbF> bounced);
+std::optional<std::vector<RgbF>> get_bounced(const BlobReader& entry, std::size_t samples);
+
 void put_walked_profile(BlobWriter& file, const RadialTable& table);
 std::optional<RadialTable> get_walked_profile(const BlobReader& entry);
 constexpr std::uint64_t kMostBytesOfWalkedProfile = 1 << 16;
@@ -35,6 +38,7 @@ constexpr std::uint64_t kMostBytesOfWalkedProfile = 1 << 16;
 /// The most bytes that such an entry can have.
 std::uint64_t most_bytes_of_samples(const SampledSurface& surface);
 std::uint64_t most_bytes_of_light(std::size_t samples);
+std::uint64_t most_bytes_of_bounced(std::size_t samples);
 std::uint64_t most_bytes_of_volume(std::size_t samples);
 std::uint64_t most_bytes_of_octree(std::size_t samples);
 

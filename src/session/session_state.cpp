@@ -228,20 +228,6 @@ RenderResult Session::State::render(Monitor* monitor, const AfterTile& after_til
   return result;
 }
 
-/// Kept while the camera sees the same in the same light, and for drafts after that.
-void Session::State::update_bounced_places(const RenderInput& input) {
-  const PrecomputeInput precompute{scene_, *world_, *rays_, plan_, input.monitor};
-  KeyBuilder builder("bounced places", 1);
-  builder.add(view_key(precompute, mesh_keys_));
-  builder.add(surfaces_key(precompute, mesh_keys_, recentred_lights(scene_, *world_)));
-  for (const BodyKeys& known : keys_) builder.add(known.tree_key).add(known.kernel_key);
-  const StageKey key = builder.key();
-  const bool is_known = is_needed();  // lambert has no keys of bodies
-  if (bounced_ != nullptr && is_known && key == bounced_key_) return;
-  bounced_ = opaline::bounced_places(input);
-  bounced_key_ = key;
-}
-
 void Session::State::ready_light_mix(Monitor* monitor) {
   prepare(monitor);
   HeldView* const view = held_view();

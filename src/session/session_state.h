@@ -43,6 +43,8 @@ struct Session::State {
                      const std::vector<Light>& lights);
   void update_tint(Body& body, BodyKeys& known);
   void update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights);
+  void hold_tree(Body& body, BodyKeys& known, const StageKey& key);
+  std::vector<std::vector<RgbF>> kept_bounces(const std::function<StageKey(const BodyKeys&)>& key_of);
   void update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights);
   void find_walked_profiles(const Body& body);
   void update_kernel(Body& body, BodyKeys& known);

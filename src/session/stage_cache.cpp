@@ -32,6 +32,11 @@ std::optional<Octree> StageCache::find_octree(const StageKey& key, const Surface
               [&](const BlobReader& entry) { return get_octree(entry, samples); });
 }
 
+std::optional<std::vector<RgbF>> StageCache::find_bounced(const StageKey& key, std::size_t samples) {
+  return find("bounced", key, most_bytes_of_bounced(samples),
+              [&](const BlobReader& entry) { return get_bounced(entry, samples); });
+}
+
 std::optional<VolumeExitance> StageCache::find_volume(const StageKey& key, std::size_t samples) {
   return find("volume", key, most_bytes_of_volume(samples),
               [&](const BlobReader& entry) { return get_volume(entry, samples); });
@@ -59,6 +64,10 @@ void StageCache::keep_light(const StageKey& key, const LightTransfer& transfer) 
 
 void StageCache::keep_octree(const StageKey& key, const Octree& octree) {
   blobs_.keep("octree", key, [&](BlobWriter& file) { put_octree(file, octree); });
+}
+
+void StageCache::keep_bounced(const StageKey& key, std::span<const RgbF> bounced) {
+  blobs_.keep("bounced", key, [&](BlobWriter& file) { put_bounced(file, bounced); });
 }
 
 void StageCache::keep_volume(const StageKey& key, const VolumeExitance& volume) {

@@ -277,8 +277,19 @@ void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<
   const bool may_hold_bounces = bounces_of(scene_) > 0 && known.tree_key != StageKey{};
   if (key == known.lights_key && (key == known.tree_key || may_hold_bounces))
     return decide(body, "tree kept");
-  known.tree_key = known.lights_key = {};
+  known.lights_key = {};
   body.irradiance = entered_irradiance(body, lights);
+  known.tree_key = {};
+  const std::uint64_t before = work_.nodes_built;
+  hold_tree(body, known, key);
+  known.lights_key = key;
+  decide(body, work_.nodes_built == before ? "tree from the cache" : "tree built");
+}
+
+/// The tree of the body's irradiance, which has that key.
+void Session::State::hold_tree(Body& body, BodyKeys& known, const StageKey& key) {
+  if (known.tree_key == key) return;
+  known.tree_key = {};
   std::optional<Octree> found;
   if (cache_ != nullptr) found = cache_->find_octree(key, body.surface);
   if (found) {
@@ -289,40 +300,7 @@ void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<
     work_.nodes_built += body.octree.nodes.size();
     if (cache_ != nullptr) cache_->keep_octree(key, body.octree);
   }
-  known.tree_key = known.lights_key = key;
-  decide(body, found ? "tree from the cache" : "tree built");
-}
-
-// Trees with the light that bounces in place of those without it. What bounces depends on all bodies.
-void Session::State::update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights) {
-  KeyBuilder all("bounces", 1);
-  all.add(surfaces_key(input, mesh_keys_, lights));
-  for (const BodyKeys& known : keys_) all.add(known.lights_key).add(known.kernel_key);
-  const StageKey bounces = all.key();
-  const auto key_of = [&](const BodyKeys& known) {
-    return KeyBuilder("octree with bounces", 1).add(bounces).add(known.lights_key).key();
-  };
-  if (std::ranges::all_of(keys_, [&](const BodyKeys& known) { return known.tree_key == key_of(known); }))
-    return;
-  const auto build = [&](std::size_t b, std::span<const RgbF> irradiance, const StageKey& key) {
-    if (keys_[b].tree_key == key) return;
-    keys_[b].tree_key = {};
-    bodies_[b].octree = gather_flux(bodies_[b].surface.samples, irradiance);
-    work_.nodes_built += bodies_[b].octree.nodes.size();
-    keys_[b].tree_key = key;
-  };
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
-    build(b, bodies_[b].irradiance, keys_[b].lights_key);
-  }
-  const std::vector<std::vector<RgbF>> bounced = bounced_at_samples(input, bodies_);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const std::vector<RgbF>& tints = bodies_[b].entering;
-    for (std::size_t i = 0; i < bounced[b].size(); ++i)
-      bodies_[b].irradiance[i] += tints.empty() ? bounced[b][i] : bounced[b][i] * tints[i];
-    build(b, bodies_[b].irradiance, key_of(keys_[b]));
-    decide(bodies_[b], "light of other surfaces gathered");
-  }
+  known.tree_key = key;
 }
 
 /// The shapes of tabulated profiles: those in the cache need not be walked, and what is walked is kept there.

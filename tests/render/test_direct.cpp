@@ -133,6 +133,7 @@ TEST(Direct, NoBleedUnlessGrouped) {
       scene.camera.position = {0, 0, 60};
       scene.camera.field_of_view = 25;
       scene.settings.entry_strategy = strategy;
+      scene.settings.bounces = 0;
       const Image image = DirectScene(scene).picture(4);
       double right = 0;
       for (int y = 0; y < image.height; ++y)
@@ -142,7 +143,8 @@ TEST(Direct, NoBleedUnlessGrouped) {
 }
 
 // Claim: an opaque floor under a translucent ball is what the hierarchical picture shows, and without any
-// translucent shape the pictures are the same to the last bit. Source: it is not sampled at random.
+// translucent shape the pictures are the same to the last bit. Source: it is not sampled at random,
+// but for light that bounces.
 // Tolerance: 1e-5 relative where the opaque surface is seen (passes are summed in floats). Fails if: opaque
 // light is left out of the passes, or added to them twice.
 TEST(Direct, OpaqueSurfacesAreAsEver) {
@@ -152,6 +154,7 @@ TEST(Direct, OpaqueSurfacesAreAsEver) {
   floor.source = QuadShape{{-30, -12, 30}, {60, 0, 0}, {0, 0, -60}};
   scene.shapes.push_back(floor);
   scene.settings.samples = 2000;
+  scene.settings.bounces = 0;
   const Image hierarchical = Prepared(scene).picture(), direct = DirectScene(scene).picture(5);
   int opaque = 0;
   for (int y = 0; y < 24; ++y)

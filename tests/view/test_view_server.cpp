@@ -144,7 +144,8 @@ TEST(ViewServer, LayersAndReports) {
   EXPECT_DOUBLE_EQ(report.at("error"), estimated_relative_error(cold.image, cold.translucent));
   std::vector<std::string> stages;
   for (const Json& cost : report.at("costs")) stages.push_back(cost.at("stage"));
-  EXPECT_EQ(stages, (std::vector<std::string>{"rays", "sampling", "irradiance", "octree", "shading"}));
+  EXPECT_EQ(stages,
+            (std::vector<std::string>{"rays", "sampling", "irradiance", "octree", "bounces", "shading"}));
   EXPECT_EQ(page.texts.at("plan").at("groups").size(), 2u);
   EXPECT_GT(page.texts.at("schema").at("rows").size(), 50u);
   page.set({{"camera.field_of_view", 20}});

@@ -40,6 +40,8 @@ class StageCache {
   std::optional<LightTransfer> find_light(const StageKey& key, std::size_t samples);
   /// The tree over these samples.
   std::optional<Octree> find_octree(const StageKey& key, const SurfaceSamples& samples);
+  /// What other surfaces send to so many samples.
+  std::optional<std::vector<RgbF>> find_bounced(const StageKey& key, std::size_t samples);
   /// What leaves the cells of so many samples.
   std::optional<VolumeExitance> find_volume(const StageKey& key, std::size_t samples);
   /// meshes: the group's, in its order
@@ -56,6 +58,8 @@ class StageCache {
   void keep_light(const StageKey& key, const LightTransfer& transfer);
   /// The tree over a body's samples.
   void keep_octree(const StageKey& key, const Octree& octree);
+  /// What other surfaces send to a body's samples.
+  void keep_bounced(const StageKey& key, std::span<const RgbF> bounced);
   /// What leaves the cells of a body's samples.
   void keep_volume(const StageKey& key, const VolumeExitance& volume);
   /// meshes: the body's, in its order.

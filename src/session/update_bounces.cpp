@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The light that goes from one surface to another: at the samples of bodies and at places of the picture.
+#include <algorithm>
+
+#include "opaline/lights/light.h"
+#include "session/session_state.h"
+
+namespace opaline {
+
+// Trees with the light that bounces in place of those without it. What bounces depends on all bodies.
+void Session::State::update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights) {
+  KeyBuilder all("bounces", 1);
+  all.add(surfaces_key(input, mesh_keys_, lights));
+  for (const BodyKeys& known : keys_) all.add(known.lights_key).add(known.kernel_key);
+  const StageKey bounces = all.key();
+  const auto key_of = [&](const BodyKeys& known) {
+    return KeyBuilder("octree with bounces", 1).add(bounces).add(known.lights_key).key();
+  };
+  if (std::ranges::all_of(keys_, [&](const BodyKeys& known) { return known.tree_key == key_of(known); }))
+    return;
+  std::vector<std::vector<RgbF>> bounced = kept_bounces(key_of);
+  if (bounced.empty()) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
+      hold_tree(bodies_[b], keys_[b], keys_[b].lights_key);
+    }
+    bounced = bounced_at_samples(input, bodies_);
+    for (std::size_t b = 0; cache_ != nullptr && b < bodies_.size(); ++b)
+      cache_->keep_bounced(key_of(keys_[b]), bounced[b]);
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const std::vector<RgbF>& tints = bodies_[b].entering;
+    bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
+    for (std::size_t i = 0; i < bounced[b].size(); ++i)
+      bodies_[b].irradiance[i] += tints.empty() ? bounced[b][i] : bounced[b][i] * tints[i];
+    hold_tree(bodies_[b], keys_[b], key_of(keys_[b]));
+    decide(bodies_[b], "light of other surfaces gathered");
+  }
+}
+
+/// From the cache; empty where it lacks one of them.
+std::vector<std::vector<RgbF>> Session::State::kept_bounces(
+    const std::function<StageKey(const BodyKeys&)>& key_of) {
+  std::vector<std::vector<RgbF>> all;
+  for (std::size_t b = 0; cache_ != nullptr && b < bodies_.size(); ++b) {
+    auto found = cache_->find_bounced(key_of(keys_[b]), bodies_[b].surface.samples.size());
+    if (!found) return {};
+    all.push_back(std::move(*found));
+  }
+  return all;
+}
+
+/// Kept while the camera sees the same in the same light, and for drafts after that.
+void Session::State::update_bounced_places(const RenderInput& input) {
+  const PrecomputeInput precompute{scene_, *world_, *rays_, plan_, input.monitor};
+  KeyBuilder builder("bounced places", 1);
+  builder.add(view_key(precompute, mesh_keys_));
+  builder.add(surfaces_key(precompute, mesh_keys_, recentred_lights(scene_, *world_)));
+  for (const BodyKeys& known : keys_) builder.add(known.tree_key).add(known.kernel_key);
+  // The keys of bodies say nothing where none are prepared.
+  const StageKey key = is_needed() ? builder.key() : StageKey{};
+  if (bounced_ != nullptr && key != StageKey{} && key == bounced_key_) return;
+  bounced_ = opaline::bounced_places(input);
+  bounced_key_ = key;
+}
+
+}  // namespace opaline
