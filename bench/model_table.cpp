@@ -145,18 +145,28 @@ ModelError error_of(const WalkedCells& cells, const Session& session, const std:
   return worst;
 }
 
-ModelError measured_error(Scene scene, const Model& model, const WalkedCells& cells) {
+/// By `auto`.
+ChosenProfile chosen_profile(const Scene& scene) {
+  Session session;
+  session.edit(scene);
+  return session.plan().groups.at(0).model.profile;
+}
+
+/// chosen: by `auto`, whose thickness a multipole takes.
+Scene with_model(Scene scene, const Model& model, const ChosenProfile& chosen) {
   scene.settings.method = model.method;
   scene.settings.reenter = false;
-  for (Medium& medium : scene.media) medium.profile = model.profile;
-  const auto* plate = std::get_if<SlabShape>(&scene.shapes[0].source);
-  if (model.profile == ProfileKind::multipole && plate != nullptr)
-    scene.media[0].thickness = plate->thickness;
+  scene.media[0].profile = model.profile;
+  scene.media[0].thickness = chosen.thickness;
+  return scene;
+}
+
+ModelError measured_error(const Scene& scene, const Model& model, const WalkedCells& cells) {
   Session session;
   session.edit(scene);
   session.prepare();
   const Body& body = session.bodies()[0];
-  if (model.method == Method::volume_diffusion) return error_of(cells, session, body.volume->exitance);
+  if (has_cells(model.method)) return error_of(cells, session, body.volume->exitance);
   std::vector<Vec3d> points;
   std::vector<Vec3f> normals;
   for (const SurfaceSample& s : body.surface.samples) {
@@ -167,9 +177,7 @@ ModelError measured_error(Scene scene, const Model& model, const WalkedCells& ce
 }
 
 /// User CPU from the scene to its picture, s: the smaller of two.
-double picture_seconds(Scene scene, const Model& model) {
-  scene.settings.method = model.method;
-  for (Medium& medium : scene.media) medium.profile = model.profile;
+double picture_seconds(const Scene& scene) {
   const auto once = [&] {
     return user_seconds([&] {
       Session session;
@@ -187,7 +195,8 @@ void print_model_table(const std::string& folder) {
   const std::vector<Model> models = all_models();
   std::filesystem::create_directories(folder);
   fmt::print(
-      "rms / bias / p99 of the worst channel in % of the mean exitance, over {} cells\n\n| shape | medium |",
+      "rms / bias / p99 of the worst channel in % of the mean exitance, over {} cells; bold: chosen by "
+      "`auto`\n\n| shape | medium |",
       kCells);
   for (const Model& model : models) fmt::print(" {} |", model.name);
   fmt::print("\n|---|---|");
@@ -204,12 +213,17 @@ void print_model_table(const std::string& folder) {
       const Scene scene = load_scene(path + ".json", {});
       const WalkedCells cells = walked_cells(scene, path + ".truth");
       fmt::print("\n| {} | {} |", shape.name, medium.name);
-      const double lambert = picture_seconds(scene, {"lambert", Method::lambert});
+      const ChosenProfile chosen = chosen_profile(scene);
+      const double lambert = picture_seconds(with_model(scene, {"", Method::lambert}, chosen));
       for (std::size_t m = 0; m < models.size(); ++m) {
-        const ModelError error = measured_error(scene, models[m], cells);
-        fmt::print(" {:.1f} / {:+.1f} / {:.0f} |", 100 * error.rms, 100 * error.bias, 100 * error.p99);
+        const Scene modelled = with_model(scene, models[m], chosen);
+        const ModelError error = measured_error(modelled, models[m], cells);
+        const bool is_chosen = models[m].method == Method::hierarchical && models[m].profile == chosen.kind;
+        const char* mark = is_chosen ? "**" : "";
+        fmt::print(" {}{:.1f} / {:+.1f} / {:.0f}{} |", mark, 100 * error.rms, 100 * error.bias,
+                   100 * error.p99, mark);
         std::fflush(stdout);
-        costs[m].push_back(picture_seconds(scene, models[m]) / lambert);
+        costs[m].push_back(picture_seconds(modelled) / lambert);
       }
     }
   fmt::print("\n| user CPU over lambert, median | |");
