@@ -15,6 +15,7 @@
 #include "opaline/core/stopwatch.h"
 #include "opaline/render/render.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/scene/names.h"
 #include "opaline/session/session.h"
 
 namespace {
@@ -142,15 +143,14 @@ void print_ratio(const Ladder& classic, const Ladder& dual, double mean) {
   fmt::print("\n");
 }
 
-Scene with_settings(const char* file, std::size_t samples, const std::optional<ProfileKind>& profile) {
+Scene with_settings(const char* file, std::size_t samples, ProfileKind profile) {
   Scene scene = load_scene(file);
   scene.settings.samples = samples;
-  if (profile)
-    for (Medium& medium : scene.media) medium.profile = *profile;
+  for (Medium& medium : scene.media) medium.profile = profile;
   return scene;
 }
 
-void run(const char* file, std::size_t samples, const std::optional<ProfileKind>& profile, bool dual_only) {
+void run(const char* file, std::size_t samples, ProfileKind profile, bool dual_only) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
   const Scene scene = with_settings(file, samples, profile);
   Session session;
@@ -168,9 +168,8 @@ void run(const char* file, std::size_t samples, const std::optional<ProfileKind>
   const Stopwatch watch;
   exact.exitance = evaluate(input);
   const double pairs = double(some.size()) * double(group.surface.samples.size());
-  const bool normalized = scene.media.at(0).profile == ProfileKind::normalized_diffusion;
   fmt::print("{}, {}: {} samples, {} points, one thread, median of 3; brute force {:.2f} ns a kernel\n", file,
-             normalized ? "normalized diffusion" : "dipole", group.surface.samples.size(), points.size(),
+             name_of(profile), group.surface.samples.size(), points.size(),
              1e9 * watch.cost({}).cpu_seconds / pairs);
   fmt::print("evaluator                  mean %   signed    p99 %    max %  us a point\n");
   input.queries = points;
@@ -197,7 +196,7 @@ int main(int argc, char** argv) try {
     return 2;
   }
   std::vector<std::size_t> samples;
-  std::optional<ProfileKind> profile;
+  ProfileKind profile = ProfileKind::dipole;
   bool dual_only = false;
   for (int i = 2; i < argc; ++i) {
     const std::string_view argument = argv[i];

@@ -49,7 +49,7 @@ Image truth_of(Scene scene) {
 }
 
 CalibrationRow calibrate(const NamedScene& named, double target, const Image& truth) {
-  CalibrationRow row{named.name, named.scene.media.at(0).profile, target};
+  CalibrationRow row{named.name, profile_kind(named.scene.media.at(0)), target};
   Session session;
   const Stopwatch watch;
   const TargetError chosen = reach_error(session, named.scene, target);

@@ -2,8 +2,10 @@
 // How far each model's radiant exitance is from random walks, patch by patch.
 //
 //   bench_volume_models SCENE TRUTH [KEY=VALUE ...]
+//   bench_volume_models FOLDER
 //
-// TRUTH keeps the walks' result (kWalks a sample and channel; minutes) for later runs; it is made where it is
+// The second prints one table of models by shape by medium (model_table.h), with scenes and truths in FOLDER. In the first
+// TRUTH keeps the walks' result (until the error of a cell is kUntilError; minutes) for later runs; it is made where it is
 // missing. KEY=VALUE as for `opaline render --set`, beside those that choose samples or light. Patches of about
 // .9 mm^2 of a 50 mm bunny: one for each of kPatches samples. rms and bias are shares of the mean exitance, in
 // percent; the walks' own noise, known from their batches, is taken out of the rms. p99 is of the absolute difference,
@@ -13,17 +15,17 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "model_table.h"
 #include "opaline/core/random.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 #include "opaline/volume/nearest_sample.h"
 #include "user_seconds.h"
+#include "volume_truth.h"
 
 using namespace opaline;
 
@@ -31,29 +33,6 @@ namespace {
 
 constexpr std::size_t kPatches = 6500;
 constexpr double kUntilError = .045;  // of a sample's cell; a patch has about four
-
-struct Truth {
-  std::vector<RgbF> exitance, error;
-};
-
-bool read_truth(const std::string& path, Truth& truth) {
-  std::ifstream file(path, std::ios::binary);
-  std::uint64_t count = 0;
-  if (!file.read(reinterpret_cast<char*>(&count), sizeof count)) return false;
-  for (std::vector<RgbF>* values : {&truth.exitance, &truth.error}) {
-    values->resize(count);
-    file.read(reinterpret_cast<char*>(values->data()), std::streamsize(count * sizeof(RgbF)));
-  }
-  return bool(file);
-}
-
-void write_truth(const std::string& path, const Truth& truth) {
-  std::ofstream file(path, std::ios::binary);
-  const std::uint64_t count = truth.exitance.size();
-  file.write(reinterpret_cast<const char*>(&count), sizeof count);
-  for (const std::vector<RgbF>* values : {&truth.exitance, &truth.error})
-    file.write(reinterpret_cast<const char*>(values->data()), std::streamsize(count * sizeof(RgbF)));
-}
 
 struct Patches {
   std::vector<std::uint32_t> of_sample;
@@ -116,7 +95,11 @@ void print_errors(const std::string& name, const Body& body, const Patches& patc
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) return fmt::print("usage: bench_volume_models SCENE TRUTH [KEY=VALUE ...]\n"), 2;
+  if (argc == 2) return print_model_table(argv[1]), 0;
+  if (argc < 3)
+    return fmt::print(
+               "usage: bench_volume_models SCENE TRUTH [KEY=VALUE ...], or bench_volume_models FOLDER\n"),
+           2;
   const std::vector<std::string> overrides(argv + 3, argv + argc);
   Scene scene = load_scene(argv[1], overrides);
   Session session;

@@ -39,6 +39,7 @@ std::vector<BudgetPart> error_budget(std::size_t planned_samples, const Settings
   const Overrides many_rays{fmt::format("settings.light_samples={}", light_samples)};
   const int even = std::max(light_samples, kEvenLight);
   const Overrides even_light{fmt::format("settings.light_samples={}", even)};
+  const Overrides lone{"settings.bounces=0"};  // volume_diffusion knows no other light
   const Overrides fine{"settings.evaluator=dual_tree", "settings.tolerance=0.001"};
   const Overrides dense = fine + Overrides{"settings.samples=" + many, "settings.max_samples=" + many};
   return {
@@ -57,6 +58,8 @@ std::vector<BudgetPart> error_budget(std::size_t planned_samples, const Settings
        fmt::format("each point by the tree in place of the surface cache, both with {} shadow rays", even),
        even_light + Overrides{"settings.evaluator=surface_cache"},
        even_light + Overrides{"settings.evaluator=dual_tree"}},
+      {"model", "volume_diffusion in place of the radial profile, both without light between things", lone,
+       lone + Overrides{"settings.method=volume_diffusion"}},
   };
 }
 

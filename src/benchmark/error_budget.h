@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// Both pictures are `hierarchical`; what is not named is as the scene has it.
+/// Both pictures are `hierarchical` unless a part's overrides say otherwise; what is not named is as the scene has it.
 struct BudgetPart {
   std::string name;                    ///< "sampling"
   std::string setting;                 ///< what differs, in words

@@ -97,7 +97,7 @@ void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_
 void anchor_session(Session& session, const std::string& scene, const std::vector<std::string>& overrides) {
   const int reference = load_scene(scene, overrides).settings.reference_frame;
   Scene anchor = load_scene(scene, overrides, reference);
-  if (has_samples(anchor.settings.method)) session.anchor(std::move(anchor));
+  session.anchor(std::move(anchor));
 }
 
 std::string frame_hash(const std::string& path, const std::vector<std::string>& overrides,

@@ -2,13 +2,15 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "opaline/core/error.h"
+#include "opaline/render/choose_models.h"
 #include "opaline/scene/load_scene.h"
 
 namespace opaline {
 
 void info_command(const InfoArguments& arguments) {
-  const Scene scene = load_scene(arguments.scene, arguments.overrides);
+  Scene scene = load_scene(arguments.scene, arguments.overrides);
   const World world = make_world(scene);
+  choose_models(scene, world);
   const Plan plan = make_plan(scene, world);
   print_plan(arguments.log, scene, plan);
   print_plates(arguments.log, compare_plates(scene, plan));

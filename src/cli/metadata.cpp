@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "cli/report.h"
+#include "opaline/scene/names.h"
 #include "opaline/scene/schema.h"
 
 namespace opaline {
@@ -18,10 +19,18 @@ Json settings_in_use(const Scene& scene, const World& world, std::span<const Bod
   Json json = Json::parse(settings_json(scene));
   for (const char* asked : {"samples", "sample_spacing"})
     json.erase(asked);  // the groups say what came of it
-  for (const Body& group : translucent)
+  for (const Body& group : translucent) {
+    const BodyModel& model = group.plan.model;
     json["groups"].push_back({{"name", group.plan.name},
                               {"samples", group.surface.samples.size()},
-                              {"spacing_mm", group.surface.spacing() * world.unit}});
+                              {"spacing_mm", group.surface.spacing() * world.unit},
+                              {"profile", name_of(model.profile.kind)}});
+    const std::optional<double>& error = scene.settings.method == Method::volume_diffusion
+                                             ? model.expected_error_of_diffusion
+                                             : model.expected_error;
+    if (error && scene.settings.method != Method::volume)
+      json["groups"].back()["expected_model_error"] = *error;
+  }
   return json;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "cli/report.h"
 #include "opaline/core/units.h"
 #include "opaline/lights/light.h"
@@ -39,10 +41,18 @@ std::string lights_text(const std::vector<Light>& lights) {
   return text.empty() ? "none" : text;
 }
 
+/// With methods that have one: profile and error, a row each.
+void print_model(Method method, const GroupPlan& group) {
+  if (!has_cells(method)) print_row("", "profile " + model_text(group.model));
+  const std::string error = model_error_text(group.model, method);
+  if (!error.empty()) print_row("", error);
+}
+
 void print_group(const Scene& scene, const GroupPlan& group) {
   print_row("translucent",
             fmt::format("{} in {}: {:.4g} mm^2, mean free path {:.4g} mm (its smallest channel)", group.name,
                         scene.media[group.medium].name, group.area, group.smallest_mean_free_path));
+  print_model(scene.settings.method, group);
   if (!has_samples(scene.settings.method)) return;
   print_row("", fmt::format("{}, {:.4g} mm apart: {}", counted(group.samples, "sample"), group.spacing,
                             group.reason));
@@ -60,6 +70,16 @@ void print_text(const Scene& scene, const Plan& plan) {
   print_row("memory", "about " + short_bytes(plan.bytes) + " at the peak");
 }
 
+Json model_json(const BodyModel& model) {
+  Json json{
+      {"profile", name_of(model.profile.kind)}, {"is_chosen", model.is_chosen}, {"reason", model.reason}};
+  if (std::isfinite(model.profile.thickness)) json["thickness_mm"] = model.profile.thickness;
+  if (model.expected_error) json["expected_error"] = *model.expected_error;
+  if (model.expected_error_of_diffusion)
+    json["expected_error_of_volume_diffusion"] = *model.expected_error_of_diffusion;
+  return json;
+}
+
 Json group_json(const Scene& scene, const GroupPlan& group) {
   Json shapes = Json::array();
   for (const std::uint32_t mesh : group.meshes) shapes.push_back(scene.shapes[mesh].name);
@@ -68,6 +88,7 @@ Json group_json(const Scene& scene, const GroupPlan& group) {
           {"medium", scene.media[group.medium].name},
           {"area_mm2", group.area},
           {"smallest_mean_free_path_mm", group.smallest_mean_free_path},
+          {"model", model_json(group.model)},
           {"spacing_mm", group.spacing},
           {"samples", group.samples},
           {"reason", group.reason}};

@@ -129,13 +129,14 @@ DiffuseProfile make_diffuse_profile(const Medium& medium, double unit) {
   DiffuseProfile profile;
   profile.eta = medium.eta;
   profile.average_reflectance = average_reflectance_outside(medium.eta);
+  const ProfileKind kind = profile_kind(medium);
   for (std::size_t c = 0; c < 3; ++c) {
-    ReducedMedium reduced = std::visit(
-        [&](const auto& coefficients) { return reduce(coefficients, c, medium.profile, medium.eta); },
-        medium.coefficients);
+    ReducedMedium reduced =
+        std::visit([&](const auto& coefficients) { return reduce(coefficients, c, kind, medium.eta); },
+                   medium.coefficients);
     reduced.mean_free_path /= unit;
-    reduced.thickness = medium.thickness / unit;
-    profile.channels[c] = make_channel_profile(medium.profile, reduced);
+    reduced.thickness = profile_thickness(medium) / unit;
+    profile.channels[c] = make_channel_profile(kind, reduced);
     profile.mean_free_path[c] = reduced.mean_free_path;
     profile.diffuse_mean_free_path[c] = reduced.mean_free_path / std::sqrt(3 * reduced.absorbed);
     profile.total[c] = total_diffuse_reflectance(profile.channels[c]);

@@ -17,6 +17,7 @@
 #include "opaline/scene/names.h"
 #include "opaline/volume/volume_diffusion.h"
 #include "opaline/volume/volume_exitance.h"
+#include "render/body_groups.h"
 #include "render/check_reach.h"
 #include "render/light_distance.h"
 #include "render/seen_pixels.h"
@@ -28,14 +29,6 @@ namespace {
 // preview.
 constexpr double kFewestSamples = 10000;
 constexpr double kSuspiciouslyFew = 100;
-
-double smallest_mean_free_path(const DiffuseProfile& profile) {
-  double smallest = INFINITY;
-  for (std::size_t c = 0; c < 3; ++c)
-    if (profile.total[c] > 0 && profile.mean_free_path[c] > 0)
-      smallest = std::min(smallest, profile.mean_free_path[c]);
-  return smallest;
-}
 
 // As far apart as samples may be. Light that enters at a point leaves within a few mean free paths around it;
 // what is nearer than the spacing comes from the irradiance at the shading point itself (SplitKernel), so
@@ -112,15 +105,6 @@ void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>
                     group.name, group.thickness / length));
 }
 
-double mean_thickness(const World& world, const GroupPlan& group) {
-  double volume = 0;
-  for (const std::uint32_t m : group.meshes) {
-    if (world.reports[m].open_edges > 0) return 0;
-    volume += enclosed_volume(world.meshes[m]) * world.unit * world.unit * world.unit;
-  }
-  return 2 * volume / group.area;
-}
-
 /// A body that is thinner than its samples are apart, on the whole: they stand in rows, and miss what light
 /// does across.
 void warn_of_thin_body(const GroupPlan& group, std::vector<std::string>& warnings) {
@@ -154,55 +138,6 @@ void check_bounces(const Scene& scene) {
       ErrorKind::bad_input, scene.file, 0, 0,
       fmt::format("settings.bounces: 1: with the method {} things are lit by lights alone", name_of(method)),
       "--set settings.bounces=0, or --method hierarchical");
-}
-
-/// error where a method cannot use a medium's profile
-void check_profile(const Scene& scene, const Medium& medium) {
-  if (medium.profile != ProfileKind::directional_dipole || scene.settings.method != Method::hierarchical)
-    return;
-  throw Error(
-      ErrorKind::bad_input, medium.place.file, medium.place.line, medium.place.column,
-      fmt::format("{}: the profile directional_dipole asks from where light comes, and the samples of the "
-                  "method hierarchical hold the sum over all directions",
-                  medium.name),
-      "--method direct, or another profile, such as better_dipole");
-}
-
-std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
-                                   std::vector<std::string>& warnings) {
-  std::vector<GroupPlan> groups;
-  for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
-    const Shape& shape = scene.shapes[i];
-    if (!shape.medium) continue;
-    check_profile(scene, scene.media[*shape.medium]);
-    const DiffuseProfile profile = make_diffuse_profile(scene.media[*shape.medium]);
-    if (!profile.translucent) {
-      const Medium& medium = scene.media[*shape.medium];
-      warnings.push_back(
-          text_at(medium.place,
-                  fmt::format("{}: medium {} does not scatter and is not translucent; its diffuse part is "
-                              "black",
-                              shape.name, medium.name)));
-      continue;
-    }
-    const std::string& name = shape.group.empty() ? shape.name : shape.group;
-    auto it = groups.end();
-    if (!shape.group.empty())
-      it = std::ranges::find_if(groups, [&](const GroupPlan& g) { return g.shared && g.name == name; });
-    if (it == groups.end()) {
-      groups.push_back({.name = name,
-                        .shared = !shape.group.empty(),
-                        .meshes = {},
-                        .medium = *shape.medium,
-                        .smallest_mean_free_path = smallest_mean_free_path(profile),
-                        .reason = {}});
-      it = groups.end() - 1;
-    }
-    it->meshes.push_back(std::uint32_t(i));
-    it->area += surface_area(world.meshes[i]) * world.unit * world.unit;
-  }
-  for (GroupPlan& group : groups) group.thickness = mean_thickness(world, group);
-  return groups;
 }
 
 // The share of the area in triangles far longer than high. Samples there stand in lines, each in a block of
@@ -347,6 +282,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   check_bounces(scene);
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
+  for (GroupPlan& group : plan.groups) group.model = planned_model(scene, group);
   std::set<std::string> said;  // by the first of several shapes from one file
   for (const MeshReport& report : world.reports)
     for (const std::string& warning : report.warnings)

@@ -32,7 +32,7 @@ std::vector<PlateModel> compare_plates(const Scene& scene, const Plan& plan) {
     if (group.meshes.size() != 1 || !(thickness > 0) || group.area < kFlat * thickness * thickness) continue;
     const Medium& medium = scene.media[group.medium];
     const DiffuseProfile profile = make_diffuse_profile(medium);
-    PlateModel plate{group.name, medium.profile, thickness, {}};
+    PlateModel plate{group.name, profile_kind(medium), thickness, {}};
     for (std::size_t c = 0; c < 3; ++c) plate.channels[c] = compare_channel(profile, c, thickness);
     if (std::ranges::any_of(plate.channels, [](const auto& channel) { return channel.has_value(); }))
       plates.push_back(std::move(plate));

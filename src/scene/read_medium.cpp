@@ -128,9 +128,13 @@ Medium read_medium(const Value& value, double mm_per_unit) {
     medium.roughness_texture = std::move(roughness.texture);
   }
   read_tint(reader, medium);
-  if (const auto profile = reader.find("profile"))
-    medium.profile = static_cast<ProfileKind>(profile->choice());
-  if (const auto thickness = reader.find("thickness")) medium.thickness = thickness->length(mm_per_unit);
+  const auto profile = reader.find("profile");
+  const std::size_t choice = profile ? profile->choice() : 0;
+  medium.profile.reset();
+  if (choice > 0) medium.profile = static_cast<ProfileKind>(choice - 1);
+  const auto thickness = reader.find("thickness");
+  if (thickness) medium.thickness = thickness->length(mm_per_unit);
+  if (thickness && choice == 0) medium.profile = ProfileKind::multipole;
   return medium;
 }
 

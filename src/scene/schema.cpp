@@ -33,10 +33,9 @@ KeyInfo textured(KeyInfo info) {
 
 std::string_view profile_meaning() {
   static const std::string text = [] {
-    std::string list = "how light spreads under the surface:";
+    std::string list = "how light spreads under the surface: `\"auto\"` (chosen for each body, see the plan)";
     for (std::size_t i = 0; i < kProfileNames.size(); ++i)
-      list += (i > 0 ? ", `\"" : " `\"") + std::string(kProfileNames[i]) + "\"` (" +
-              std::string(kProfileSources[i]) + ')';
+      list += ", `\"" + std::string(kProfileNames[i]) + "\"` (" + std::string(kProfileSources[i]) + ')';
     return list;
   }();
   return text;
@@ -131,11 +130,13 @@ std::vector<KeyInfo> medium_rows() {
           "that "
           "leaves, sharp; `\"split\"` its root by both",
           kTextureMixNames),
-      row("medium", "thickness", length, "", kFiniteNumber, "that of the built-in plates, else thick",
-          "for `\"multipole\"`: how thick the things made of it are; light that enters on the far side "
+      row("medium", "thickness", length, "", kFiniteNumber,
+          "`\"auto\"`: that of flat bodies; else that of the built-in plates, else thick",
+          "for `\"multipole\"`, which takes the place of `\"auto\"` then: how thick the things made of it "
+          "are; light that enters on the far side "
           "leaves on "
           "this one"),
-      row("medium", "profile", choice, "", kFiniteNumber, "`\"dipole\"`", profile_meaning(), kProfileNames),
+      row("medium", "profile", choice, "", kFiniteNumber, "`\"auto\"`", profile_meaning(), kProfileChoices),
   };
 }
 

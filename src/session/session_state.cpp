@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "opaline/render/choose_models.h"
 #include "opaline/render/surface_caches.h"
 #include "session/shape_key.h"
 
@@ -42,6 +43,7 @@ void Session::State::edit(Scene scene) {
     world = std::make_shared<const World>(loaded_world(scene, sources, keys, work));
     meshes = mesh_keys(*world);
   }
+  choose_models(scene, *world, reference_);
   Plan plan = make_plan(scene, *world);
   scene_ = std::move(scene);
   if (world != world_) bounced_.reset();
@@ -115,8 +117,11 @@ World Session::State::loaded_world(const Scene& scene, const std::vector<StageKe
 }
 
 void Session::State::anchor(Scene scene, Monitor* monitor) {
-  scene.settings.method = Method::hierarchical;
+  const bool places_samples = has_samples(scene.settings.method);
+  if (places_samples) scene.settings.method = Method::hierarchical;
   edit(std::move(scene));
+  reference_ = plan_.groups;
+  if (!places_samples) return;
   arrange_bodies();
   update_rays();
   for (std::size_t g = 0; g < bodies_.size(); ++g)

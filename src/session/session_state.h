@@ -79,6 +79,7 @@ struct Session::State {
   LightMix mix_;
   StageKey view_key_, view_surfaces_key_;
   std::vector<StageKey> view_light_keys_;
+  std::vector<GroupPlan> reference_;  ///< of the anchor; empty: none
   bool edits_ = true, prepared_ = false, anchored_ = false, matches_new_ = false;
   WalkStore walk_store_;
   SessionWork work_;

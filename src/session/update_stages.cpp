@@ -325,8 +325,8 @@ void Session::State::update_kernel(Body& body, BodyKeys& known) {
   const Medium& medium = scene_.media[body.plan.medium];
   KeyBuilder key("kernel", 3);
   std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
-  key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(medium.profile);
-  if (medium.profile == ProfileKind::multipole) key.add(medium.thickness);
+  key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(profile_kind(medium));
+  if (profile_kind(medium) == ProfileKind::multipole) key.add(profile_thickness(medium));
   key.add(body.surface.spacing()).add(world_->diagonal).add(world_->unit);
   key.add(scene_.settings.near_field).add(near_irradiance(scene_));
   if (key.key() == known.kernel_key) return;

@@ -73,6 +73,9 @@ Json group_json(const Scene& scene, const GroupPlan& group) {
   if (has_samples(scene.settings.method))
     text +=
         fmt::format("; {} samples, {:.4g} mm apart: {}", grouped(group.samples), group.spacing, group.reason);
+  text += "; profile " + model_text(group.model);
+  const std::string error = model_error_text(group.model, scene.settings.method);
+  if (!error.empty()) text += "; " + error;
   return {{"name", group.name},
           {"medium", scene.media[group.medium].name},
           {"thickness", group.thickness},

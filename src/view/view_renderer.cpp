@@ -120,7 +120,7 @@ void ViewRenderer::draw(const Wanted& wanted) {
   }
   prepared_.reset();
   session_->edit(wanted.scene);
-  events_.planned(wanted.revision, wanted.scene, session_->plan());
+  events_.planned(wanted.revision, session_->scene(), session_->plan());
   check_memory(session_->plan());
   Spent& spent = spent_[change];
   const bool is_direct = wanted.scene.settings.method == Method::direct;
@@ -152,7 +152,7 @@ int ViewRenderer::draft_stride(const Film& film) const {
 }
 
 void ViewRenderer::draw_draft(const Wanted& wanted, int stride, PictureStep step, Monitor* monitor) {
-  Scene scene = wanted.scene;
+  Scene scene = session_->scene();
   scene.film = coarse_film(scene.film, stride);
   const Clock::time_point start = Clock::now();
   RenderInput input{scene, session_->world(), session_->rays(), session_->bodies(), monitor};
@@ -178,8 +178,8 @@ void ViewRenderer::draw_final(const Wanted& wanted, Spent& spent, Monitor* monit
 void ViewRenderer::draw_direct(const Wanted& wanted) {
   const Stopwatch watch;
   DirectState state;
-  DirectResult result =
-      render_direct({wanted.scene, session_->world(), session_->rays(), session_->plan(), &monitor_}, state);
+  DirectResult result = render_direct(
+      {session_->scene(), session_->world(), session_->rays(), session_->plan(), &monitor_}, state);
   StageCost shading = watch.cost("shading");
   const auto picture = publish(wanted, PictureStep::final, std::move(result.picture.image));
   report(wanted, picture->image, result.relative_error, std::move(shading));

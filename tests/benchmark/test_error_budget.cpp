@@ -14,9 +14,9 @@ Settings settings_with(const std::vector<std::string>& overrides) {
   return parse_scene("{}", "empty.json", overrides).settings;
 }
 
-// Claim: the five parts of the error (the table in README.md); the two pictures of a part differ in what it
+// Claim: the six parts of the error (the table in README.md); the two pictures of a part differ in what it
 // names and in nothing else: samples 16 times as many (and the cap with them; light samples so that as many
-// rays are traced), light samples, the exact sum, the near field, the cache. By hand. Fails if: a part's own
+// rays are traced), light samples, the exact sum, the near field, the cache, the method. By hand. Fails if: a part's own
 // setting is misspelt (a scene refuses it), or a second one slips in.
 TEST(ErrorBudget, OneSettingApart) {
   const std::vector<BudgetPart> parts = error_budget(1000, {});
@@ -30,17 +30,20 @@ TEST(ErrorBudget, OneSettingApart) {
     EXPECT_EQ(b.evaluator == EvaluatorKind::brute_force, part.name == "hierarchy") << part.name;
     EXPECT_EQ(a.near_field != b.near_field, part.name == "near field") << part.name;
     EXPECT_EQ(a.evaluator == EvaluatorKind::surface_cache, part.name == "interpolation") << part.name;
+    EXPECT_EQ(a.method != b.method, part.name == "model") << part.name;
     EXPECT_EQ(a.tolerance, b.tolerance) << part.name;
     EXPECT_EQ(a.near_irradiance, b.near_irradiance) << part.name;
   }
-  EXPECT_EQ(names,
-            (std::set<std::string>{"sampling", "irradiance", "hierarchy", "near field", "interpolation"}));
+  EXPECT_EQ(names, (std::set<std::string>{"sampling", "irradiance", "hierarchy", "near field",
+                                          "interpolation", "model"}));
   EXPECT_EQ(settings_with(parts[0].converged).samples, 16000u);
   EXPECT_EQ(settings_with(parts[0].here).light_samples, 1024);
   EXPECT_EQ(settings_with(parts[0].converged).light_samples, 64);
   EXPECT_EQ(settings_with(parts[1].converged).light_samples, 1024);
   EXPECT_EQ(settings_with(parts[4].here).light_samples, 1024);
   EXPECT_EQ(settings_with(parts[4].converged).light_samples, 1024);
+  EXPECT_EQ(settings_with(parts[5].converged).method, Method::volume_diffusion);
+  EXPECT_EQ(parts[5].converged[0], "settings.bounces=0");
 }
 
 // Claim: an opaque scene has no parts; a huge cloud is not multiplied beyond memory, but still at least

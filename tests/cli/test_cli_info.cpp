@@ -38,8 +38,8 @@ TEST(CliInfo, ModelErrorOfPlates) {
                        "model error slab is as thick as a plate of 1.85 mm: 3.08 1.85 2.64 mean free paths"))
       << thin.out;
   EXPECT_TRUE(contains(thin.out, "random walks, the truth: ")) << thin.out;
-  const nlohmann::json event =
-      event_of(events_of(run_program({"info", plate, "--log", "json"}).out), "plate");
+  const Outcome dipole = run_program({"info", plate, "--log", "json", "--set", "media.jade.profile=dipole"});
+  const nlohmann::json event = event_of(events_of(dipole.out), "plate");
   EXPECT_GT(event["channels"][1]["profile"]["back"], .8);
   EXPECT_LT(event["channels"][1]["random_walks"]["back"], .5);
   // In a group of its own name, with a channel that is thick.
@@ -52,6 +52,32 @@ TEST(CliInfo, ModelErrorOfPlates) {
   const Outcome thick = run_program({"info", plate, "--set", "media.jade.subsurface_radius=0.1"});
   EXPECT_FALSE(contains(thick.out, "model error")) << thick.out;
   EXPECT_FALSE(contains(run_program({"info", SceneFolder().scene}).out, "model error"));
+}
+
+// Claim: the plan says which profile each body has, why, and what error against random walks to expect of it and of
+// volume_diffusion; of a named profile that it is named. Source: choose_models.h. Fails if: info or the JSON leave the
+// choice to the reader, or a named profile is told as chosen.
+TEST(CliInfo, ModelAndItsError) {
+  const std::string plate = std::string(OPALINE_SCENES_DIR) + "/backlit-slab.json";
+  const Outcome text = run_program({"info", plate});
+  for (const char* part : {"profile multipole: flat, 1.99 mm thick", "off random walks is expected",
+                           "--method volume_diffusion: "})
+    EXPECT_TRUE(contains(text.out, part)) << "no \"" << part << "\" in:\n" << text.out;
+  const auto model_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"info", plate, "--log", "json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return event_of(events_of(run_program(words).out), "plan")["groups"][0]["model"];
+  };
+  const nlohmann::json chosen = model_of({});
+  EXPECT_EQ(chosen["profile"], "multipole");
+  EXPECT_EQ(chosen["is_chosen"], true);
+  EXPECT_GT(chosen["expected_error"], chosen["expected_error_of_volume_diffusion"]);
+  const nlohmann::json named = model_of({"--set", "media.jade.profile=better_dipole"});
+  EXPECT_EQ(named["profile"], "better_dipole");
+  EXPECT_EQ(named["is_chosen"], false);
+  EXPECT_FALSE(named.contains("expected_error"));
+  EXPECT_TRUE(contains(run_program({"info", plate, "--method", "volume_diffusion"}).out, "about 3."))
+      << text.out;
 }
 
 // Claim: a plan's warnings are on stderr, or events. Source: plan.h. Fails if: warnings are dropped.

@@ -73,7 +73,7 @@ TEST(CliReport, FolderIsWholeAndKept) {
     }
   }
   const CsvTable budget = parse_csv(bytes_of(folder.file("report/budget.csv")), "budget.csv");
-  ASSERT_EQ(budget.rows.size(), 5u);
+  ASSERT_EQ(budget.rows.size(), 6u);
   EXPECT_EQ(cell(budget, 1, "part"), "irradiance");
   EXPECT_EQ(cell(budget, 1, "error_worst"), "0");  // a point light has no noise
   EXPECT_GT(std::stod(cell(budget, 0, "error_worst")), 0);

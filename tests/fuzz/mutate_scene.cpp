@@ -50,7 +50,7 @@ const std::vector<std::string>* names_of(const std::string& key) {
       {"instruction_set", {"automatic", "baseline"}},
       {"near_irradiance", {"samples", "point", "mixed"}},
       {"entry_strategy", {"disc_axes", "chords"}},
-      {"profile", {"dipole", "normalized_diffusion", "multipole", "directional_dipole"}},
+      {"profile", {"auto", "dipole", "normalized_diffusion", "multipole", "directional_dipole"}},
       {"preset", {"marble", "skin1", "wholemilk", "spectralon", "ketchup"}},
       {"normals", {"smooth", "faceted"}},
       {"filter", {"box", "gaussian"}},

@@ -106,7 +106,7 @@ TEST(SceneValues, Media) {
   EXPECT_EQ(metres.media[0].name, "b");
   EXPECT_EQ(metres.media[0].eta, 1.1);
   EXPECT_EQ(metres.media[0].profile, ProfileKind::normalized_diffusion);
-  EXPECT_EQ(metres.media[1].profile, ProfileKind::dipole);
+  EXPECT_FALSE(metres.media[1].profile);
   EXPECT_EQ(metres.media[1].eta, 1.3);
   EXPECT_EQ(std::get<PhysicalMedium>(metres.media[0].coefficients).sigma_s_prime, Rgb(2, 2, 2));
   EXPECT_EQ(std::get<ArtistMedium>(metres.media[1].coefficients).subsurface_radius, Rgb(3, 3, 3));
@@ -230,8 +230,9 @@ TEST(SceneValues, TheRest) {
 }
 
 // Claim: a thickness is a length of the scene; a multipole medium without one has that of the built-in plates made of
-// it, scaled with them, and a declared one stays; plates that differ are refused with both. Source: scenes/README.md.
-// Fails if: the plate's thickness is along another axis, or other profiles take it.
+// it, scaled with them, and a declared one stays; plates that differ are refused with both. Where the profile is left
+// open, a declared thickness makes it a multipole. Source: scenes/README.md. Fails if: the plate's thickness is along
+// another axis, or other profiles take it.
 TEST(SceneValues, Thickness) {
   const auto scene_of = [](const std::string& medium, const std::string& more = "") {
     return parse_scene(R"({"mm_per_unit": 10, "media": {"m": {"preset": "marble", )" + medium + R"(}},
@@ -244,6 +245,9 @@ TEST(SceneValues, Thickness) {
   EXPECT_EQ(scene_of(R"("profile": "dipole")").media[0].thickness, INFINITY);
   EXPECT_EQ(scene_of(R"("profile": "multipole", "thickness": 2)").media[0].thickness, 20);
   EXPECT_NEAR(scene_of(R"("profile": "multipole")").media[0].thickness, 6, 1e-9);
+  for (const char* open : {R"("thickness": 2)", R"("profile": "auto", "thickness": 2)"})
+    EXPECT_EQ(scene_of(open).media[0].profile, ProfileKind::multipole) << open;
+  EXPECT_FALSE(scene_of(R"("profile": "auto")").media[0].profile);
   const std::string other = R"(, {"medium": "m", "slab": {"width": 4, "depth": 5, "thickness": 0.3}})";
   try {
     scene_of(R"("profile": "multipole")", other);

@@ -7,18 +7,21 @@
 #include <vector>
 
 #include "opaline/geometry/ray_scene.h"
+#include "opaline/render/choose_models.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {
 
 /// Translucent shapes that share samples and one tree.
 struct GroupPlan {
-  std::string name;                    ///< the group's, or its only shape's
-  bool shared = false;                 ///< a named group: others may join; a lone shape stays alone
-  std::vector<std::uint32_t> meshes;   ///< indices into World::meshes
-  std::size_t medium = 0;              ///< index into Scene::media
-  double area = 0;                     ///< mm^2
-  double thickness = 0;                ///< mean, mm: twice the volume over the area; 0 if a mesh is open
+  std::string name;                   ///< the group's, or its only shape's
+  bool shared = false;                ///< a named group: others may join; a lone shape stays alone
+  std::vector<std::uint32_t> meshes;  ///< indices into World::meshes
+  std::size_t medium = 0;             ///< index into Scene::media
+  double area = 0;                    ///< mm^2
+  double thickness = 0;               ///< mean, mm: twice the volume over the area; 0 if a mesh is open
+  double alignment = 0;               ///< BodyShape::alignment
+  BodyModel model = {};
   double smallest_mean_free_path = 0;  ///< over the channels that scatter, mm
   double spacing = 0;                  ///< sqrt(area / samples), mm
   std::size_t samples = 0;

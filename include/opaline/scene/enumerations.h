@@ -44,6 +44,12 @@ inline constexpr std::array<std::string_view, 9> kProfileSources{
     "random walks of the medium",
     "Donner & Jensen 2005",
     "Frisvad et al. 2014"};
+/// What a medium says: the choice is left open, or one of the profiles.
+inline constexpr std::array<std::string_view, kProfileNames.size() + 1> kProfileChoices = [] {
+  std::array<std::string_view, kProfileNames.size() + 1> choices{"auto"};
+  for (std::size_t i = 0; i < kProfileNames.size(); ++i) choices[i + 1] = kProfileNames[i];
+  return choices;
+}();
 /// The words for its values, in their order.
 constexpr NameList names_of(ProfileKind) {
   return kProfileNames;

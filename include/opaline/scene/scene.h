@@ -65,11 +65,18 @@ struct ArtistMedium {
   friend bool operator==(const ArtistMedium&, const ArtistMedium&) = default;
 };
 
+/// What stands for the profile of a medium that leaves it open.
+struct ChosenProfile {
+  ProfileKind kind = ProfileKind::dipole;
+  double thickness = std::numeric_limits<double>::infinity();  ///< as Medium::thickness
+  friend bool operator==(const ChosenProfile&, const ChosenProfile&) = default;
+};
+
 struct Medium {
   std::string name;
   std::variant<PhysicalMedium, ArtistMedium> coefficients;
   double eta = 1.3;
-  ProfileKind profile = ProfileKind::dipole;
+  std::optional<ProfileKind> profile = ProfileKind::dipole;  ///< none: chosen for each body (choose_models.h)
   SourcePlace place{};
   /// Mean cosine g of the scattering angle, (-1, 1), where the coefficients are reduced ones. Random walks alone
   /// follow it; diffusion knows no more than (1 - g) sigma_s.
@@ -81,8 +88,16 @@ struct Medium {
   Rgb tint{1, 1, 1};
   std::optional<Texture> tint_texture{}, roughness_texture{};
   TextureMix texture_mix = TextureMix::split;
+  ChosenProfile chosen{};  ///< where profile is none
   friend bool operator==(const Medium&, const Medium&) = default;
 };
+
+inline ProfileKind profile_kind(const Medium& medium) {
+  return medium.profile.value_or(medium.chosen.kind);
+}
+inline double profile_thickness(const Medium& medium) {
+  return medium.profile ? medium.thickness : medium.chosen.thickness;
+}
 
 // ---- shapes ---------------------------------------------------------------------------------------------
 

@@ -84,7 +84,8 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Places the scene's samples and holds on to them: every later scene carries these along, or, where its
+  /// Chooses the bodies' profiles (choose_models.h), which all later scenes take over. With methods that have samples it
+  /// places the scene's and holds on to them: every later scene carries these along, or, where its
   /// surfaces are others, has its own without forgetting them. So frames of a shot are the same whichever
   /// process renders which of them.
   /// error as edit
@@ -134,7 +135,7 @@ class Session {
   /// The picture of the scene; prepares it first.
   RenderResult render(Monitor* monitor = nullptr, const AfterTile& after_tile = {});
 
-  /// The scene of the last edit.
+  /// The scene of the last edit, with the profiles that were chosen.
   const Scene& scene() const;
   /// Its meshes around one origin.
   const World& world() const;

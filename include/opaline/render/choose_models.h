@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which radial profile stands for a medium in a body, where the scene leaves that open; and how far from the truth
+// that is expected to be.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "opaline/geometry/world.h"
+
+namespace opaline {
+
+struct GroupPlan;
+
+/// What decides, of a body's shape.
+struct BodyShape {
+  double area = 0;       ///< mm^2
+  double thickness = 0;  ///< mean, mm: twice the volume over the area; 0 if a mesh is open
+  /// Mean squared cosine between the normals of two points of the surface: 1 of a thin plate, 1/2 of a rod, 1/3 of a
+  /// sphere or a cube.
+  double alignment = 0;
+
+  /// Of a square plate of this area and mean thickness, mm: its rim is part of the area.
+  double plate_thickness() const;
+  bool is_flat() const;
+};
+
+struct BodyModel {
+  ChosenProfile profile;
+  bool is_chosen = false;  ///< and not named by the scene
+  std::string reason;
+  /// Rms of the radiant exitance against random walks over the mean, of the worst channel; none: unknown, of a profile
+  /// that the scene names, and of a mesh that is open.
+  std::optional<double> expected_error;
+  std::optional<double> expected_error_of_diffusion;  ///< the same of Method::volume_diffusion
+};
+
+/// Which profile, and why.
+std::string model_text(const BodyModel& model);
+/// What error a method's pictures are expected to have; empty: unknown, or none.
+std::string model_error_text(const BodyModel& model, Method method);
+
+/// The rule and its figures are derived in src/diffusion/README.md; bench_volume_models measures them.
+BodyModel choose_model(const Medium& medium, const BodyShape& shape);
+
+/// Gives the media of a scene that leave their profile open (Medium::profile is none) that of the body they are in. A
+/// medium of bodies that ask for different ones becomes several media of its name.
+/// reference: bodies of another frame, whose profiles those of the same names take over
+void choose_models(Scene& scene, const World& world, std::span<const GroupPlan> reference = {});
+
+}  // namespace opaline

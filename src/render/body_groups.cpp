@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/body_groups.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "opaline/core/error.h"
+#include "opaline/diffusion/diffuse_profile.h"
+
+namespace opaline {
+namespace {
+
+double smallest_mean_free_path(const DiffuseProfile& profile) {
+  double smallest = INFINITY;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (profile.total[c] > 0 && profile.mean_free_path[c] > 0)
+      smallest = std::min(smallest, profile.mean_free_path[c]);
+  return smallest;
+}
+
+double mean_thickness(const World& world, const GroupPlan& group) {
+  double volume = 0;
+  for (const std::uint32_t m : group.meshes) {
+    if (world.reports[m].open_edges > 0) return 0;
+    volume += enclosed_volume(world.meshes[m]) * world.unit * world.unit * world.unit;
+  }
+  return 2 * volume / group.area;
+}
+
+// The sum of the squares of the elements of the mean n n^T is the mean of (n . m)^2 over two normals n and m.
+double alignment_of(const World& world, const GroupPlan& group) {
+  std::array<double, 6> sums{};  // xx yy zz xy yz zx
+  double area = 0;
+  for (const std::uint32_t m : group.meshes) {
+    const Mesh& mesh = world.meshes[m];
+    for (const auto& [i, j, k] : mesh.triangles) {
+      const Vec3d n = cross(mesh.positions[j] - mesh.positions[i], mesh.positions[k] - mesh.positions[i]);
+      const double a = length(n);
+      if (!(a > 0)) continue;
+      area += a;
+      const std::array<double, 6> products{n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.y * n.z, n.z * n.x};
+      for (std::size_t p = 0; p < 6; ++p) sums[p] += products[p] / a;
+    }
+  }
+  double squares = 0;
+  for (std::size_t p = 0; p < 6; ++p) squares += (p < 3 ? 1 : 2) * sums[p] * sums[p];
+  return area > 0 ? squares / (area * area) : 0;
+}
+
+/// error where a method cannot use a medium's profile
+void check_profile(const Scene& scene, const Medium& medium) {
+  if (medium.profile != ProfileKind::directional_dipole || scene.settings.method != Method::hierarchical)
+    return;
+  throw Error(
+      ErrorKind::bad_input, medium.place.file, medium.place.line, medium.place.column,
+      fmt::format("{}: the profile directional_dipole asks from where light comes, and the samples of the "
+                  "method hierarchical hold the sum over all directions",
+                  medium.name),
+      "--method direct, or another profile, such as better_dipole");
+}
+
+}  // namespace
+
+std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
+                                   std::vector<std::string>& warnings) {
+  std::vector<GroupPlan> groups;
+  for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+    const Shape& shape = scene.shapes[i];
+    if (!shape.medium) continue;
+    check_profile(scene, scene.media[*shape.medium]);
+    const DiffuseProfile profile = make_diffuse_profile(scene.media[*shape.medium]);
+    if (!profile.translucent) {
+      const Medium& medium = scene.media[*shape.medium];
+      warnings.push_back(
+          text_at(medium.place,
+                  fmt::format("{}: medium {} does not scatter and is not translucent; its diffuse part is "
+                              "black",
+                              shape.name, medium.name)));
+      continue;
+    }
+    const std::string& name = shape.group.empty() ? shape.name : shape.group;
+    auto it = groups.end();
+    if (!shape.group.empty())
+      it = std::ranges::find_if(groups, [&](const GroupPlan& g) { return g.shared && g.name == name; });
+    if (it == groups.end()) {
+      groups.push_back({.name = name,
+                        .shared = !shape.group.empty(),
+                        .meshes = {},
+                        .medium = *shape.medium,
+                        .smallest_mean_free_path = smallest_mean_free_path(profile),
+                        .reason = {}});
+      it = groups.end() - 1;
+    }
+    it->meshes.push_back(std::uint32_t(i));
+    it->area += surface_area(world.meshes[i]) * world.unit * world.unit;
+  }
+  for (GroupPlan& group : groups) {
+    group.thickness = mean_thickness(world, group);
+    group.alignment = alignment_of(world, group);
+  }
+  return groups;
+}
+
+}  // namespace opaline

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/render/choose_models.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/scene/names.h"
+#include "render/body_groups.h"
+
+namespace opaline {
+namespace {
+
+constexpr ProfileKind kOfBodies = ProfileKind::normalized_diffusion_refit;
+constexpr ProfileKind kOfThickPlates = ProfileKind::dipole;
+// Of a square plate a sixth as thick as wide.
+constexpr double kFlatAlignment = .58;
+// Diffuse mean free paths, of the channel where light goes farthest: 2 % of what goes down crosses a thicker plate.
+constexpr double kCrossed = 4;
+
+/// What counts of a medium, over the channels that scatter.
+struct MediumExtremes {
+  double mean_free_path = 0, diffuse_mean_free_path = 0;  ///< the longest, mm
+  double absorbed = 0;                                    ///< 1 - reduced albedo, the largest
+};
+
+/// An expected error: a base, and what thin bodies and dark media add.
+struct ErrorPlane {
+  double base, thin, dark;
+  double at(double mean_free_paths, const MediumExtremes& medium) const {
+    return std::min(1., base + thin / mean_free_paths + dark * medium.absorbed);
+  }
+};
+// Fitted to the table of bench_volume_models.
+constexpr ErrorPlane kErrorOfBodies{.05, .9, .5}, kErrorOfPlates{.07, .25, .55},
+    kErrorOfDiffusion{.028, 0, .35};
+
+MediumExtremes extremes_of(Medium medium) {
+  medium.profile = kOfBodies;
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  MediumExtremes extremes;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (!(profile.total[c] > 0)) continue;
+    const double length = profile.mean_free_path[c], decay = length / profile.diffuse_mean_free_path[c];
+    extremes.mean_free_path = std::max(extremes.mean_free_path, length);
+    extremes.diffuse_mean_free_path =
+        std::max(extremes.diffuse_mean_free_path, profile.diffuse_mean_free_path[c]);
+    extremes.absorbed = std::max(extremes.absorbed, decay * decay / 3);  // sigma_tr^2 is 3 sigma_a sigma_t'
+  }
+  return extremes;
+}
+
+BodyShape shape_of(const GroupPlan& group) {
+  return {group.area, group.thickness, group.alignment};
+}
+
+}  // namespace
+
+double BodyShape::plate_thickness() const {
+  const double rim = 2 * std::numbers::sqrt2 * thickness / std::sqrt(area);
+  return rim < 1 ? thickness / (1 - rim) : thickness;
+}
+
+bool BodyShape::is_flat() const {
+  return thickness > 0 && alignment > kFlatAlignment;
+}
+
+BodyModel choose_model(const Medium& medium, const BodyShape& shape) {
+  BodyModel model{{kOfBodies}, true, {}, {}, {}};
+  if (!(shape.thickness > 0)) {
+    model.reason = "its mesh is open: how thick it is, and the error, are unknown";
+    return model;
+  }
+  const bool is_flat = shape.is_flat();
+  const double thickness = is_flat ? shape.plate_thickness() : shape.thickness;
+  const MediumExtremes extremes = extremes_of(medium);
+  const double mean_free_paths = thickness / extremes.mean_free_path;
+  model.expected_error = (is_flat ? kErrorOfPlates : kErrorOfBodies).at(mean_free_paths, extremes);
+  model.expected_error_of_diffusion = kErrorOfDiffusion.at(mean_free_paths, extremes);
+  if (is_flat && thickness < kCrossed * extremes.diffuse_mean_free_path) {
+    model.profile = {ProfileKind::multipole, thickness};
+    model.reason = fmt::format("flat, {:.3g} mm thick", thickness);
+  } else if (is_flat) {
+    model.profile.kind = kOfThickPlates;
+    model.reason = fmt::format("flat, {:.3g} mm thick, too thick for light to cross", thickness);
+  } else {
+    model.reason = fmt::format("{:.3g} mm thick in the mean", thickness);
+  }
+  model.reason +=
+      fmt::format(": {:.3g} mean free paths of the channel where they are longest", mean_free_paths);
+  return model;
+}
+
+std::string model_text(const BodyModel& model) {
+  return fmt::format("{}: {}", name_of(model.profile.kind), model.reason);
+}
+
+std::string model_error_text(const BodyModel& model, Method method) {
+  const auto percent = [](double error) { return fmt::format("{:.2g} %", 100 * error); };
+  if (method == Method::volume || method == Method::lambert || !model.expected_error_of_diffusion) return {};
+  const std::string of_diffusion = percent(*model.expected_error_of_diffusion),
+                    meaning = " off random walks is expected, rms of the worst channel";
+  if (method == Method::volume_diffusion) return "about " + of_diffusion + meaning;
+  if (!model.expected_error) return {};
+  return fmt::format("about {}{}; --method volume_diffusion: {}", percent(*model.expected_error), meaning,
+                     of_diffusion);
+}
+
+BodyModel planned_model(const Scene& scene, const GroupPlan& group) {
+  const Medium& medium = scene.media[group.medium];
+  BodyModel model = choose_model(medium, shape_of(group));
+  if (medium.profile) {
+    model.is_chosen = false;
+    model.reason = "named by the scene";
+    model.expected_error = {};
+  } else if (model.profile != medium.chosen) {
+    model.reason = "as in the reference frame";
+  }
+  model.profile = {profile_kind(medium), profile_thickness(medium)};
+  return model;
+}
+
+void choose_models(Scene& scene, const World& world, std::span<const GroupPlan> reference) {
+  if (std::ranges::all_of(scene.media, [](const Medium& m) { return m.profile.has_value(); })) return;
+  std::vector<std::string> warnings;  // make_plan says them
+  std::vector<bool> is_taken(scene.media.size());
+  for (const GroupPlan& group : find_groups(scene, world, warnings)) {
+    if (scene.media[group.medium].profile) continue;
+    const auto before = std::ranges::find_if(reference, [&](const GroupPlan& other) {
+      return other.name == group.name && other.shared == group.shared && other.model.is_chosen;
+    });
+    const ChosenProfile chosen = before != reference.end()
+                                     ? before->model.profile
+                                     : choose_model(scene.media[group.medium], shape_of(group)).profile;
+    std::size_t index = group.medium;
+    if (is_taken[index] && scene.media[index].chosen != chosen) {
+      scene.media.push_back(scene.media[index]);
+      is_taken.push_back(false);
+      index = scene.media.size() - 1;
+      for (const std::uint32_t shape : group.meshes) scene.shapes[shape].medium = index;
+    }
+    is_taken[index] = true;
+    scene.media[index].chosen = chosen;
+  }
+}
+
+}  // namespace opaline
