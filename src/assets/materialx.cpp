@@ -12,6 +12,7 @@
 #include "assets/asset_bytes.h"
 #include "assets/asset_scene.h"
 #include "opaline/core/error.h"
+#include "opaline/core/rgb_primaries.h"
 #include "opaline/core/srgb.h"
 
 namespace opaline {
@@ -47,12 +48,6 @@ const SurfaceModel* find_model(const pugi::xml_node& node) {
   const auto found = std::ranges::find_if(
       models, [&](const SurfaceModel& model) { return node.name() == std::string_view(model.node); });
   return found == models.end() ? nullptr : &*found;
-}
-
-/// ACEScg (AP1, D60) to Rec.709 (D65), adapted by Bradford's method.
-Vec3d rec709_of_acescg(const Vec3d& c) {
-  return {1.70505 * c.x - .62179 * c.y - .08326 * c.z, -.13026 * c.x + 1.14080 * c.y - .01055 * c.z,
-          -.02400 * c.x - .12897 * c.y + 1.15297 * c.z};
 }
 
 class SurfaceReader {
@@ -172,7 +167,7 @@ class SurfaceReader {
     if (!own || space.empty() || space == "lin_rec709" || space == "none") return color;
     if (space == "srgb_texture")
       return {srgb_to_linear(color.x), srgb_to_linear(color.y), srgb_to_linear(color.z)};
-    if (space == "acescg" || space == "lin_ap1") return rec709_of_acescg(color);
+    if (space == "acescg" || space == "lin_ap1") return color_matrix(kAp1Primaries, kRec709Primaries) * color;
     scene_.not_carried.push_back(label_ + ": the colour space " + in_quotes(space) + " of " + name);
     return color;
   }
