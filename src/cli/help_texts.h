@@ -54,7 +54,7 @@ on stderr says what became of a value, or what is not carried over.
 
   glTF    meshes, nodes, cameras, lights (KHR_lights_punctual) and materials. A material that scatters
           (KHR_materials_volume with KHR_materials_volume_scatter or KHR_materials_scatter) becomes a medium of
-          sigma_a and sigma_s in 1/mm; all others are opaque, of their base colour, metalness and roughness. So are
+          sigma_a and sigma_s in 1/mm; all others are opaque, of their base colour, metalness, roughness and specularFactor. So are
           their textures, in the file or beside it; samplers are passed over. Lengths are metres.
           A candela is drawn as 1e6 W/sr and a lux as 1 W/mm^2; the PNG's exposure suits the brightness.
   .mtlx   the constants of open_pbr_surface and standard_surface: where they scatter below the surface, a medium of
