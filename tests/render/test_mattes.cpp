@@ -43,7 +43,7 @@ Scene two_balls_and_wall() {
   wall.name = "wall";
   wall.source = QuadShape{{-20, -20, -30}, {40, 0, 0}, {0, 40, 0}};
   scene.shapes.push_back(wall);
-  scene.lights = {{"lamp", SphereLight{{0, 20, 30}, 6, Rgb(1)}}};
+  scene.lights = {{"lamp", SphereLight{{0, 9, 30}, 4, Rgb(1)}}};
   scene.film.samples_per_pixel = 16;
   return scene;
 }
