@@ -58,7 +58,8 @@ on stderr says what became of a value, or what is not carried over.
           their textures, in the file or beside it; samplers are passed over. Lengths are metres.
           A candela is drawn as 1e6 W/sr and a lux as 1 W/mm^2; the PNG's exposure suits the brightness.
   .mtlx   the constants of open_pbr_surface and standard_surface: where they scatter below the surface, a medium of
-          subsurface_color and subsurface_radius, whose lengths are in the asset's unit; else a matte colour.
+          subsurface_color and subsurface_radius, whose lengths are in the asset's unit; else opaque, of their base
+          colour, metalness and coat.
   OBJ     meshes, a shape for each usemtl, with the Kd and map_Kd of its MTL. Lengths are taken for millimetres.
 
 Without a camera the picture is a three-quarter view of the whole, without lights there are a key, a fill and a rim
