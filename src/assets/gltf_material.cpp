@@ -158,10 +158,21 @@ class MaterialTranslator {
     surface.keys["specular_roughness"] = times(channel(both, "g"), roughness, 1.0);
     const double ior = index_of_refraction();
     if (ior > 1 && ior != kGltfIor) surface.keys["specular_ior"] = ior;
+    add_specular_weight(surface);
     translated(
         fmt::format("baseColorFactor, metallicFactor, roughnessFactor -> reflectance {}, metalness {:.3g}, "
                     "specular_roughness {:.3g} (opaque)",
                     short_triple(surface.reflectance), metalness, roughness));
+  }
+
+  void add_specular_weight(SurfaceTranslation& surface) {
+    if (!has("KHR_materials_specular")) return;
+    const ExtensionValues specular = values("KHR_materials_specular");
+    const double weight = std::clamp(specular.number("specularFactor", 1), 0., 1.);
+    if (weight < 1) surface.keys["specular_weight"] = weight;
+    translated(fmt::format("specularFactor -> specular_weight {:.3g}", weight));
+    const Vec3d color = specular.color("specularColorFactor", Vec3d(1));
+    if (color != Vec3d(1)) not_carried("specularColorFactor " + short_triple(color));
   }
 
   void add_tint(SurfaceTranslation& surface) {
@@ -293,7 +304,8 @@ class MaterialTranslator {
     constexpr std::array<std::string_view, 3> read{"KHR_materials_ior", "KHR_materials_volume_scatter",
                                                    "KHR_materials_scatter"};
     for (const auto& [name, unused] : material_.extensions) {
-      if (std::ranges::find(read, name) != read.end()) continue;
+      const bool is_of_coat = name == "KHR_materials_specular" && !is_translucent;
+      if (is_of_coat || std::ranges::find(read, name) != read.end()) continue;
       if (std::ranges::find(of_volume, name) == of_volume.end())
         not_carried(name);
       else if (!is_translucent)

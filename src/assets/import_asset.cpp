@@ -48,13 +48,14 @@ void replace_materials(AssetScene& scene, const std::string& material) {
   scene.media = Json::object();
   if (!surface.medium.is_null()) scene.media[name] = surface.medium;
   for (Json& shape : scene.shapes) {
-    for (const char* key :
-         {"medium", "reflectance", "group", "metalness", "specular_roughness", "specular_ior", "normal_map"})
+    for (const char* key : {"medium", "reflectance", "group", "metalness", "specular_roughness",
+                            "specular_ior", "specular_weight", "normal_map"})
       shape.erase(key);
     if (surface.medium.is_null())
       shape["reflectance"] = triple_json(surface.reflectance);
     else
       shape["medium"] = name;
+    for (const auto& [key, value] : surface.keys.items()) shape[key] = value;
     if (!surface.medium.is_null() && scene.is_one_mesh && scene.shapes.size() > 1) shape["group"] = name;
   }
 }

@@ -12,6 +12,7 @@
 #include "assets/asset_bytes.h"
 #include "assets/asset_scene.h"
 #include "opaline/core/error.h"
+#include "opaline/core/rgb_primaries.h"
 #include "opaline/core/srgb.h"
 
 namespace opaline {
@@ -21,7 +22,8 @@ constexpr double kMostAnisotropy = .99, kLeastIor = .1, kMostIor = 10;
 
 /// What a surface model calls its values, and those it has where nothing is given.
 struct SurfaceModel {
-  const char *node, *base_weight, *base_color, *weight, *color, *radius, *scale, *anisotropy, *ior;
+  const char *node, *base_weight, *base_color, *weight, *color, *radius, *scale, *anisotropy, *ior,
+      *metalness, *specular_weight;
   Vec3d default_color, default_scale;
   double default_roughness;
 };
@@ -37,22 +39,19 @@ constexpr std::array<SurfaceModel, 2> models{
       "subsurface_radius_scale",
       "subsurface_scatter_anisotropy",
       "specular_ior",
+      "base_metalness",
+      "specular_weight",
       Vec3d(.8),
       {1, .5, .25},
       .3},
      {"standard_surface", "base", "base_color", "subsurface", "subsurface_color", "subsurface_radius",
-      "subsurface_scale", "subsurface_anisotropy", "specular_IOR", Vec3d(1), Vec3d(1), .2}}};
+      "subsurface_scale", "subsurface_anisotropy", "specular_IOR", "metalness", "specular", Vec3d(1),
+      Vec3d(1), .2}}};
 
 const SurfaceModel* find_model(const pugi::xml_node& node) {
   const auto found = std::ranges::find_if(
       models, [&](const SurfaceModel& model) { return node.name() == std::string_view(model.node); });
   return found == models.end() ? nullptr : &*found;
-}
-
-/// ACEScg (AP1, D60) to Rec.709 (D65), adapted by Bradford's method.
-Vec3d rec709_of_acescg(const Vec3d& c) {
-  return {1.70505 * c.x - .62179 * c.y - .08326 * c.z, -.13026 * c.x + 1.14080 * c.y - .01055 * c.z,
-          -.02400 * c.x - .12897 * c.y + 1.15297 * c.z};
 }
 
 class SurfaceReader {
@@ -80,12 +79,28 @@ class SurfaceReader {
       surface.reflectance = base;
       scene_.translated.push_back(fmt::format("{}: {} 0, base colour -> reflectance {} (opaque)", label_,
                                               model_.weight, short_triple(base)));
+      add_gloss(surface);
     }
     tell_losses();
     return surface;
   }
 
  private:
+  void add_gloss(SurfaceTranslation& surface) {
+    const double metalness = number(model_.metalness, 0, 0, 1),
+                 weight = number(model_.specular_weight, 1, 0, 1),
+                 ior = number(model_.ior, 1.5, kLeastIor, kMostIor),
+                 roughness = number("specular_roughness", model_.default_roughness, 0, 1);
+    surface.keys["metalness"] = metalness;
+    surface.keys["specular_roughness"] = roughness;
+    surface.keys["specular_ior"] = ior;
+    surface.keys["specular_weight"] = weight;
+    scene_.translated.push_back(
+        fmt::format("{}: {} {:.3g}, {} {:.3g} -> metalness, specular_weight, specular_roughness {:.3g}, "
+                    "specular_ior {:.4g}",
+                    label_, model_.metalness, metalness, model_.specular_weight, weight, roughness, ior));
+  }
+
   Json make_medium() {
     const Vec3d reflected = color(model_.color, model_.default_color);
     const Vec3d radius = lengths(model_.radius, Vec3d(1)) * lengths(model_.scale, model_.default_scale);
@@ -172,7 +187,7 @@ class SurfaceReader {
     if (!own || space.empty() || space == "lin_rec709" || space == "none") return color;
     if (space == "srgb_texture")
       return {srgb_to_linear(color.x), srgb_to_linear(color.y), srgb_to_linear(color.z)};
-    if (space == "acescg" || space == "lin_ap1") return rec709_of_acescg(color);
+    if (space == "acescg" || space == "lin_ap1") return color_matrix(kAp1Primaries, kRec709Primaries) * color;
     scene_.not_carried.push_back(label_ + ": the colour space " + in_quotes(space) + " of " + name);
     return color;
   }

@@ -73,11 +73,11 @@ BenchSubject subject_of(const BenchScene& scene, const Reference& reference) {
 }
 
 void write_pictures(const BenchFolder& folder, const std::string& name, const Image& image,
-                    const Reference& reference, double exposure) {
+                    const Reference& reference, const Film& film) {
   const Image shown = shown_channels(image);
   const Layer layer = extract_layer(shown, "");
   write_exr(folder.file(name), shown, /*half=*/false);
-  write_png(folder.file(shown_picture(name)), shown, exposure);
+  write_png(folder.file(shown_picture(name)), shown, film.exposure, film.view);
   write_png(folder.file(error_picture_of(name)),
             error_colours(relative_errors(layer, reference.mean, reference.object), layer, reference.object),
             0);
@@ -89,11 +89,11 @@ void add_pictures(const BenchFolder& folder, const std::vector<BenchScene>& scen
                   const std::vector<BenchJob>& jobs, BenchReport& report) {
   for (const BenchScene& scene : scenes) {
     const Reference reference(scene);
-    const double exposure = scene.scene.film.exposure;
+    const Film& film = scene.scene.film;
     BenchSubject& subject = report.subjects.emplace_back(subject_of(scene, reference));
     if (folder.is_report()) {
       subject.picture = "pictures/" + scene.name + "-reference.png";
-      write_png(folder.file(subject.picture), image_of(reference.mean), exposure);
+      write_png(folder.file(subject.picture), image_of(reference.mean), film.exposure, film.view);
     }
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       if (jobs[i].scene != &scene || !jobs[i].failure.empty()) continue;
@@ -102,7 +102,7 @@ void add_pictures(const BenchFolder& folder, const std::vector<BenchScene>& scen
           picture_error(extract_layer(image, ""), reference.halves[0], reference.halves[1], reference.object);
       if (!folder.is_report()) continue;
       report.rows[i].picture = jobs[i].picture;
-      write_pictures(folder, jobs[i].picture, image, reference, exposure);
+      write_pictures(folder, jobs[i].picture, image, reference, film);
     }
   }
 }

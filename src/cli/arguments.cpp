@@ -46,6 +46,7 @@ std::vector<std::string> overrides_of(const Options& options) {
   if (!options.resolution.empty()) add("film.resolution", resolution_json(options.resolution));
   if (!options.crop.empty()) add("film.crop", crop_json(options.crop));
   if (options.exposure) add("film.exposure", fmt::format("{}", *options.exposure));
+  add("film.view", options.view);
   if (options.entry_samples) add("settings.entry_samples", std::to_string(*options.entry_samples));
   if (!options.until_error.empty())
     add("settings.until_error", fmt::format("{}", *share_of(options.until_error)));

@@ -68,6 +68,7 @@ void add_picture_options(CLI::App& app, Options& options) {
   option("--resolution", options.resolution, "film.resolution", "WxH")->check(resolution_check());
   option("--crop", options.crop, "film.crop", "x0,y0,x1,y1")->check(crop_check());
   option("--exposure", options.exposure, "film.exposure", "STOPS");
+  option("--view", options.view, "film.view", "NAME");
   app.add_option("--environment", options.environment,
                  "a lat-long picture (EXR, HDR) of a room in place of the scene's lights, at exposure 0")
       ->type_name("FILE")
@@ -87,7 +88,8 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
   add_common_options(app, render.scene, options);
   app.add_option("--layers", options.layers,
                  "what the EXR holds beside R, G, B and A: diffuse (default), specular, albedo, N, P, Z, "
-                 "irradiance, error, direct's variance; all or none")
+                 "irradiance, error, direct's variance; all (of these) or none; also light_groups, what each "
+                 "light adds, and cryptomatte, mattes of objects and materials")
       ->check(layers_check())
       ->type_name("NAME,...");
   app.add_option("--samples-ply", render.samples_ply, "also write the surface samples as a PLY point cloud")

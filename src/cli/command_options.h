@@ -14,7 +14,7 @@ namespace opaline {
 
 /// What options write to whose text means something else, before it does.
 struct Options {
-  std::string method, evaluator, resolution, crop, environment;
+  std::string method, evaluator, resolution, crop, environment, view;
   std::string until_error, target_error;
   std::optional<std::uint64_t> entry_samples;
   std::optional<std::uint64_t> spp;

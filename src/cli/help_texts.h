@@ -31,7 +31,7 @@ inline constexpr const char* kRenderNotes = R"(Every option that changes the pic
   --resolution 64x48 --set film.resolution=[64,48]
   --crop 0,0,16,16   --set film.crop=[0,0,16,16]
   --method, --evaluator, --seed, --entry-samples, --until-error: --set settings.<name>=...
-  --exposure: --set film.exposure=...
+  --exposure, --view: --set film.<name>=...
 They are applied first, then each --set in its order: the last one wins.
 
 --target-error is the mean relative error of the diffuse light over the translucent pixels, of the worst channel,
@@ -54,11 +54,12 @@ on stderr says what became of a value, or what is not carried over.
 
   glTF    meshes, nodes, cameras, lights (KHR_lights_punctual) and materials. A material that scatters
           (KHR_materials_volume with KHR_materials_volume_scatter or KHR_materials_scatter) becomes a medium of
-          sigma_a and sigma_s in 1/mm; all others are opaque, of their base colour, metalness and roughness. So are
+          sigma_a and sigma_s in 1/mm; all others are opaque, of their base colour, metalness, roughness and specularFactor. So are
           their textures, in the file or beside it; samplers are passed over. Lengths are metres.
           A candela is drawn as 1e6 W/sr and a lux as 1 W/mm^2; the PNG's exposure suits the brightness.
   .mtlx   the constants of open_pbr_surface and standard_surface: where they scatter below the surface, a medium of
-          subsurface_color and subsurface_radius, whose lengths are in the asset's unit; else a matte colour.
+          subsurface_color and subsurface_radius, whose lengths are in the asset's unit; else opaque, of their base
+          colour, metalness and coat.
   OBJ     meshes, a shape for each usemtl, with the Kd and map_Kd of its MTL. Lengths are taken for millimetres.
 
 Without a camera the picture is a three-quarter view of the whole, without lights there are a key, a fill and a rim

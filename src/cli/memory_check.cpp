@@ -9,15 +9,15 @@
 
 namespace opaline {
 
-void check_memory(const Scene& scene, const Plan& plan) {
-  const std::size_t taken = resident_memory(), left = available_memory();
-  if (plan.bytes <= taken || plan.bytes - taken <= left) return;
+void check_memory(const Scene& scene, const Plan& plan, std::size_t more_bytes) {
+  const std::size_t bytes = plan.bytes + more_bytes, taken = resident_memory(), left = available_memory();
+  if (bytes <= taken || bytes - taken <= left) return;
   std::string advice = "a lower film.resolution, or --crop for one part after the other,";
   if (has_samples(scene.settings.method) && !plan.groups.empty())
     advice += " or a lower settings.max_samples";
   throw run_failed({},
                    fmt::format("out of memory: the picture needs about {}, and there are {}; {} takes less",
-                               short_bytes(plan.bytes), short_bytes(left + taken), advice));
+                               short_bytes(bytes), short_bytes(left + taken), advice));
 }
 
 }  // namespace opaline

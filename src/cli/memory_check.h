@@ -6,7 +6,8 @@
 
 namespace opaline {
 
+/// in    more_bytes: beside what the plan tells
 /// error Error{run_failed}: the plan needs more memory than this process can still have; says what takes less
-void check_memory(const Scene& scene, const Plan& plan);
+void check_memory(const Scene& scene, const Plan& plan, std::size_t more_bytes);
 
 }  // namespace opaline

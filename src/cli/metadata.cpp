@@ -62,8 +62,10 @@ namespace {
 std::string layers_text(const RenderArguments& arguments) {
   const LayerChoice& layers = arguments.layers;
   if (!layers.all && layers.names == RenderArguments{}.layers.names) return {};
-  if (layers.all || layers.names.empty()) return layers.all ? " --layers all" : " --layers none";
-  return fmt::format(" --layers {}", fmt::join(layers.names, ","));
+  std::vector<std::string> words = layers.names;
+  if (layers.all) words.insert(words.begin(), "all");
+  if (words.empty()) words.push_back("none");
+  return fmt::format(" --layers {}", fmt::join(words, ","));
 }
 
 }  // namespace

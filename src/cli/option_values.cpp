@@ -21,9 +21,10 @@
 namespace opaline {
 namespace {
 
-constexpr std::array<std::string_view, 11> kLayerWords{"diffuse", "specular",   "albedo",   "N",   "P",   "Z",
-                                                       "error",   "irradiance", "variance", "all", "none"};
-constexpr std::span kLayers = std::span(kLayerWords).first(9);
+constexpr std::array<std::string_view, 13> kLayerWords{
+    "diffuse",    "specular", "albedo",     "N",          "P",   "Z",   "error",
+    "irradiance", "variance", kLightGroups, kCryptomatte, "all", "none"};
+constexpr std::span kLayers = std::span(kLayerWords).first(12);
 
 constexpr std::uint64_t kMostPixel = 65536;
 
@@ -137,14 +138,17 @@ CLI::Validator millimetres_of() {
 }
 
 std::optional<LayerChoice> layers_of(const std::string& text) {
-  LayerChoice layers{text == "all", {}};
-  if (layers.all || text == "none") return layers;
+  LayerChoice layers{false, {}};
+  if (text == "none") return layers;
   std::istringstream names(text);
   for (std::string name; std::getline(names, name, ',');) {
     if (std::ranges::find(kLayers, name) == kLayers.end()) return {};
-    layers.names.push_back(name);
+    if (name == "all")
+      layers.all = true;
+    else
+      layers.names.push_back(name);
   }
-  if (layers.names.empty()) return {};
+  if (!layers.all && layers.names.empty()) return {};
   return layers;
 }
 
@@ -158,7 +162,7 @@ CLI::Validator layers_check() {
           ;
         const std::string near = did_you_mean(name, kLayerWords);
         return fmt::format("there is no layer '{}'{}", printable(name),
-                           near.empty() ? "; expected all, none, or some of " + join(kLayers) : near);
+                           near.empty() ? "; expected none, or some of " + join(kLayers) : near);
       },
       {});
 }

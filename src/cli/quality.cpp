@@ -55,10 +55,13 @@ void check_budget(const RenderArguments& render) {
   if (!render.cache.empty())
     throw bad_usage("--time-budget plans by what stages cost, and what is found in a --cache costs nothing",
                     "one of the two");
-  const std::pair<bool, const char*> unplanned[] = {{render.write_partial, "--write-partial"},
-                                                    {render.display_server.has_value(), "--display-server"},
-                                                    {!render.samples_ply.empty(), "--samples-ply"},
-                                                    {!render.resume.empty(), "--resume"}};
+  const std::pair<bool, const char*> unplanned[] = {
+      {render.write_partial, "--write-partial"},
+      {render.display_server.has_value(), "--display-server"},
+      {!render.samples_ply.empty(), "--samples-ply"},
+      {!render.resume.empty(), "--resume"},
+      {is_named(render.layers, kLightGroups), "--layers light_groups"},
+      {is_named(render.layers, kCryptomatte), "--layers cryptomatte"}};
   for (const auto& [given, option] : unplanned)
     if (given) throw bad_usage(fmt::format("--time-budget does not plan for {}", option), "one of the two");
 }

@@ -197,7 +197,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
                                    : scene_hash(arguments.scene, arguments.overrides, scene);
     is_there = frame && is_rendered(arguments, bytes_hash, *frame);
     if (frame) session.expect_pictures(scene.camera_frames);
-    session.hold_view(frame.has_value());
+    session.hold_view(frame.has_value() || is_named(arguments.layers, kLightGroups));
     if (!is_there) session.edit(std::move(scene));
     return bytes_hash;
   });
@@ -209,12 +209,13 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   if (!arguments.resume.empty() && scene.settings.method != Method::direct &&
       scene.settings.method != Method::volume)
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct or volume");
-  check_layers(arguments.layers, scene.settings.method);
+  check_layers(arguments.layers, scene);
   check_precompute(arguments, scene, session.plan());
-  check_memory(scene, session.plan());
+  const std::size_t layer_bytes = asked_layer_bytes(arguments.layers, scene);
+  check_memory(scene, session.plan(), layer_bytes);
   KnownErrors errors = choose_settings(stages, arguments, session);
   print_plan(arguments.log, scene, announced_plan(arguments, session));
-  check_memory(scene, session.plan());  // of the settings that were chosen
+  check_memory(scene, session.plan(), layer_bytes);  // of the settings that were chosen
 
   std::optional<PartialPicture> partial;
   if (arguments.write_partial || shared.viewer != nullptr)
@@ -242,6 +243,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   image.metadata = make_metadata(repeated, hash, scene, session.world(), session.bodies(), frame);
   if (errors.target || errors.measured)
     image.metadata.emplace_back("opaline:error", compact(errors_json(errors)));
+  add_asked_layers(stages, arguments.layers, session, image);
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
 
   auto outputs = stages.run("writing", [&] { return write_outputs(arguments, session, image); });
@@ -269,7 +271,7 @@ void render_command(const RenderArguments& arguments) {
   std::optional<StageCache> cache;
   if (!arguments.cache.empty()) cache.emplace(arguments.cache, arguments.cache_bytes);
   Session session(cache ? &*cache : nullptr);
-  session.expect_edits(!arguments.frames.empty());
+  session.expect_edits(!arguments.frames.empty() || is_named(arguments.layers, kLightGroups));
   if (arguments.frames.empty())
     check_writable(arguments);
   else

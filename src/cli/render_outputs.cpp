@@ -6,7 +6,9 @@
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/render/layers.h"
+#include "opaline/render/mattes.h"
 #include "opaline/scene/names.h"
+#include "opaline/session/light_groups.h"
 
 namespace opaline {
 
@@ -16,10 +18,13 @@ void check_writable(const RenderArguments& arguments) {
   if (!arguments.resume.empty()) const AtomicFile probe(arguments.resume);
 }
 
-void check_layers(const LayerChoice& layers, Method method) {
+void check_layers(const LayerChoice& layers, const Scene& scene) {
+  const Method method = scene.settings.method;
   const std::vector<std::string> channels = layer_names(method);
+  if (is_named(layers, kLightGroups)) light_groups(scene);
   for (const std::string& layer : layers.names)
-    if (std::ranges::none_of(channels, [&](const std::string& channel) {
+    if (layer != kLightGroups && layer != kCryptomatte &&
+        std::ranges::none_of(channels, [&](const std::string& channel) {
           return channel.substr(0, channel.find('.')) == layer;
         }))
       throw Error(ErrorKind::bad_input, {}, 0, 0,
@@ -27,10 +32,34 @@ void check_layers(const LayerChoice& layers, Method method) {
                   layer == "variance" ? "--method direct" : "another --method", std::string(name_of(method)));
 }
 
+std::size_t asked_layer_bytes(const LayerChoice& layers, const Scene& scene) {
+  std::size_t channels = is_named(layers, kCryptomatte) ? 4 * kMatteRanks : 0;
+  if (is_named(layers, kLightGroups)) channels += 9 * light_groups(scene).size();
+  if (channels == 0) return 0;
+  const Rectangle part = rendered_part(scene.film);
+  const std::size_t pixels = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0);
+  // Beside them the layers of one more picture: by one light, or before the channels were added.
+  return pixels * sizeof(float) * (channels + layer_names(scene.settings.method).size());
+}
+
+void add_asked_layers(StageRunner& stages, const LayerChoice& layers, Session& session, Image& image) {
+  if (is_named(layers, kLightGroups))
+    stages.run("light groups", [&] {
+      add_light_groups(session, image, &stages.monitor());
+      return 0;
+    });
+  if (is_named(layers, kCryptomatte))
+    stages.run("mattes", [&] {
+      add_mattes({session.scene(), session.world(), session.rays(), {}, &stages.monitor()}, image);
+      return 0;
+    });
+}
+
 WriteReport write_picture(const std::string& path, const Image& image, const Film& film,
                           const LayerChoice& layers) {
-  if (output_format(path) == OutputFormat::exr) return write_exr(path, image, film.half, layers);
-  write_png(path, image, film.exposure);
+  if (output_format(path) == OutputFormat::exr)
+    return write_exr(path, image, film.half, layers, film.color_space);
+  write_png(path, image, film.exposure, film.view);
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/arguments.h"
+#include "cli/stages.h"
 #include "opaline/image/image.h"
 #include "opaline/session/session.h"
 
@@ -20,8 +21,14 @@ void check_writable(const RenderArguments& arguments);
 WriteReport write_picture(const std::string& path, const Image& image, const Film& film,
                           const LayerChoice& layers);
 
-/// error Error{bad_input}: a layer was named that this method does not have
-void check_layers(const LayerChoice& layers, Method method);
+/// error Error{bad_input}: a layer was named that this scene's picture does not have
+void check_layers(const LayerChoice& layers, const Scene& scene);
+
+/// Of the layers that are made only where they are asked for.
+std::size_t asked_layer_bytes(const LayerChoice& layers, const Scene& scene);
+/// Makes them, each a stage.
+/// error as add_light_groups
+void add_asked_layers(StageRunner& stages, const LayerChoice& layers, Session& session, Image& image);
 
 /// Writes everything that was asked for; returns the names.
 /// error as write_exr

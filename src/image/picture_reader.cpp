@@ -5,10 +5,13 @@
 #include <OpenImageIO/color.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string_view>
 
+#include "image/color_channels.h"
 #include "image/picture_file.h"
 #include "image/png_chunks.h"
 #include "opaline/core/error.h"
@@ -32,7 +35,7 @@ void copy_metadata(const OIIO::ImageSpec& spec, Image& image) {
   for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
     const std::string_view name(attribute.name().data(), attribute.name().size());
     if (attribute.type() != OIIO::TypeString || name.starts_with("oiio:") || name.starts_with("openexr:") ||
-        name == "compression" || name == "Software" || name == "DateTime")
+        name == "compression" || name == "Software" || name == "DateTime" || name == "colorInteropID")
       continue;
     image.metadata.emplace_back(name, attribute.get_string());
   }
@@ -57,6 +60,16 @@ void linearize(Image& image, int alpha) {
     if (static_cast<int>(i % channels) != alpha) image.pixels[i] = OIIO::sRGB_to_linear(image.pixels[i]);
 }
 
+bool has_ap1_primaries(const OIIO::ImageSpec& spec) {
+  constexpr float kRounding = 1e-4f;  // of files that state four digits
+  const auto& [red, green, blue, white] = kAp1Primaries;
+  float stated[8];
+  if (!spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), stated)) return false;
+  const double wanted[8] = {red[0], red[1], green[0], green[1], blue[0], blue[1], white[0], white[1]};
+  return std::equal(stated, stated + 8, wanted,
+                    [](float a, double b) { return std::abs(double(a) - b) < double(kRounding); });
+}
+
 }  // namespace
 
 Image read_picture(const std::string& path) {
@@ -77,6 +90,8 @@ Image read_picture(const std::string& path) {
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
     throw bad_file(path, "the picture is damaged: " + complaint_of(input.get()));
   if (format == "png") linearize(image, spec.alpha_channel);
+  if (has_ap1_primaries(spec))
+    convert_colors(image.pixels, image.channels.size(), color_channels(image.channels), from_acescg());
   return image;
 }
 

@@ -5,6 +5,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <tbb/global_control.h>
@@ -18,6 +19,7 @@
 #include <system_error>
 #include <utility>
 
+#include "image/color_channels.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
@@ -78,10 +80,11 @@ class CheckedFile final : public Imf::OStream {
   int failure_ = 0;
 };
 
-/// Positions, depths, irradiance and variances need more than a half's 11 bits or its range.
+/// Positions, depths, irradiance and variances need more than a half's 11 bits or its range; Cryptomatte's names are
+/// bits of a float.
 bool always_float(const std::string& channel) {
   return channel == "Z" || channel.starts_with("P.") || channel.starts_with("irradiance.") ||
-         channel.starts_with("variance.");
+         channel.starts_with("variance.") || is_matte_channel(channel);
 }
 
 Imath::Box2i data_window(const Image& image) {
@@ -97,7 +100,13 @@ struct FileChannel {
   Imf::PixelType type() const { return half ? Imf::HALF : Imf::FLOAT; }
 };
 
-Imf::Header make_header(const Image& image, const std::vector<FileChannel>& channels) {
+Imf::Chromaticities chromaticities_of(FilmColorSpace space) {
+  const RgbPrimaries& primaries = space == FilmColorSpace::acescg ? kAp1Primaries : kRec709Primaries;
+  const auto xy = [](const std::array<double, 2>& at) { return Imath::V2f(float(at[0]), float(at[1])); };
+  return {xy(primaries.red), xy(primaries.green), xy(primaries.blue), xy(primaries.white)};
+}
+
+Imf::Header make_header(const Image& image, const std::vector<FileChannel>& channels, FilmColorSpace space) {
   const int width = image.full_width > 0 ? image.full_width : image.width,
             height = image.full_height > 0 ? image.full_height : image.height;
   Imf::Header header({{0, 0}, {width - 1, height - 1}}, data_window(image));
@@ -106,6 +115,10 @@ Imf::Header make_header(const Image& image, const std::vector<FileChannel>& chan
   for (const FileChannel& channel : channels)
     header.channels().insert(image.channels[channel.place], Imf::Channel(channel.type()));
   header.insert("Software", Imf::StringAttribute("opaline"));
+  Imf::addChromaticities(header, chromaticities_of(space));
+  // OpenEXR's and the Color Interop Forum's name of the space.
+  header.insert("colorInteropID",
+                Imf::StringAttribute(space == FilmColorSpace::acescg ? "lin_ap1_scene" : "lin_rec709_scene"));
   for (const auto& [name, value] : image.metadata) header.insert(name, Imf::StringAttribute(value));
   return header;
 }
@@ -135,8 +148,10 @@ void store_row(const float* value, std::size_t step, std::size_t count, char* to
 /// Rows of a picture in the file's own types, channel by channel.
 class Strip {
  public:
-  Strip(const Image& image, const std::vector<FileChannel>& channels)
-      : image_(image), channels_(channels), planes_(channels.size()) {}
+  Strip(const Image& image, const std::vector<FileChannel>& channels, FilmColorSpace space)
+      : image_(image), channels_(channels), planes_(channels.size()) {
+    if (space == FilmColorSpace::acescg) colors_ = color_channels(image.channels);
+  }
 
   void fill(int first, int count, WriteReport& report) {
     const auto width = static_cast<std::size_t>(image_.width), rows = static_cast<std::size_t>(count),
@@ -144,14 +159,20 @@ class Strip {
     for (std::size_t c = 0; c < channels_.size(); ++c) planes_[c].resize(rows * width * channels_[c].bytes());
     std::vector<WriteReport> reports(chunk_count(rows, block_rows));
     parallel_chunks(rows, block_rows, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-      for (std::size_t y = begin; y < end; ++y)
+      std::vector<float> converted;
+      for (std::size_t y = begin; y < end; ++y) {
+        const float* row = image_.pixels.data() + (static_cast<std::size_t>(first) + y) * width * step;
+        if (!colors_.empty()) {
+          converted.assign(row, row + width * step);
+          convert_colors(converted, step, colors_, to_acescg());
+          row = converted.data();
+        }
         for (std::size_t c = 0; c < channels_.size(); ++c) {
-          const float* value = image_.pixels.data() + (static_cast<std::size_t>(first) + y) * width * step +
-                               channels_[c].place;
           char* to = planes_[c].data() + y * width * channels_[c].bytes();
           const auto store = channels_[c].half ? store_row<::half> : store_row<float>;
-          store(value, step, width, to, reports[chunk]);
+          store(row + channels_[c].place, step, width, to, reports[chunk]);
         }
+      }
     });
     for (const WriteReport& part : reports) {
       report.non_finite += part.non_finite;
@@ -174,6 +195,7 @@ class Strip {
  private:
   const Image& image_;
   const std::vector<FileChannel>& channels_;
+  std::vector<ColorChannels> colors_;  // to be converted
   std::vector<std::vector<char>> planes_;
   int first_ = 0;
 };
@@ -187,17 +209,23 @@ int strip_rows_of(const Image& image, const std::vector<FileChannel>& channels) 
 
 }  // namespace
 
+bool is_named(const LayerChoice& layers, std::string_view name) {
+  return std::ranges::find(layers.names, name) != layers.names.end();
+}
+
 bool has_channel(const LayerChoice& layers, const std::string& channel) {
-  const bool is_picture = channel.size() == 1 && channel != "Z";
-  return layers.all || is_picture ||
-         std::ranges::find(layers.names, channel.substr(0, channel.find('.'))) != layers.names.end();
+  if (layers.all || (channel.size() == 1 && channel != "Z")) return true;
+  const std::string layer = channel.substr(0, channel.find('.'));
+  return is_named(layers, layer) || (is_matte_channel(channel) && is_named(layers, kCryptomatte)) ||
+         (is_light_group(layer) && is_named(layers, kLightGroups));
 }
 
 WriteReport write_exr(const std::string& path, const Image& image, bool half) {
-  return write_exr(path, image, half, {});
+  return write_exr(path, image, half, LayerChoice{});
 }
 
-WriteReport write_exr(const std::string& path, const Image& image, bool half, const LayerChoice& layers) {
+WriteReport write_exr(const std::string& path, const Image& image, bool half, const LayerChoice& layers,
+                      FilmColorSpace space) {
   const std::size_t row = static_cast<std::size_t>(image.width) * image.channels.size();
   require(image.width > 0 && image.height > 0 && row > 0, "a picture has pixels and channels");
   require(image.pixels.size() == row * static_cast<std::size_t>(image.height),
@@ -211,12 +239,12 @@ WriteReport write_exr(const std::string& path, const Image& image, bool half, co
       static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
   Imf::setGlobalThreadCount(threads > 1 ? threads : 0);
   WriteReport report;
-  Strip strip(image, channels);
+  Strip strip(image, channels, space);
   AtomicFile file(path);
   CheckedFile sink(file.temporary());
   std::string complaint;
   try {
-    Imf::OutputFile output(sink, make_header(image, channels));
+    Imf::OutputFile output(sink, make_header(image, channels, space));
     const int strip_rows = strip_rows_of(image, channels);
     for (int first = 0; first < image.height; first += strip_rows) {
       const int count = std::min(strip_rows, image.height - first);

@@ -6,11 +6,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 #include "opaline/image/image.h"
+#include "opaline/image/view_transform.h"
 
 namespace opaline {
 namespace {
@@ -25,13 +27,17 @@ std::array<std::size_t, 3> rgb_channels(const Image& image) {
   return found;
 }
 
-/// NaN and infinities become 0, as in the EXR. OpenImageIO's scalar formula is the exact one; its ColorConfig
-/// would give the same, unless $OCIO named another configuration.
-std::uint8_t quantize(float value, double gain) {
+/// NaN and infinities become 0, as in the EXR.
+float exposed(float value, double gain) {
+  constexpr double kMost = std::numeric_limits<float>::max();
   if (!(std::isfinite(value) && value > 0)) return 0;
-  const double exposed = value * gain;
-  const float encoded = OIIO::linear_to_sRGB(static_cast<float>(std::min(exposed, 1.0)));
-  return static_cast<std::uint8_t>(std::lround(255.0f * std::min(encoded, 1.0f)));
+  return static_cast<float>(std::min(value * gain, kMost));
+}
+
+/// OpenImageIO's scalar formula is the exact one; its ColorConfig would give the same, unless $OCIO named another
+/// configuration.
+std::uint8_t quantize(float shown) {
+  return static_cast<std::uint8_t>(std::lround(255.0f * std::min(OIIO::linear_to_sRGB(shown), 1.0f)));
 }
 
 std::string encoded(const std::string& path, int width, int height, const std::vector<std::uint8_t>& rgb) {
@@ -50,7 +56,7 @@ std::string encoded(const std::string& path, int width, int height, const std::v
 
 }  // namespace
 
-void write_png(const std::string& path, const Image& image, double exposure) {
+void write_png(const std::string& path, const Image& image, double exposure, ViewTransform view) {
   const std::size_t channels = image.channels.size();
   const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   require(image.width > 0 && image.height > 0, "a picture has pixels");
@@ -60,9 +66,12 @@ void write_png(const std::string& path, const Image& image, double exposure) {
   AtomicFile file(path);
   std::vector<std::uint8_t> bytes(pixels * 3);
   parallel_chunks(pixels, 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t c = 0; c < 3; ++c)
-        bytes[3 * i + c] = quantize(image.pixels[i * channels + rgb[c]], gain);
+    for (std::size_t i = begin; i < end; ++i) {
+      const float* const pixel = image.pixels.data() + i * channels;
+      const RgbF shown = shown_color(
+          view, {exposed(pixel[rgb[0]], gain), exposed(pixel[rgb[1]], gain), exposed(pixel[rgb[2]], gain)});
+      for (std::size_t c = 0; c < 3; ++c) bytes[3 * i + c] = quantize(shown[c]);
+    }
   });
   file.append(encoded(path, image.width, image.height, bytes));
   file.commit();

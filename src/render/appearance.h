@@ -47,13 +47,15 @@ struct Appearance {
     return metalness > 0 ? entered * (1 - metalness) : entered;
   }
   /// Light that is mirrored over that of a dielectric without a metal.
-  /// in    cosine: with the facet's normal
-  RgbF mirror_color(float cosine) const {
+  /// in    cosine: with the facet's normal; reflected_once: RoughBoundary's, of the view
+  /// from  Turquin 2019, Practical multiple scattering compensation for microfacet models: what facets reflect again
+  RgbF mirror_color(float cosine, float reflected_once = 1) const {
     if (!(metalness > 0)) return RgbF(1);
     const float dielectric = fresnel_reflectance(std::min(cosine, 1.0f), eta);
     const float grazing = std::pow(1 - std::min(cosine, 1.0f), 5.0f);  // Schlick 1994
     const RgbF metal = albedo + (RgbF(1) - albedo) * grazing;
-    return RgbF(1 - metalness) + metal * (metalness / dielectric);
+    const RgbF again = RgbF(1) + albedo * (1 / reflected_once - 1);
+    return RgbF(1 - metalness) + metal * again * (metalness / dielectric);
   }
 };
 

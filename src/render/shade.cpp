@@ -151,7 +151,9 @@ std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedR
 
 // Sorts the hits by field; rays that meet a light or nothing are done.
 std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch* held) const {
-  const auto& [rays, keys, out, spread, widths] = batch;
+  const std::span<const TracedRay> rays = batch.rays;
+  const std::span<const std::uint64_t> keys = batch.keys;
+  const std::span<PixelSample> out = batch.out;
   std::vector<SurfaceHits> surfaces(fields_.all.size());
   const bool holds_points = held != nullptr && input_.view->has_room;
   if (holds_points && held->points.empty()) held->points = points_of(rays, input_.rays);

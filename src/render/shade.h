@@ -52,6 +52,7 @@ class Shader {
     /// How wide the cones around the rays are, for textures: at their origins (empty: 0) and more by their length.
     float spread = 0;
     std::span<const float> widths = {};
+    int mirrors = 0;  ///< that the rays have left, one after the other
   };
   /// Rays that leave surfaces, as their cones do.
   struct Cones {
@@ -78,7 +79,8 @@ class Shader {
   void add_highlights(const GlossyHits& glossy) const;
   void add_reflections(const GlossyHits& glossy, const Pass& pass) const;
   std::vector<PixelSample> seen_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                                      const Cones& cones, const Pass& pass) const;
+                                      const Cones& cones, const Pass& pass, int mirrors) const;
+  SurfaceHits metals_of(const SurfaceHits& hits) const;
   float width_at(const RayBatch& batch, std::size_t ray) const;
   bool mirrors_surfaces() const { return has_visible_lights() || input_.scene.shapes.size() > 1; }
   EmitterHit nearest_emitter(const Vec3f& origin, const Vec3f& direction, float far) const;

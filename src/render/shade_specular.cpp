@@ -14,6 +14,10 @@ namespace {
 
 // Of a camera ray where there is one a pixel: facets drawn, and directions to each light.
 constexpr int kFacets = 16, kLightSamples = 16;
+// These, too, over those of a metal that is seen in a mirror.
+constexpr int kFewerOfMirrored = 4;
+// One after the other that a camera ray is followed through; a further metal is black.
+constexpr int kMostMirrors = 4;
 // Shadow rays towards a surface that is seen in a mirror, over those where it is seen: a mirror takes most away.
 constexpr int kFewerInMirrors = 4;
 // Of the cones around directions of a lobe, for textures that they meet.
@@ -37,6 +41,14 @@ struct Frame {
   Vec3f world(const Vec3f& d) const { return x * d.x + y * d.y + z * d.z; }
 };
 
+void add_hit(const SurfaceHits& hits, std::size_t i, SurfaceHits& to) {
+  to.points.push_back(hits.points[i]);
+  to.hits.push_back(hits.hits[i]);
+  to.keys.push_back(hits.keys[i]);
+  to.rays.push_back(hits.rays[i]);
+  if (!hits.textures.empty()) to.textures.push_back(hits.textures[i]);
+}
+
 float balance(float own, float other) {
   return own > 0 ? own / (own + other) : 0;
 }
@@ -47,24 +59,32 @@ void Shader::add_specular(const SurfaceHits& hits, const RayBatch& batch, const 
   SurfaceHits smooth, rough;
   for (std::size_t i = 0; i < hits.rays.size(); ++i) {
     const Appearance& appearance = appearances_[hits.hits[i].mesh];
-    SurfaceHits& part = appearance.rough || appearance.roughnesses ? rough : smooth;
-    part.points.push_back(hits.points[i]);
-    part.hits.push_back(hits.hits[i]);
-    part.keys.push_back(hits.keys[i]);
-    part.rays.push_back(hits.rays[i]);
-    if (!hits.textures.empty()) part.textures.push_back(hits.textures[i]);
+    add_hit(hits, i, appearance.rough || appearance.roughnesses ? rough : smooth);
   }
   if (!smooth.rays.empty() && mirrors_surfaces()) add_mirrored(smooth, batch, pass);
   if (!rough.rays.empty()) add_glossy(rough, batch, pass);
 }
 
-// Without what is mirrored there.
+SurfaceHits Shader::metals_of(const SurfaceHits& hits) const {
+  SurfaceHits metals;
+  for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+    const Appearance& appearance = appearances_[hits.hits[i].mesh];
+    if ((hits.textures.empty() ? appearance : appearance_of(hits, i)).metalness > 0) add_hit(hits, i, metals);
+  }
+  return metals;
+}
+
+// Coats mirror little there and are passed over; metals are nothing else.
 std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
                                             std::span<const std::uint64_t> keys, const Cones& cones,
-                                            const Pass& pass) const {
+                                            const Pass& pass, int mirrors) const {
   std::vector<PixelSample> seen(rays.size());
-  shade_diffuse({rays, keys, seen, cones.spread, cones.widths}, std::max(1, light_samples_ / kFewerInMirrors),
-                pass, nullptr);
+  const RayBatch batch{rays, keys, seen, cones.spread, cones.widths, mirrors};
+  const std::vector<SurfaceHits> hits =
+      shade_diffuse(batch, std::max(1, light_samples_ / kFewerInMirrors), pass, nullptr);
+  for (std::size_t f = 0; f < hits.size() && mirrors < kMostMirrors; ++f)
+    if (const SurfaceHits metals = metals_of(hits[f]); !metals.rays.empty())
+      add_specular(metals, batch, pass);
   return seen;
 }
 
@@ -78,14 +98,14 @@ void Shader::add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const 
     if (!textures_.empty()) cones.widths.push_back(width_at(batch, hits.rays[i]));
   }
   input_.rays.intersect(mirrored);
-  const std::vector<PixelSample> seen = seen_along(mirrored, hits.keys, cones, pass);
+  const std::vector<PixelSample> seen = seen_along(mirrored, hits.keys, cones, pass, batch.mirrors + 1);
   for (std::size_t i = 0; i < hits.rays.size(); ++i) {
     const float cosine = cos_view(hits.points[i], batch.rays[hits.rays[i]].ray.direction);
     const bool is_plain = hits.textures.empty();
     const Appearance textured = is_plain ? Appearance{} : appearance_of(hits, i);
     const Appearance& appearance = is_plain ? appearances_[hits.hits[i].mesh] : textured;
     const RgbF share = appearance.mirror_color(cosine) * appearance.reflectance(cosine);
-    batch.out[hits.rays[i]].specular = (seen[i].diffuse + seen[i].emitted) * share;
+    batch.out[hits.rays[i]].specular = (seen[i].diffuse + seen[i].specular + seen[i].emitted) * share;
   }
 }
 
@@ -102,8 +122,9 @@ struct Shader::GlossyHits {
   GlossyHits(const Shader& shader, const SurfaceHits& all, const RayBatch& rays)
       : hits(all), batch(rays), seed(point_irradiance_seed(shader.input_.scene.settings) + 1) {
     const int spp = shader.input_.scene.film.samples_per_pixel;
-    facets = (kFacets + spp - 1) / spp;
-    to_lights = (kLightSamples + spp - 1) / spp;
+    const int shared_by = rays.mirrors > 0 ? spp * kFewerOfMirrored : spp;
+    facets = (kFacets + shared_by - 1) / shared_by;
+    to_lights = (kLightSamples + shared_by - 1) / shared_by;
     textured.reserve(hits.textures.size());
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
       frames.emplace_back(hits.points[i], -normalized(batch.rays[hits.rays[i]].ray.direction));
@@ -116,7 +137,8 @@ struct Shader::GlossyHits {
   // Of what is mirrored from a direction, local.
   RgbF color(std::size_t i, const Vec3f& light) const {
     if (!(appearances[i]->metalness > 0)) return RgbF(1);
-    return appearances[i]->mirror_color(dot(frames[i].view, normalized(frames[i].view + light)));
+    return appearances[i]->mirror_color(dot(frames[i].view, normalized(frames[i].view + light)),
+                                        boundary(i).reflected_once(frames[i].view.z));
   }
   RgbF& specular(std::size_t i) const { return batch.out[hits.rays[i]].specular; }
   // How many directions each way of drawing puts there, 1/sr.
@@ -213,8 +235,9 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
     const double chance = unit_double(hash_bits(glossy.seed + r, glossy.hits.keys[i]));
     if (chance * double(met.back().weight) < double(weight)) met_rays.back() = rays[r];
   }
-  const std::vector<PixelSample> seen = seen_along(met_rays, met_keys, cones, pass);
-  for (std::size_t m = 0; m < met.size(); ++m) glossy.specular(met[m].hit) += seen[m].diffuse * met[m].share;
+  const std::vector<PixelSample> seen = seen_along(met_rays, met_keys, cones, pass, glossy.batch.mirrors + 1);
+  for (std::size_t m = 0; m < met.size(); ++m)
+    glossy.specular(met[m].hit) += (seen[m].diffuse + seen[m].specular) * met[m].share;
 }
 
 }  // namespace opaline

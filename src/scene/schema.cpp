@@ -177,6 +177,9 @@ std::vector<KeyInfo> shape_rows() {
       textured(row("shape", "specular_roughness", number, "", kUnitInterval, "matte; beside `metalness` 1",
                    "of an opaque shape as it mirrors: 0 smooth, .3 satin; makes it glossy")),
       row("shape", "specular_ior", number, "", {.1, 10}, "1.5", "of a glossy opaque shape's coat"),
+      row("shape", "specular_weight", number, "", {0, 1}, "1",
+          "how much of its light the coat of a glossy opaque shape mirrors at right angles: 0 next to "
+          "nothing; metals stay"),
       textured(row("shape", "normal_map", object, "", kFiniteNumber, "none",
                    "normals of the file's details, around the mesh's own: red to the right, green up, blue "
                    "out, 0 to 1 "

@@ -160,6 +160,16 @@ std::span<const Member<Film>> film_members() {
       {pixel_type, read_pixel_type, pixel_type_json},
       member<&Film::exposure>("exposure", number, "stops", {-100, 100}, "",
                               "brightens the PNG only, by a factor of 2 each"),
+      member<&Film::view>(
+          "view", choice, "", kFiniteNumber, "",
+          "how the PNG shows what is brighter than white: `\"soft\"`: colours below .8 of white as they are, "
+          "what is brighter bends towards white; `\"neutral\"`: Khronos PBR Neutral, the same after .04 of "
+          "white "
+          "is taken off; `\"agx\"`: AgX, filmic, of less contrast and colour; `\"srgb\"`: all as it is, cut "
+          "at white"),
+      member<&Film::color_space>(
+          "color_space", choice, "", kFiniteNumber, "",
+          "of the EXR's colours: `\"lin_rec709\"`, as the scene's; `\"acescg\"`: converted to ACEScg (AP1)"),
   };
   return table;
 }

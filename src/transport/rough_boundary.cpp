@@ -21,17 +21,31 @@ RoughBoundary::RoughBoundary(double roughness, double eta)
   for (std::size_t i = 0; i < kCosines; ++i) {
     const float cosine = std::max(1e-3f, float(i) / float(kCosines - 1));
     const Vec3f view{std::sqrt(1 - cosine * cosine), 0, cosine};
-    double sum = 0;
-    for (std::uint64_t s = 0; s < kSamples; ++s) sum += double(sample(view, r2_point(s, {.5, .5})).weight);
+    double sum = 0, once = 0;
+    for (std::uint64_t s = 0; s < kSamples; ++s) {
+      const auto [light, weight] = sample(view, r2_point(s, {.5, .5}));
+      if (!(weight > 0)) continue;
+      sum += double(weight);
+      once += double(weight / fresnel_reflectance(std::min(dot(view, normalized(view + light)), 1.0f), eta_));
+    }
     reflectances_[i] = float(sum / double(kSamples));
+    once_[i] = float(once / double(kSamples));
   }
 }
 
 float RoughBoundary::reflectance(float cosine) const {
+  return value_of(reflectances_, cosine);
+}
+
+float RoughBoundary::reflected_once(float cosine) const {
+  return value_of(once_, cosine);
+}
+
+float RoughBoundary::value_of(const Table& table, float cosine) {
   const float place = std::clamp(cosine, 0.0f, 1.0f) * float(kCosines - 1);
   const std::size_t i = std::min(std::size_t(place), kCosines - 2);
   const float share = place - float(i);
-  return reflectances_[i] * (1 - share) + reflectances_[i + 1] * share;
+  return table[i] * (1 - share) + table[i + 1] * share;
 }
 
 float RoughBoundary::smith(const Vec3f& direction) const {
@@ -96,9 +110,11 @@ RoughBoundary RoughnessRange::at(float roughness) const {
   const float share = place - float(i);
   RoughBoundary boundary = boundaries_[i];
   boundary.alpha_ = bounded * bounded;
-  for (std::size_t c = 0; c < RoughBoundary::kCosines; ++c)
-    boundary.reflectances_[c] =
-        boundary.reflectances_[c] * (1 - share) + boundaries_[i + 1].reflectances_[c] * share;
+  const auto mix = [&](RoughBoundary::Table& table, const RoughBoundary::Table& next) {
+    for (std::size_t c = 0; c < table.size(); ++c) table[c] = table[c] * (1 - share) + next[c] * share;
+  };
+  mix(boundary.reflectances_, boundaries_[i + 1].reflectances_);
+  mix(boundary.once_, boundaries_[i + 1].once_);
   return boundary;
 }
 

@@ -110,6 +110,23 @@ TEST(GltfMaterials, OthersAreOpaque) {
   EXPECT_EQ(scene_of(cube_asset().glb(), "a.glb").shapes.at(0).reflectance, Rgb(1, 1, 1));
 }
 
+// Claim: specularFactor is the share that an opaque material's coat mirrors at right angles, .04 of the light without
+// it; its colour is told to be lost, and so is all of it for a body. Source: KHR_materials_specular. Fails if it is passed
+// over, or told to be.
+TEST(GltfMaterials, SpecularFactorWeighsTheCoat) {
+  Json material = {{"extensions", {{"KHR_materials_specular", {{"specularFactor", .25}}}}}};
+  const Scene scene = scene_of(cube_of(material).glb(), "a.glb");
+  ASSERT_TRUE(scene.shapes.at(0).gloss);
+  const double eta = scene.shapes[0].gloss->eta, root = (eta - 1) / (eta + 1);
+  EXPECT_NEAR(root * root, .25 * .04, 1e-9);
+  EXPECT_TRUE(imported(cube_of(material)).not_carried.empty());
+  material["extensions"]["KHR_materials_specular"]["specularColorFactor"] = {1, .5, 0};
+  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "specularColorFactor"));
+  material["extensions"]["KHR_materials_volume"] = kVolume;
+  material["extensions"]["KHR_materials_volume_scatter"] = {{"multiscatterColor", {.5, .5, .5}}};
+  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "KHR_materials_specular"));
+}
+
 // Claim: values that leave nothing to scatter, or lie outside of what a medium may have, are replaced and said. Fails if
 // one of them makes a scene file that is refused.
 TEST(GltfMaterials, ValuesOutOfRangeAreSaid) {

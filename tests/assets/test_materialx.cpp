@@ -119,6 +119,28 @@ TEST(MaterialX, OthersAreOpaque) {
   EXPECT_GT(gray("0.5, 0.25, 0.25").x, .6);  // Rec.709's red is less saturated
 }
 
+// Claim: an opaque surface has the metalness, roughness and coat of its model, by either model's names and defaults; the
+// coat mirrors the weight's share of .04. Source: OpenPBR 1.1, Standard Surface 1.0.1. Fails if a name is of the other
+// model, or the weight is passed over.
+TEST(MaterialX, OpaqueSurfacesAreGlossy) {
+  const auto gloss = [](const std::string& text) {
+    const MaterialFolder folder("<materialx>" + text + "</materialx>");
+    const ImportedAsset import = folder.import("tetrahedron.obj");
+    EXPECT_FALSE(has(import.not_carried, "material 's'"));
+    return parse_scene(import.text, "a.json").shapes.at(0).gloss.value();
+  };
+  const Gloss pbr = gloss(R"(<open_pbr_surface name="s"><input name="base_metalness" value="0.5"/>
+    <input name="specular_weight" value="0.25"/></open_pbr_surface>)");
+  EXPECT_EQ(pbr.metalness, .5);
+  EXPECT_EQ(pbr.roughness, .3);
+  EXPECT_NEAR((pbr.eta - 1) / (pbr.eta + 1), std::sqrt(.25 * .04), 1e-9);
+  const Gloss standard = gloss(R"(<standard_surface name="s"><input name="metalness" value="1"/>
+    <input name="specular_roughness" value="0.6"/><input name="specular_IOR" value="1.4"/></standard_surface>)");
+  EXPECT_EQ(standard.metalness, 1);
+  EXPECT_EQ(standard.roughness, .6);
+  EXPECT_NEAR(standard.eta, 1.4, 1e-12);
+}
+
 // Claim: what is wrong is named by file, surface and input. Fails if a broken value becomes 0.
 TEST(MaterialX, MistakesAreNamed) {
   const auto surface = [](const std::string& input) {

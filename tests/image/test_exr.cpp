@@ -165,5 +165,92 @@ TEST(Exr, CountsWhatCannotBeStored) {
   EXPECT_EQ(read_image(folder.file("float.exr")).pixels, (ZeroedArray<float>{0, 1e6f, 0, 0, -1e9f, 65504}));
 }
 
+/// The header's numbers or text of this name.
+struct StatedSpace {
+  float chromaticities[8] = {};
+  std::string id;
+  explicit StatedSpace(const std::string& path) {
+    const auto input = OIIO::ImageInput::open(path);
+    input->spec().getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities);
+    id = input->spec().get_string_attribute("colorInteropID");
+  }
+};
+
+// Claim: the header states the space of the colours: the primaries and white of Rec.709 or AP1, and the name of the
+// Color Interop Forum. Source: ITU-R BT.709, SMPTE ST 2065-1, the forum's recommendation. Fails if either is left out
+// or does not follow the space.
+TEST(Exr, StatesTheColorSpace) {
+  const ScratchFolder folder;
+  write_exr(folder.file("a.exr"), layered(), true);
+  const StatedSpace plain(folder.file("a.exr"));
+  const float rec709[8] = {.64f, .33f, .3f, .6f, .15f, .06f, .3127f, .329f};
+  EXPECT_TRUE(std::equal(rec709, rec709 + 8, plain.chromaticities));
+  EXPECT_EQ(plain.id, "lin_rec709_scene");
+  write_exr(folder.file("a.exr"), layered(), true, LayerChoice{}, FilmColorSpace::acescg);
+  const StatedSpace aces(folder.file("a.exr"));
+  const float ap1[8] = {.713f, .293f, .165f, .83f, .128f, .044f, .32168f, .33766f};
+  EXPECT_TRUE(std::equal(ap1, ap1 + 8, aces.chromaticities));
+  EXPECT_EQ(aces.id, "lin_ap1_scene");
+}
+
+/// A pixel of colours, a vector, errors and mattes.
+Image coloured() {
+  Image image;
+  image.width = image.height = 1;
+  image.channels = {"R",
+                    "G",
+                    "B",
+                    "N.X",
+                    "N.Y",
+                    "N.Z",
+                    "error.R",
+                    "error.G",
+                    "error.B",
+                    "variance.R",
+                    "variance.G",
+                    "variance.B",
+                    "Z",
+                    "CryptoObject00.R",
+                    "CryptoObject00.G",
+                    "CryptoObject00.B"};
+  image.pixels.assign({.8f, .1f, .2f, .6f, 0, .8f, .3f, 0, 0, .09f, 0, 0, 7, 1e30f, .5f, 2});
+  return image;
+}
+
+// Claim: in ACEScg a file's colours are those of its matrix, errors and roots of variances alike; normals, depths and
+// Cryptomatte stay; and what reads it has Rec.709 again. Source: image.h; the published matrix, whose first column is
+// .613097, .070194, .020616, to five digits. Fails if a layer is converted that is no colour, or read as it stands.
+TEST(Exr, AcescgThereAndBack) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("a.exr");
+  const Image written = coloured();
+  write_exr(path, written, false, LayerChoice{}, FilmColorSpace::acescg);
+  const auto input = OIIO::ImageInput::open(path);
+  std::vector<float> stored(written.channels.size());
+  ASSERT_TRUE(input->read_image(0, 0, 0, int(stored.size()), OIIO::TypeFloat, stored.data()));
+  const auto in_file = [&](const std::string& channel) {
+    return stored[std::size_t(input->spec().channelindex(channel))];
+  };
+  EXPECT_NEAR(in_file("R"), .613097f * .8f + .339523f * .1f + .047379f * .2f, 1e-5f);
+  EXPECT_NEAR(in_file("B"), .020616f * .8f + .109570f * .1f + .869815f * .2f, 1e-5f);
+  EXPECT_NEAR(in_file("error.G"), .070194f * .3f, 1e-5f);
+  EXPECT_NEAR(in_file("variance.G"), .070194f * .070194f * .09f, 1e-7f);
+  for (const char* channel : {"N.X", "N.Z", "Z", "CryptoObject00.R", "CryptoObject00.G", "CryptoObject00.B"})
+    EXPECT_EQ(in_file(channel), value(written, channel, 0)) << channel;
+  const Image read = read_image(path);
+  for (const std::string& channel : written.channels)
+    EXPECT_NEAR(value(read, channel, 0), value(written, channel, 0),
+                3e-7f * std::abs(value(written, channel, 0)) + 3e-7f)
+        << channel;
+}
+
+// Claim: Cryptomatte's channels are floats where others are halves: a name is all bits of a float. Source: Cryptomatte
+// specification 1.2.0. Fails if they are stored as colours.
+TEST(Exr, MattesStayFloats) {
+  const ScratchFolder folder;
+  write_exr(folder.file("a.exr"), coloured(), true);
+  EXPECT_EQ(value(read_image(folder.file("a.exr")), "CryptoObject00.R", 0), 1e30f);
+}
+
 }  // namespace
 }  // namespace opaline

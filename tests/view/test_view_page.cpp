@@ -5,6 +5,7 @@
 
 #include "browser.h"
 #include "opaline/core/error.h"
+#include "opaline/image/view_transform.h"
 
 namespace opaline {
 namespace {
@@ -63,30 +64,45 @@ struct LongViewPage : ::testing::Test {
     return {x + width / 2, y + height / 2};
   }
 
-  /// Expects what the canvas shows to be the picture, in sRGB.
-  void expect_shown(const std::vector<std::uint16_t>& picture) {
+  /// Expects what the canvas shows to be the picture, as the view has it.
+  void expect_shown(const std::vector<std::uint16_t>& picture, ViewTransform view_of = ViewTransform::soft) {
     const Json shown = browser.run(tab,
                                    "[...document.getElementById('picture').getContext('2d')"
                                    ".getImageData(0, 0, 48, 32).data]");
     ASSERT_EQ(shown.size(), picture.size());
     double worst = 0;
-    for (std::size_t i = 0; i < picture.size(); ++i) {
-      if (i % 4 == 3) continue;
-      half value;
-      value.setBits(picture[i]);
-      const double x = std::max(0.0, double(float(value)));
-      const double srgb = x <= .0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - .055;
-      worst = std::max(worst, std::abs(shown[i].get<double>() - std::min(255.0, 255 * srgb)));
+    for (std::size_t i = 0; i < picture.size(); i += 4) {
+      RgbF color;
+      for (std::size_t c = 0; c < 3; ++c) {
+        half value;
+        value.setBits(picture[i + c]);
+        color[c] = value;
+      }
+      color = shown_color(view_of, color);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double x = double(color[c]);
+        const double srgb = x <= .0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - .055;
+        worst = std::max(worst, std::abs(shown[i + c].get<double>() - 255 * srgb));
+      }
     }
     EXPECT_LE(worst, .51);
   }
 };
 
 // Claim: what is typed, dragged, turned and undone in the page is in the scene, and the picture on the canvas is the one
-// of `opaline render` of it, to the byte that sRGB rounds to.
+// of `opaline render` of it, in every view of film.view, to the byte that sRGB rounds to.
 TEST_F(LongViewPage, EditsAreShown) {
   final_edits();
   expect_shown(rendered(folder.scene));
+  const auto choose = [&](std::string_view name) {
+    browser.run(tab, "(() => { const field = document.getElementById('transform'); field.value = '" +
+                         std::string(name) + "'; field.dispatchEvent(new Event('change')); })()");
+  };
+  for (std::size_t v = 0; v < kViewNames.size(); ++v) {
+    choose(kViewNames[v]);
+    expect_shown(rendered(folder.scene), ViewTransform(v));
+  }
+  choose("soft");
   type("media.stone.specular_ior", "specular_ior", "1.35");
   EXPECT_EQ(final_edits(2), std::vector<std::string>{"media.stone.specular_ior=1.35"});
   expect_shown(rendered(folder.scene, {"media.stone.specular_ior=1.35"}));

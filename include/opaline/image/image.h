@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "opaline/core/zeroed_array.h"
+#include "opaline/scene/enumerations.h"
 
 namespace opaline {
 
@@ -27,15 +28,17 @@ struct WriteReport {
 };
 
 /// Writes an EXR with all layers and metadata; the bytes depend on the image alone (no time stamp).
-/// Colour and N in half if asked; P, Z, irradiance and variance always in float.
+/// Colour and N in half if asked; P, Z, irradiance, variance and Cryptomatte's channels always in float.
 /// error Error{run_failed} naming the file: not writable, disk full; the old file is left as it was
 WriteReport write_exr(const std::string& path, const Image& image, bool half);
 
-/// Writes R, G, B as an 8-bit sRGB PNG after multiplication by 2^exposure.
+/// Writes R, G, B as an 8-bit sRGB PNG after multiplication by 2^exposure, as the view shows them.
 /// error as write_exr
-void write_png(const std::string& path, const Image& image, double exposure);
+void write_png(const std::string& path, const Image& image, double exposure,
+               ViewTransform view = ViewTransform::srgb);
 
-/// Reads an EXR, HDR (Radiance) or PNG (PNG is converted from sRGB to linear).
+/// Reads an EXR, HDR (Radiance) or PNG. Colours become linear Rec.709: PNGs from sRGB, EXRs whose chromaticities are
+/// AP1 from ACEScg.
 /// error Error{bad_input} naming the file: missing, truncated, not an image
 Image read_image(const std::string& path);
 

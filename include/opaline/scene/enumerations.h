@@ -138,6 +138,27 @@ constexpr NameList names_of(ColorSpace) {
   return kColorSpaceNames;
 }
 
+/// How a PNG shows linear light, whose white is 1 (view_transform.h).
+enum class ViewTransform {
+  soft,     ///< as it is below .8; what is brighter bends towards white
+  neutral,  ///< Khronos PBR Neutral
+  agx,      ///< AgX with its default contrast, approximated
+  srgb      ///< as it is; what is brighter than white is cut
+};
+inline constexpr std::array<std::string_view, 4> kViewNames{"soft", "neutral", "agx", "srgb"};
+/// The words for its values, in their order.
+constexpr NameList names_of(ViewTransform) {
+  return kViewNames;
+}
+
+/// What the colours of an EXR are in; the words are those of OpenColorIO's configurations.
+enum class FilmColorSpace { lin_rec709, acescg };
+inline constexpr std::array<std::string_view, 2> kFilmColorSpaceNames{"lin_rec709", "acescg"};
+/// The words for its values, in their order.
+constexpr NameList names_of(FilmColorSpace) {
+  return kFilmColorSpaceNames;
+}
+
 /// Where a translucent body's tint t colours light: as it enters (pre), as it leaves (post), or by its root at both.
 enum class TextureMix { pre, post, split };
 inline constexpr std::array<std::string_view, 3> kTextureMixNames{"pre", "post", "split"};

@@ -252,6 +252,8 @@ struct Film {
       PixelFilter::box;  ///< box of one pixel; gaussian of standard deviation 0.5, radius 1.5
   bool half = true;      ///< 16-bit EXR; false: 32-bit
   double exposure = 0;   ///< stops, for PNG only
+  ViewTransform view = ViewTransform::soft;                 ///< for PNG only
+  FilmColorSpace color_space = FilmColorSpace::lin_rec709;  ///< for EXR only
   friend bool operator==(const Film&, const Film&) = default;
 };
 

@@ -18,6 +18,8 @@ class RoughBoundary {
 
   /// The share of light from a direction that is reflected, to any side; from a table, error below .002.
   float reflectance(float cosine) const;
+  /// The same of facets that reflect all light: 1 without the light that would meet a second one.
+  float reflected_once(float cosine) const;
 
   /// Light that is reflected by a facet drawn with the density of those that the viewer sees (Heitz 2018).
   struct Sample {
@@ -38,7 +40,9 @@ class RoughBoundary {
 
   static constexpr std::size_t kCosines = 33;
   float alpha_, eta_;
-  std::array<float, kCosines> reflectances_{};
+  using Table = std::array<float, kCosines>;
+  static float value_of(const Table& table, float cosine);
+  Table reflectances_{}, once_{};
 };
 
 /// Boundaries of one index and any roughness, whose tables lie between those of a few.

@@ -15,7 +15,7 @@ const kNumbers = ["number", "whole_number", "length"], kThrees = ["point", "trip
 const kColours = ["color", "number_or_triple"];
 // Shown where the scene has them.
 const kOptional = ["tint", "texture_mix", "thickness"];
-const kGloss = ["metalness", "specular_roughness", "specular_ior"];
+const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_weight"];
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};
 const kWidestLinear = 1000, kDecade = 1;
 

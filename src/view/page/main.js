@@ -12,7 +12,7 @@ const kLooksOpaque = 300;                                          // mean free 
 
 const film = {aspect: 1, shownHeight: 1, place: (seen) => seen};
 const state = {scene: null, camera: null, film, wipe: 0, revision: 0, edits: [], command: ""};
-const display = {exposure: 0, transform: "srgb", channel: ""};
+const display = {exposure: 0, transform: "soft", channel: ""};
 let frame = null, pinned = null, waiting = null, isDragging = false, layers = [];
 
 // ---- the picture --------------------------------------------------------------------------------------------
@@ -168,6 +168,7 @@ function takeScene(message) {
   if (isFirst) {
     one("name").value = message.file.replace(/(\.(json|glb|gltf|obj))?$/i, "-edited");
     setExposure(message.scene.film?.exposure || 0);
+    one("transform").value = display.transform = message.scene.film?.view || "soft";
   }
   one("undo").disabled = !message.undo;
   one("redo").disabled = !message.redo;

@@ -12,13 +12,66 @@ function floatOfHalf(bits) {
 const kFloats = Float32Array.from({length: 65536}, (_, bits) => floatOfHalf(bits));
 
 const srgb = (x) => x <= .0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - .055;
-const kTransforms = {
-  srgb,
-  soft: (x) => srgb(x / (1 + x)),
-  linear: (x) => x,
-  log: (x) => (Math.log2(Math.max(x, 1e-9)) + 8) / 16,
-};
 const toByte = (x) => Math.max(0, Math.min(255, Math.round(255 * x))) || 0;
+
+// ---- views: as src/image/view_transform.cpp has them, of three numbers in place --------------------------------------
+
+function softHighlights(c, start) {
+  const peak = Math.max(c[0], c[1], c[2]), room = 1 - start;
+  if (peak < start) return;
+  const shown = 1 - room * room / (peak + room - start), kept = 1 / (.15 * (peak - shown) + 1);
+  for (let i = 0; i < 3; ++i) c[i] = c[i] * (shown / peak * kept) + shown * (1 - kept);
+}
+
+function neutral(c) {
+  const least = Math.min(c[0], c[1], c[2]), off = least < .08 ? least - least * least / .16 : .04;
+  for (let i = 0; i < 3; ++i) c[i] -= off;
+  softHighlights(c, .76);
+}
+
+const kInset = [.842479062253094, .0784335999999992, .0792237451477643, .0423282422610123, .878468636469772,
+  .0791661274605434, .0423756549057051, .0784336, .879142973793104];
+const kOutset = [1.19687900512017, -.0980208811401368, -.0990297440797205, -.0528968517574562, 1.15190312990417,
+  -.0989611768448433, -.0529716355144438, -.0980434501171241, 1.15107367264116];
+const kContrast = [15.5, -40.14, 31.96, -6.868, .4298, .1191, -.00232], kDarkest = -12.47393, kBrightest = 4.026069;
+
+function multiply(m, c) {
+  const [r, g, b] = c;
+  for (let i = 0; i < 3; ++i) c[i] = m[3 * i] * r + m[3 * i + 1] * g + m[3 * i + 2] * b;
+}
+
+function agx(c) {
+  multiply(kInset, c);
+  for (let i = 0; i < 3; ++i) {
+    const stops = Math.max(kDarkest, Math.min(kBrightest, Math.log2(Math.max(c[i], 1e-10))));
+    const x = (stops - kDarkest) / (kBrightest - kDarkest);
+    c[i] = kContrast.reduce((sum, factor) => sum * x + factor, 0);
+  }
+  multiply(kOutset, c);
+  for (let i = 0; i < 3; ++i) c[i] = Math.max(c[i], 0) ** 2.2;
+}
+
+const kViews = {soft: (c) => softHighlights(c, .8), neutral, agx};
+const kUnchangedBelow = {soft: .8, neutral: 0, agx: 0};
+const kCurves = {srgb, linear: (x) => x, log: (x) => (Math.log2(Math.max(x, 1e-9)) + 8) / 16};
+
+const shown = new Float64Array(3);
+const shownByte = (i) => toByte(srgb(Math.max(0, Math.min(1, shown[i]))));
+function show(transform, r, g, b) {
+  shown[0] = r;
+  shown[1] = g;
+  shown[2] = b;
+  kViews[transform](shown);
+}
+
+// The byte of a grey.
+function greyCurve(transform) {
+  if (kCurves[transform]) return (x) => toByte(kCurves[transform](x));
+  return (x) => {
+    show(transform, x, x, x);
+    return shownByte(0);
+  };
+}
 
 export function parseFrame(buffer) {
   const [mark, number, revision, step, width, height, channels, microseconds] = new Uint32Array(buffer, 0, 8);
@@ -41,13 +94,13 @@ export function valuesAt(frame, x, y) {
   };
 }
 
-// Bytes of all halves.
+// Bytes of all halves, as greys.
 let table = null, tableKey = "";
 function byteTable(transform, exposure) {
   const key = transform + exposure;
   if (key !== tableKey) {
-    const gain = 2 ** exposure, curve = kTransforms[transform];
-    table = Uint8Array.from(kFloats, (x) => toByte(curve(Math.max(0, x * gain))));
+    const gain = 2 ** exposure, curve = greyCurve(transform);
+    table = Uint8Array.from(kFloats, (x) => curve(Math.max(0, x * gain)));
     tableKey = key;
   }
   return table;
@@ -55,16 +108,26 @@ function byteTable(transform, exposure) {
 
 const kOpaque = 0xff000000;
 
+// Opaque, of light after exposure.
+function pixelOf(transform, r, g, b) {
+  show(transform, Math.max(0, r), Math.max(0, g), Math.max(0, b));
+  return kOpaque | shownByte(2) << 16 | shownByte(1) << 8 | shownByte(0);
+}
+
 function drawColours(frame, out, display) {
   const bytes = byteTable(display.transform, display.exposure), halves = frame.colours;
-  const single = ["R", "G", "B"].indexOf(display.channel);
+  const single = ["R", "G", "B"].indexOf(display.channel), gain = 2 ** display.exposure;
+  const unchangedBelow = kUnchangedBelow[display.transform] ?? Infinity;
   for (let p = 0, h = 0; p < out.length; ++p, h += 4) {
     if (display.channel === "A") {
       out[p] = kOpaque | toByte(kFloats[halves[h + 3]]) * 0x10101;
     } else if (single >= 0) {
       out[p] = kOpaque | bytes[halves[h + single]] * 0x10101;
     } else {
-      out[p] = kOpaque | bytes[halves[h + 2]] << 16 | bytes[halves[h + 1]] << 8 | bytes[halves[h]];
+      const r = gain * kFloats[halves[h]], g = gain * kFloats[halves[h + 1]], b = gain * kFloats[halves[h + 2]];
+      out[p] = Math.max(r, g, b) < unchangedBelow
+        ? kOpaque | bytes[halves[h + 2]] << 16 | bytes[halves[h + 1]] << 8 | bytes[halves[h]]
+        : pixelOf(display.transform, r, g, b);
     }
   }
 }
@@ -81,13 +144,18 @@ function layerCurve(frame, display) {
     }
     return (x) => toByte((x - low) / (high - low));
   }
-  const gain = 2 ** display.exposure, curve = kTransforms[display.transform];
-  return (x) => toByte(curve(Math.max(0, x * gain)));
+  const gain = 2 ** display.exposure, curve = greyCurve(display.transform);
+  return (x) => curve(Math.max(0, x * gain));
 }
 
 function drawLayer(frame, out, display) {
-  const curve = layerCurve(frame, display), n = frame.channels, values = frame.layer;
+  const curve = layerCurve(frame, display), n = frame.channels, values = frame.layer, gain = 2 ** display.exposure;
+  const isViewed = n === 3 && !"NP".includes(display.channel) && display.transform in kViews;
   for (let p = 0, v = 0; p < out.length; ++p, v += n) {
+    if (isViewed) {
+      out[p] = pixelOf(display.transform, gain * values[v], gain * values[v + 1], gain * values[v + 2]);
+      continue;
+    }
     const r = curve(values[v]);
     out[p] = kOpaque | (n < 3 ? r * 0x10101 : curve(values[v + 2]) << 16 | curve(values[v + 1]) << 8 | r);
   }
