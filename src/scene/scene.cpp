@@ -17,6 +17,7 @@ bool are_one_thing(const Shape& a, const Shape& b) {
 }  // namespace
 
 int bounces_of(const Scene& scene) {
+  if (scene.lights.empty()) return 0;
   if (scene.settings.bounces) return *scene.settings.bounces;
   if (has_cells(scene.settings.method)) return 0;
   const auto first = std::ranges::find_if(scene.shapes, sends_light);

@@ -161,6 +161,10 @@ Image Session::State::first_light(Monitor* monitor) {
   return opaline::first_light({scene_, *world_, *rays_, plan_, monitor});
 }
 
+void bound_far_side(Body& body) {
+  if (body.kernel.far_side != nullptr && body.octree.normal_cones.empty()) bound_normals(body.octree);
+}
+
 void Session::State::prepare(Monitor* monitor) {
   if (prepared_) return;
   prepare_rays();
@@ -200,7 +204,7 @@ void Session::State::prepare(Monitor* monitor) {
     costs_.push_back(watch.cost("bounces"));
   }
   for (Body& body : bodies_) {
-    if (body.kernel.far_side != nullptr && body.octree.normal_cones.empty()) bound_normals(body.octree);
+    bound_far_side(body);
     body.cloud = cloud_error(body, *world_, scene_);
   }
   const std::vector<std::size_t> most = most_cache_places(input, bodies_, pictures_);

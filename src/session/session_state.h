@@ -87,4 +87,7 @@ struct Session::State {
   std::vector<StageCost> costs_;
 };
 
+/// The normals of a tree's nodes, where the kernel asks for them.
+void bound_far_side(Body& body);
+
 }  // namespace opaline

@@ -24,6 +24,7 @@ void Session::State::update_bounces(const PrecomputeInput& input, const std::vec
       bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
       hold_tree(bodies_[b], keys_[b], keys_[b].lights_key);
     }
+    std::ranges::for_each(bodies_, bound_far_side);
     bounced = bounced_at_samples(input, bodies_);
     for (std::size_t b = 0; cache_ != nullptr && b < bodies_.size(); ++b)
       cache_->keep_bounced(key_of(keys_[b]), bounced[b]);

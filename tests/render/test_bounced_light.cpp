@@ -214,6 +214,29 @@ TEST(BouncedLight, IsThatOfDirect) {
     }
 }
 
+// Claim: light bounces unasked where one thing can light another, and only there: not in a single body, with cells, in the
+// dark, or beside what sends nothing back. Source: bounces_of. Fails if: any of these is forgotten.
+TEST(BouncedLight, IsThereUnasked) {
+  Scene scene = ball_beside_wall();
+  scene.settings.bounces.reset();
+  EXPECT_EQ(bounces_of(scene), 1);
+  const auto without = [&](auto change) {
+    Scene other = scene;
+    change(other);
+    return bounces_of(other) == 0;
+  };
+  EXPECT_TRUE(without([](Scene& s) { s.settings.method = Method::volume; }));
+  EXPECT_TRUE(without([](Scene& s) { s.lights.clear(); }));
+  EXPECT_TRUE(without([](Scene& s) { s.shapes.erase(s.shapes.begin(), s.shapes.begin() + 2); }));
+  EXPECT_TRUE(without([](Scene& s) { s.shapes[0].reflectance = s.shapes[1].reflectance = {}; }));
+  EXPECT_TRUE(without([](Scene& s) {
+    s.shapes = {s.shapes[2], s.shapes[2]};
+    s.shapes[0].group = s.shapes[1].group = "pair";
+  }));
+  scene.shapes = {scene.shapes[2], scene.shapes[2]};
+  EXPECT_EQ(bounces_of(scene), 1);
+}
+
 // Claim: methods that know no light between things refuse the setting by name. Fails if: they ignore it.
 TEST(BouncedLight, IsRefusedWhereItIsNotKnown) {
   Scene scene = ball_beside_wall();

@@ -14,6 +14,7 @@ Scene two_spheres(const std::string& group) {
   scene.lights = {point_light({-200, 0, 0}, {1e5, 1e5, 1e5})};
   scene.camera.position = {0, 0, 60};
   scene.camera.field_of_view = 25;
+  scene.settings.bounces = 0;
   return scene;
 }
 

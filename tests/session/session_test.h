@@ -13,7 +13,7 @@
 namespace opaline::test {
 
 /// Two marble balls (one translucent group each) beside each other on an opaque floor, under a point light,
-/// an area light and the sun: neither ball shadows the other.
+/// an area light and the sun: neither ball shadows the other, and nothing bounces.
 inline Scene two_balls() {
   Scene scene;
   scene.media = {marble(), grey_medium(.4, .01, 1.3)};
@@ -33,6 +33,7 @@ inline Scene two_balls() {
   scene.film.half = false;
   scene.settings.samples = 2500;
   scene.settings.light_samples = 6;
+  scene.settings.bounces = 0;
   return scene;
 }
 

@@ -258,7 +258,6 @@ TEST(Reuse, Lights) {
 TEST(Reuse, HeldViewAndMovedLight) {
   Scene scene = two_balls();
   scene.settings.method = Method::lambert;
-  scene.settings.bounces = 0;
   for (Medium& medium : scene.media) medium.eta = 1;
   scene.lights.erase(scene.lights.begin() + 1);  // the panel
   Session session;

@@ -16,6 +16,7 @@ using namespace test;
 TEST(SessionCache, SecondComputesNothing) {
   const ScratchFolder folder;
   std::vector<Scene> scenes(4, two_balls());
+  scenes[1].settings.bounces = 1;
   scenes[1].shapes[0].to_world = shifted({3, 1, 0});
   scenes[2].lights[0].source = PointLight{{9, 90, 0}, {1e4, 1e4, 1e4}};
   scenes[3].shapes.insert(scenes[3].shapes.begin(), scenes[3].shapes[2]);  // all mesh numbers move
@@ -66,7 +67,8 @@ TEST(SessionCache, SurfaceCacheIsFound) {
 // Fails if: the result is computed but the key's entry not replaced (the second time warns again).
 TEST(SessionCache, SpoiledEntry) {
   const ScratchFolder folder;
-  const Scene scene = two_balls();
+  Scene scene = two_balls();
+  scene.settings.bounces = 1;
   Image expected;
   {
     StageCache cache(folder.path.string());

@@ -19,6 +19,7 @@ TEST(StageVersions, ComputeWhatTheyDid) {
   blocker.source = BoxShape{{-4, 12, -4}, {4, 13, 4}};
   scene.shapes.push_back(blocker);
   scene.lights = {point_light({0, 40, 30}, {1, 2, 3})};
+  scene.settings.bounces = 0;
   const Prepared box(scene);
   const Body& group = box.bodies[0];
 
