@@ -246,7 +246,7 @@ void Session::State::ready_light_mix(Monitor* monitor) {
 
 /// After prepare.
 bool Session::State::can_mix() const {
-  return mixes_lights_ && !has_cells(scene_.settings.method) && bounces_of(scene_) == 0 &&
+  return mixes_lights_ && !has_cells(scene_.settings.method) &&
          std::ranges::none_of(bodies_, [](const Body& g) { return g.surface_cache.has_value(); });
 }
 
@@ -254,19 +254,29 @@ bool Session::State::can_mix() const {
 Image Session::State::recoloured(const Scene& scene, HeldView& view, Monitor* monitor) {
   const std::vector<Light> lights = recentred_lights(scene, *world_);
   std::vector<Body> groups;
-  for (const Body& group : bodies_) {
-    const std::vector<RgbF> irradiance = entered_irradiance(group, lights);
-    groups.push_back({group.plan,
-                      group.profile,
-                      {},
-                      {},
-                      {},
-                      gather_flux(group.surface.samples, irradiance),
-                      group.kernel});
-    groups.back().cloud = group.cloud;
-    groups.back().entering = group.entering;
-    if (group.kernel.far_side != nullptr) bound_normals(groups.back().octree);
-    work_.nodes_built += groups.back().octree.nodes.size();
+  const auto build_tree = [&](Body& lit, const Body& body) {
+    lit.octree = gather_flux(body.surface.samples, lit.irradiance);
+    bound_far_side(lit);
+    work_.nodes_built += lit.octree.nodes.size();
+  };
+  for (const Body& body : bodies_) {
+    Body& lit = groups.emplace_back();
+    lit.plan = body.plan;
+    lit.profile = body.profile;
+    lit.kernel = body.kernel;
+    lit.cloud = body.cloud;
+    lit.entering = body.entering;
+    lit.irradiance = entered_irradiance(body, lights);
+    build_tree(lit, body);
+  }
+  if (bounces_of(scene) > 0) {
+    for (std::size_t b = 0; b < groups.size(); ++b) groups[b].surface = bodies_[b].surface;
+    const std::vector<std::vector<RgbF>> bounced =
+        bounced_at_samples({scene, *world_, *rays_, plan_, monitor}, groups);
+    for (std::size_t b = 0; b < groups.size(); ++b) {
+      add_bounced(groups[b], bounced[b]);
+      build_tree(groups[b], bodies_[b]);
+    }
   }
   RenderResult part = opaline::render({scene, *world_, *rays_, groups, monitor, {}, &view});
   work_.queries += part.queries;

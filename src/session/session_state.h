@@ -87,6 +87,9 @@ struct Session::State {
   std::vector<StageCost> costs_;
 };
 
+/// What other surfaces send to a body's samples, to what enters there from lights.
+void add_bounced(Body& body, std::span<const RgbF> bounced);
+
 /// The normals of a tree's nodes, where the kernel asks for them.
 void bound_far_side(Body& body);
 

@@ -7,6 +7,11 @@
 
 namespace opaline {
 
+void add_bounced(Body& body, std::span<const RgbF> bounced) {
+  for (std::size_t i = 0; i < bounced.size(); ++i)
+    body.irradiance[i] += body.entering.empty() ? bounced[i] : bounced[i] * body.entering[i];
+}
+
 // Trees with the light that bounces in place of those without it. What bounces depends on all bodies.
 void Session::State::update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights) {
   KeyBuilder all("bounces", 1);
@@ -30,10 +35,8 @@ void Session::State::update_bounces(const PrecomputeInput& input, const std::vec
       cache_->keep_bounced(key_of(keys_[b]), bounced[b]);
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const std::vector<RgbF>& tints = bodies_[b].entering;
     bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
-    for (std::size_t i = 0; i < bounced[b].size(); ++i)
-      bodies_[b].irradiance[i] += tints.empty() ? bounced[b][i] : bounced[b][i] * tints[i];
+    add_bounced(bodies_[b], bounced[b]);
     hold_tree(bodies_[b], keys_[b], key_of(keys_[b]));
     decide(bodies_[b], "light of other surfaces gathered");
   }

@@ -166,13 +166,7 @@ TEST(Reuse, NearFieldInOtherColours) {
   }
 }
 
-// Claim: with the view held, the third edit of colours in a row is a sum of pictures: no point is looked up;
-// its diffuse light is the cold picture's to within the tolerance, in 99 of 100 pixels, and 2 %, which is
-// what shadow rays beside edges are worth (near_field_sampler.h); what is not light has the same bits; a
-// light that had no green gets it. An edit of something else ends it. Source: light_mix.h. Fails if: a part
-// is added twice, or scaled by the wrong channel, or kept where the medium changed.
-TEST(Reuse, LightColoursAgainAndAgain) {
-  Scene scene = two_balls();
+void expect_mixed_colours(Scene scene) {
   Session session;
   session.hold_view(true, true);
   picture_of(session, scene);
@@ -205,6 +199,20 @@ TEST(Reuse, LightColoursAgainAndAgain) {
   EXPECT_EQ(session.work().queries, 0u) << "made ready";
   scene.media[0].profile = ProfileKind::normalized_diffusion;
   EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+}
+
+// Claim: with the view held, the third edit of colours in a row is a sum of pictures: no point is looked up;
+// its diffuse light is the cold picture's to within the tolerance, in 99 of 100 pixels, and 2 %, which is
+// what shadow rays beside edges are worth (near_field_sampler.h); what is not light has the same bits; a
+// light that had no green gets it, and what bounces goes along. An edit of something else ends it. Source: light_mix.h. Fails if: a part
+// is added twice, or scaled by the wrong channel, or kept where the medium changed.
+TEST(Reuse, LightColoursAgainAndAgain) {
+  for (const int bounces : {0, 1}) {
+    SCOPED_TRACE(bounces);
+    Scene scene = two_balls();
+    scene.settings.bounces = bounces;
+    expect_mixed_colours(scene);
+  }
 }
 
 // Claim: a medium's coefficients and profile, and what evaluation is asked for, cost evaluation alone; eta
