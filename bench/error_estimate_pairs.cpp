@@ -237,7 +237,7 @@ RandomPair random_pair(std::size_t index, const std::string& scenes_folder) {
   const int width = pair.samples_per_pixel > 64   ? 48
                     : pair.samples_per_pixel > 16 ? 64
                                                   : 64 + int(dice.below(65));
-  std::string settings = fmt::format(R"("light_samples": {}, "evaluator": "{}", "seed": {})",
+  std::string settings = fmt::format(R"("bounces": 0, "light_samples": {}, "evaluator": "{}", "seed": {})",
                                      pair.light_samples, pair.evaluator, index);
   settings += pair.samples == "default" ? R"(, "max_samples": 50000)" : R"(, "samples": )" + pair.samples;
   if (dice.chance(.3)) settings += fmt::format(R"(, "tolerance": {:.2g})", dice.spread(.001, .02));
