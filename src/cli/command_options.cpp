@@ -16,7 +16,7 @@ void add_frames_option(CLI::App& app, Options& options) {
   app.add_option(
          "--frames", options.frames,
          "frames of a range, e.g. 1-24, 1-24x2 or 1,5,7-9; ## in the names of outputs and meshes is their "
-         "number; frames that are there already are left alone")
+         "number; frames that are there already as EXR, whole and of this scene, are left alone")
       ->check(CLI::Validator(
           [](std::string& text) {
             return parse_frames(text) ? std::string()

@@ -160,6 +160,7 @@ CLI::Validator layers_check() {
         std::string name;
         while (std::getline(names, name, ',') && std::ranges::find(kLayers, name) != kLayers.end())
           ;
+        if (name == "none") return std::string("none stands alone");
         const std::string near = did_you_mean(name, kLayerWords);
         return fmt::format("there is no layer '{}'{}", printable(name),
                            near.empty() ? "; expected none, or some of " + join(kLayers) : near);

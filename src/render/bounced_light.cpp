@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::size_t kPointsAtOnce = 64;
 constexpr std::uint64_t kSeed = 4000;
-// Rays from a sample, whose neighbours' are added to its own by the medium; from a place that stands for the
-// pixels around it; from a hit that nothing stands for.
-constexpr int kOfSample = 16, kOfPlace = 192, kOfHit = 24;
+// Rays from a sample, whose neighbours' are added to its own by the medium; from a hit that nothing stands for; from a
+// place that stands for the pixels around it: for each of them, at least and at most.
+constexpr int kOfSample = 16, kOfHit = 24, kOfPixel = 3, kFewestOfPlace = 48, kMostOfPlace = 192;
 constexpr int kAcross = 64;  // places along the picture's longer side
 constexpr int kAround = 2;   // beyond each border
 // Distance from a place's plane, over the places' spacing, at which it stands for a hit half as well.
@@ -107,6 +107,7 @@ BouncedPlaces::BouncedPlaces(const RenderInput& input, const Shader& shader)
 
 void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, std::span<const TracedRay> rays) {
   const double apart = step_ * pixel_width(input.scene.camera, input.scene.film);  // at depth 1
+  const int rays_each = std::clamp(kOfPixel * step_ * step_, kFewestOfPlace, kMostOfPlace);
   std::vector<std::uint64_t> keys(rays.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = i;
   parallel_chunks(rays.size(), kPointsAtOnce, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -114,7 +115,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, std::
         shader.surfaces_along(rays.subspan(begin, end - begin), std::span(keys).subspan(begin, end - begin));
     for (const auto& [hits, eta] : seen) {
       const std::vector<RgbF> irradiance =
-          gathered_irradiance({input.rays, shader, hits.points, hits.keys, eta, kOfPlace,
+          gathered_irradiance({input.rays, shader, hits.points, hits.keys, eta, rays_each,
                                hash_bits(input.scene.settings.seed, kSeed)});
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
         const std::size_t place = begin + hits.rays[i];
@@ -187,6 +188,11 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input,
   const RenderInput lit{input.scene, input.world, input.rays, bodies, input.monitor};
   const Shader shader(lit);
   std::vector<std::vector<RgbF>> bounced;
+  if (input.monitor != nullptr) {
+    std::size_t points = 0;
+    for (const Body& body : bodies) points += body.surface.samples.size();
+    input.monitor->begin("bounces", points);
+  }
   for (const Body& body : bodies) {
     const std::vector<SurfaceSample>& samples = body.surface.samples;
     std::vector<RgbF>& own = bounced.emplace_back(samples.size());
@@ -202,6 +208,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input,
           gathered_irradiance({input.rays, shader, points, keys, float(body.profile.eta), kOfSample,
                                hash_bits(input.scene.settings.seed, kSeed + 2 + bounced.size())});
       std::ranges::copy(gathered, own.begin() + std::ptrdiff_t(begin));
+      advance(input.monitor, end - begin);
     });
   }
   return bounced;

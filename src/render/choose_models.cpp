@@ -101,7 +101,9 @@ std::string model_text(const BodyModel& model) {
 }
 
 std::string model_error_text(const BodyModel& model, Method method) {
-  const auto percent = [](double error) { return fmt::format("{:.2g} %", 100 * error); };
+  const auto percent = [](double error) {
+    return fmt::format("{:.{}f} %", 100 * error, error < .0995 ? 1 : 0);
+  };
   if (method == Method::volume || method == Method::lambert || !model.expected_error_of_diffusion) return {};
   const std::string of_diffusion = percent(*model.expected_error_of_diffusion),
                     meaning = " off random walks is expected, rms of the worst channel";

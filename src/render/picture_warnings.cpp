@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -55,6 +56,26 @@ std::vector<float> sampled_brightness(const Image& image) {
   const std::size_t step = (image.pixels.size() / image.channels.size() / enough) | 1;
   std::vector<float> values = brightness(image, step);
   return values.empty() && step > 1 ? brightness(image, 1) : values;
+}
+
+/// Whether most of the pixels full of an object show a surface from behind: opaque ones have no behind.
+bool is_inside(const Image& image, const Vec3d& camera) {
+  const std::size_t stride = image.channels.size(), coverage = channel(image, "A");
+  const std::array<std::size_t, 3> normal{channel(image, "N.X"), channel(image, "N.Y"),
+                                          channel(image, "N.Z")},
+      place{channel(image, "P.X"), channel(image, "P.Y"), channel(image, "P.Z")};
+  if (normal[2] == stride || place[2] == stride) return false;
+  std::size_t seen = 0, behind = 0;
+  for (std::size_t at = 0; at < image.pixels.size(); at += stride) {
+    const float* const pixel = image.pixels.data() + at;
+    if (pixel[coverage] < 1) continue;
+    double cosine = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      cosine += double(pixel[normal[i]]) * (double(pixel[place[i]]) - camera[i]);
+    ++seen;
+    if (cosine > 0) ++behind;
+  }
+  return 2 * behind > seen;
 }
 
 std::string nothing_in_view(const Scene& scene, const World& world) {
@@ -140,6 +161,8 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
   if (world.meshes.empty() || scene.lights.empty()) return {};  // the plan has said so
   std::vector<float> values = sampled_brightness(image);
   if (values.empty()) return {nothing_in_view(scene, world)};
+  if (is_inside(image, scene.camera.position))
+    return {"the camera is inside a translucent body: what is seen is its surface from behind"};
   const double gain = std::exp2(scene.film.exposure);
   const auto quantile = [&](double share) {
     const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));

@@ -40,7 +40,12 @@ std::string read_text(const std::string& path) {
 }
 
 /// A mesh needs a light and a camera to be seen.
-void check_is_no_mesh(const std::string& path) {
+void check_is_no_other_file(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  for (const char* picture : {".png", ".exr", ".hdr", ".jpg", ".jpeg", ".tif"})
+    if (extension == picture)
+      throw bad_file(path, "is a picture, not a scene",
+                     "a scene file (JSON), or an asset: .glb, .gltf or .obj");
   if (!is_mesh_file_name(path)) return;
   throw bad_file(path, "is a mesh, not a scene",
                  "a scene file (JSON) with \"shapes\": [{\"file\": \"" +
@@ -184,7 +189,7 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
 
 std::string read_scene_text(const std::string& path) {
   if (is_asset_name(path)) return import_asset(path, std::filesystem::path(path).filename().string()).text;
-  check_is_no_mesh(path);
+  check_is_no_other_file(path);
   return read_text(path);
 }
 

@@ -71,6 +71,20 @@ TEST(PictureWarnings, NothingInView) {
   expect_warning(scene, {"nothing is in view", "a lamp stand in front"});
 }
 
+// Claim: a camera inside a translucent body is told of; one before it, or inside an opaque room, is not. Source: normals
+// point outwards. Fails if: the side is told by the sign of the depth, or an opaque sheet's turned normal counts.
+TEST(PictureWarnings, CameraInsideABody) {
+  Scene scene = lit_ball();
+  scene.camera.position = {0, 0, 5};
+  scene.camera.look_at = {};
+  expect_warning(scene, {"the camera is inside a translucent body"});
+  scene.shapes[0].medium.reset();
+  scene.lights = {point_light({0, 0, 1}, Rgb(100))};
+  const Prepared room(scene);
+  for (const std::string& text : picture_warnings(room.scene, room.world, room.picture()))
+    EXPECT_EQ(text.find("inside"), std::string::npos) << text;
+}
+
 // Claim: lights that light nothing are named with the cause: a lamp's back, no brightness at all, far away.
 // Source: picture_warnings.h. Fails if: a lamp that shines past a shape is taken for one that is turned away
 // (u x v along +z from behind the ball lights it).

@@ -124,13 +124,20 @@ TEST_F(LongViewPage, EditsAreShown) {
   browser.drag(tab, x, y, 40, 0, 8);  // Shift: pan
   edits = final_edits(revision + 1);
   EXPECT_NE(load_scene(folder.scene, edits).camera.look_at, (Vec3d{0, 8, 0}));
+  browser.drag(tab, x, y, 50, 0, 1);  // Alt: the room, and its sun
+  edits = final_edits(revision + 1);
+  const auto sun_of = [&] {
+    return normalized(std::get<DirectionalLight>(load_scene(folder.scene, edits).lights[2].source).direction);
+  };
+  EXPECT_GT(sun_of().x, .01);
+  EXPECT_NEAR(sun_of().y, normalized(Vec3d{0, -2, -1}).y, 1e-5);
   browser.mouse(tab, "mouseWheel", x, y, {{"deltaX", 0}, {"deltaY", -100}});
   edits = final_edits(revision + 1);
   EXPECT_LT(length(load_scene(folder.scene, edits).camera.position -
                    load_scene(folder.scene, edits).camera.look_at),
             length(Vec3d{0, 22, 120}) - 5);
   expect_shown(rendered(folder.scene, edits));
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 4; ++i) {
     browser.key(tab, "z", 2);
     edits = final_edits(revision + 1);
   }

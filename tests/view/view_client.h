@@ -48,7 +48,8 @@ struct ViewFolder : ScratchFolder {
   ],
   "lights": [
     {"name": "key", "type": "point", "position": [0, 100, 20], "intensity": [3e4, 2e4, 1e4]},
-    {"name": "panel", "type": "quad", "corner": [-60, 90, 30], "u": [40, 0, 0], "v": [0, 0, 20], "radiance": 5}
+    {"name": "panel", "type": "quad", "corner": [-60, 90, 30], "u": [40, 0, 0], "v": [0, 0, 20], "radiance": 5},
+    {"name": "sun", "type": "directional", "direction": [0, -2, -1], "irradiance": 0.1}
   ],
   "camera": {"position": [0, 30, 120], "look_at": [0, 8, 0], "field_of_view": 32},
   "film": {"resolution": [48, 32]},

@@ -39,6 +39,14 @@ function turned(v, axis, angle) {
   return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
 }
 
+// What turns a light from afar about +y, counterclockwise seen from above, in radians; null for lights that are near.
+export function turnedLight(light, angle) {
+  if (light.type === "directional") return {direction: rounded(turned(light.direction, [0, 1, 0], angle))};
+  if (light.type !== "environment") return null;
+  const degrees = (light.rotation || 0) + angle * 180 / Math.PI;
+  return {rotation: rounded(degrees - 360 * Math.round(degrees / 360))};
+}
+
 // Angles in radians: around what it looks at, as on a turntable.
 export function orbit(camera, around, over) {
   const {right} = basis(camera), up = unit(camera.up);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: what the server tells goes to the picture, the knobs and the lines below; what a person does goes back.
-import {cameraOf, cameraValues, dolly, orbit, pan} from "./camera.js";
+import {cameraOf, cameraValues, dolly, orbit, pan, turnedLight} from "./camera.js";
 import {Connection, kPause, newStroke, pausedStroke} from "./connection.js";
 import {Knobs} from "./knobs.js";
 import {Overlay} from "./overlay.js";
@@ -91,6 +91,15 @@ function turn(change, stroke) {
   overlay.update();
 }
 
+// The room, and with it the sun. from: the lights before.
+function turnLights(from, angle, stroke) {
+  const values = {};
+  from.forEach((light, index) => Object.entries(turnedLight(light, angle) || {}).forEach(([key, value]) => {
+    values[`${knobs.pathOf("lights", index)}.${key}`] = value;
+  }));
+  if (Object.keys(values).length) connection.set(values, stroke);
+}
+
 function dragCamera(event) {
   if (event.button > 1 || !state.camera) return;
   event.preventDefault();
@@ -99,7 +108,9 @@ function dragCamera(event) {
   canvas.setPointerCapture(event.pointerId);
   isDragging = true;
   let last = [event.clientX, event.clientY];
+  const start = event.clientX, lights = state.scene.lights || [];
   const move = (now) => {
+    if (event.altKey) return turnLights(lights, -kTurn * (now.clientX - start) / height, stroke);
     const x = (now.clientX - last[0]) / height, y = (now.clientY - last[1]) / height;
     last = [now.clientX, now.clientY];
     turn((camera) => event.shiftKey ? pan(camera, x, y) : event.ctrlKey ? dolly(camera, Math.exp(2 * y)) : orbit(camera, -kTurn * x, -kTurn * y), stroke);
@@ -124,6 +135,7 @@ function keyCamera(event) {
   const nearer = {"+": 1 / kKeyDolly, "=": 1 / kKeyDolly, "-": kKeyDolly}[event.key];
   if (!(x || y || nearer) || event.ctrlKey) return;
   event.preventDefault();
+  if (event.altKey) return turnLights(state.scene.lights || [], -kKeyTurn * x, keyStroke());
   turn((camera) => nearer ? dolly(camera, nearer) : event.shiftKey ? pan(camera, kKeyPan * x, kKeyPan * y) : orbit(camera, -kKeyTurn * x, -kKeyTurn * y), keyStroke());
 }
 
