@@ -107,7 +107,8 @@ std::vector<SeenMeshes> seen_in(const Rectangle& tile, const RenderInput& input,
       for (int x = tile.x0; x < tile.x1; ++x) rays[i++] = {camera.ray(x, y, s), {}};
     input.rays.intersect(rays);
     for (i = 0; i < rays.size(); ++i) {
-      const auto& [ray, hit] = rays[i];
+      const Ray& ray = rays[i].ray;
+      const Hit& hit = rays[i].hit;
       const bool is_hidden = std::ranges::any_of(lights, [&](const Light& light) {
         return intersect_emitter(light, ray.origin, ray.direction, ray.far).hit;
       });
