@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../core/scratch_folder.h"
 #include "scene_test.h"
 
 namespace opaline {
@@ -93,18 +94,13 @@ TEST(SceneBrokenFiles, MessagesStayShort) {
 
 class SceneFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "opaline_scene_files";
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return (folder_ / name).string();
   }
 
-  fs::path folder_;
+  const ScratchFolder scratch_;
+  const fs::path& folder_ = scratch_.path;
 };
 
 void expect_load_error(const std::string& path, const std::string& fragment) {
