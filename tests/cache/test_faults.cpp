@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <stdexcept>
 #include <thread>
 
 #include "support/cache_test.h"
@@ -24,6 +25,7 @@ StageKey key(std::uint64_t i) {
 template <class Work>
 pid_t in_child(const Work& work) {
   const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("no child process");
   if (child == 0) ::_exit(work());
   return child;
 }

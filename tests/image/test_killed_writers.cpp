@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <stdexcept>
 #include <thread>
 
 #include "../core/scratch_folder.h"
@@ -62,6 +63,7 @@ Kills kill_writers(const std::string& name, const Write& write, int times) {
   for (int i = 0; i < times; ++i) {
     put_bytes(path, old);
     const pid_t child = ::fork();
+    if (child < 0) throw std::runtime_error("no child process");
     if (child == 0) {
       write(path, 2);
       ::_exit(0);

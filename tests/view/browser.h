@@ -9,6 +9,7 @@
 
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 
 #include "view_client.h"
 
@@ -23,6 +24,7 @@ class Browser {
  public:
   Browser() {
     pid_ = ::fork();
+    if (pid_ < 0) throw std::runtime_error("no child process");
     if (pid_ == 0) {
       const int log = ::open(folder_.file("log").c_str(), O_WRONLY | O_CREAT, 0600);
       ::dup2(log, STDOUT_FILENO);
