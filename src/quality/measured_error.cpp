@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/core/error.h"
 #include "opaline/image/metrics.h"
 #include "opaline/render/direct.h"
 #include "quality/probe.h"

@@ -9,11 +9,12 @@
 
 namespace opaline {
 
-/// The same view of the same part with at most that many pixels, one point each; opaque surfaces are black.
+/// The same view of the same part with at most that many pixels, one point each.
 Scene probe_scene(const Scene& scene, double most_pixels);
 
 /// The probe seen with the samples, trees and surface caches that the session has prepared.
 /// in    noise: pictures of different ones share no random number of a shadow ray
+/// out   opaque surfaces have no diffuse light
 RenderResult probe_picture(const Session& session, Scene probe, std::uint64_t noise, Monitor* monitor);
 
 /// 1 for each pixel of a probe's picture that shows lit translucent surface.

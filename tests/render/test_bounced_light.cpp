@@ -132,8 +132,9 @@ bool same_pixels(const Image& a, const Image& b) {
 }
 
 // Claim: a session that goes from one colour of a wall to another, to no bounces and back gives the pictures of new
-// sessions, and any number of threads the same. Source: Session. Fails if: what bounces is kept though a wall's colour
-// changed, or trees keep it when nothing bounces.
+// sessions, and any number of threads the same; so do boundaries that become rough or denser, which send other light.
+// Source: Session. Fails if: what bounces is kept though a wall's colour or a boundary changed, or trees keep it when
+// nothing bounces.
 TEST(BouncedLight, FollowsEdits) {
   Scene scene = ball_beside_wall();
   Session session;
@@ -151,6 +152,14 @@ TEST(BouncedLight, FollowsEdits) {
   scene.settings.bounces = 1;
   EXPECT_TRUE(is_as_new());
   scene.camera.position.x += 5;
+  EXPECT_TRUE(is_as_new());
+  scene.media[0].specular_roughness = .8;
+  EXPECT_TRUE(is_as_new());
+  scene.shapes[0].gloss = Gloss{};
+  EXPECT_TRUE(is_as_new());
+  scene.shapes[0].gloss->eta = 2.5;
+  EXPECT_TRUE(is_as_new());
+  scene.shapes[0].gloss->roughness = .2;
   EXPECT_TRUE(is_as_new());
 }
 
