@@ -33,7 +33,8 @@ void for_each_gathered(const GatherInput& input, const UseOfGathered& use);
 /// Their sums, one a point, W/mm^2.
 std::vector<RgbF> gathered_irradiance(const GatherInput& input);
 
-/// The same at what a camera sees at 64 places along its picture's longer side.
+/// The same at what a camera sees at 64 places along its picture's longer side. Where bodies' trees hold what bounced to
+/// them, so does what they send here: a second bounce, which `direct` lacks.
 /// from  Ward, Rubinstein & Clear 1988
 class BouncedPlaces {
  public:

@@ -63,7 +63,8 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
 StageKey view_light_key(const Light& light);
 
 /// Of the sums of random walks, one for each of their sources (VolumeSums): the samples (or their tint_key where one
-/// colours light that enters), the media's coefficients, all meshes, where the source's light is and how large; its colour only where sources have several lights.
+/// colours light that enters), the media's coefficients, all meshes, where the source's light is and how large; its
+/// colour only where sources have several lights.
 std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& samples,
                                 std::span<const MeshKeys> meshes);
 
