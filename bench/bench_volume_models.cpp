@@ -3,8 +3,10 @@
 //
 //   bench_volume_models SCENE TRUTH [KEY=VALUE ...]
 //   bench_volume_models FOLDER
+//   bench_volume_models FOLDER --model NAME [KEY=VALUE ...]
 //
-// The second prints one table of models by shape by medium (model_table.h), with scenes and truths in FOLDER. In the first
+// The second prints one table of models by shape by medium (model_table.h), with scenes and truths in FOLDER; the third
+// one model of it channel by channel. In the first
 // TRUTH keeps the walks' result (until the error of a cell is kUntilError; minutes) for later runs; it is made where it is
 // missing. KEY=VALUE as for `opaline render --set`, beside those that choose samples or light. Patches of about
 // .9 mm^2 of a 50 mm bunny: one for each of kPatches samples. rms and bias are shares of the mean exitance, in
@@ -17,6 +19,7 @@
 #include <cstdlib>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model_table.h"
@@ -96,9 +99,12 @@ void print_errors(const std::string& name, const Body& body, const Patches& patc
 
 int main(int argc, char** argv) {
   if (argc == 2) return print_model_table(argv[1]), 0;
+  if (argc > 3 && std::string_view(argv[2]) == "--model")
+    return print_model_channels(argv[1], argv[3], {argv + 4, argv + argc}), 0;
   if (argc < 3)
     return fmt::print(
-               "usage: bench_volume_models SCENE TRUTH [KEY=VALUE ...], or bench_volume_models FOLDER\n"),
+               "usage: bench_volume_models SCENE TRUTH [KEY=VALUE ...], or bench_volume_models FOLDER\n"
+               "       [--model NAME [KEY=VALUE ...]]\n"),
            2;
   const std::vector<std::string> overrides(argv + 3, argv + argc);
   Scene scene = load_scene(argv[1], overrides);

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "opaline/core/error.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 #include "opaline/volume/nearest_sample.h"
@@ -122,7 +123,9 @@ ModelError channel_error(const WalkedCells& cells, const std::vector<Rgb>& means
   return {std::sqrt(std::max(0.0, squares / area)) / mean, bias / area / mean, *p99 / mean};
 }
 
-ModelError error_of(const WalkedCells& cells, const Session& session, const std::vector<RgbF>& exitance) {
+/// R, G, B.
+std::array<ModelError, 3> errors_of(const WalkedCells& cells, const Session& session,
+                                    const std::vector<RgbF>& exitance) {
   const NearestSample nearest(cells.samples, &session.world());
   std::vector<Rgb> means(cells.samples.size());
   std::vector<double> areas(cells.samples.size());
@@ -137,12 +140,13 @@ ModelError error_of(const WalkedCells& cells, const Session& session, const std:
     is_known[i] = areas[i] > 0;
     if (is_known[i]) means[i] = means[i] / areas[i];
   }
-  ModelError worst;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const ModelError error = channel_error(cells, means, is_known, c);
-    if (error.rms >= worst.rms) worst = error;
-  }
-  return worst;
+  std::array<ModelError, 3> errors;
+  for (std::size_t c = 0; c < 3; ++c) errors[c] = channel_error(cells, means, is_known, c);
+  return errors;
+}
+
+const ModelError& worst_of(const std::array<ModelError, 3>& errors) {
+  return *std::ranges::max_element(errors, {}, &ModelError::rms);
 }
 
 /// By `auto`.
@@ -161,19 +165,19 @@ Scene with_model(Scene scene, const Model& model, const ChosenProfile& chosen) {
   return scene;
 }
 
-ModelError measured_error(const Scene& scene, const Model& model, const WalkedCells& cells) {
+std::array<ModelError, 3> measured_errors(const Scene& scene, const Model& model, const WalkedCells& cells) {
   Session session;
   session.edit(scene);
   session.prepare();
   const Body& body = session.bodies()[0];
-  if (has_cells(model.method)) return error_of(cells, session, body.volume->exitance);
+  if (has_cells(model.method)) return errors_of(cells, session, body.volume->exitance);
   std::vector<Vec3d> points;
   std::vector<Vec3f> normals;
   for (const SurfaceSample& s : body.surface.samples) {
     points.push_back(out_of_world(session.world(), Vec3d(s.position)));
     normals.push_back(s.normal);
   }
-  return error_of(cells, session, radiant_exitance(body, session.world(), points, normals, scene.settings));
+  return errors_of(cells, session, radiant_exitance(body, session.world(), points, normals, scene.settings));
 }
 
 /// User CPU from the scene to its picture, s: the smaller of two.
@@ -189,6 +193,29 @@ double picture_seconds(const Scene& scene) {
   return std::min(once(), once());
 }
 
+/// A shape in a medium, and its file without the ending.
+struct Pair {
+  const NamedText *shape, *medium;
+  std::string stem;
+};
+
+std::vector<Pair> all_pairs(const std::string& folder) {
+  std::vector<Pair> pairs;
+  for (const NamedText& shape : kShapes)
+    for (const NamedText& medium : kMedia) {
+      Pair& pair = pairs.emplace_back(Pair{&shape, &medium, folder + "/"});
+      for (const char letter : fmt::format("{} {}", shape.name, medium.name))
+        if (letter != ',') pair.stem += letter == ' ' ? '-' : letter;
+    }
+  return pairs;
+}
+
+Scene scene_of(const Pair& pair, const std::vector<std::string>& overrides) {
+  const std::string file = pair.stem + ".json";
+  std::ofstream(file) << scene_text(*pair.shape, *pair.medium);
+  return load_scene(file, overrides);
+}
+
 }  // namespace
 
 void print_model_table(const std::string& folder) {
@@ -202,33 +229,48 @@ void print_model_table(const std::string& folder) {
   fmt::print("\n|---|---|");
   for (std::size_t m = 0; m < models.size(); ++m) fmt::print("---|");
   std::vector<std::vector<double>> costs(models.size());
-  for (const NamedText& shape : kShapes)
-    for (const NamedText& medium : kMedia) {
-      const std::string file_name = fmt::format("{} {}", shape.name, medium.name);
-      std::string stem;
-      for (const char letter : file_name)
-        if (letter != ',') stem += letter == ' ' ? '-' : letter;
-      const std::string path = folder + "/" + stem;
-      std::ofstream(path + ".json") << scene_text(shape, medium);
-      const Scene scene = load_scene(path + ".json", {});
-      const WalkedCells cells = walked_cells(scene, path + ".truth");
-      fmt::print("\n| {} | {} |", shape.name, medium.name);
-      const ChosenProfile chosen = chosen_profile(scene);
-      const double lambert = picture_seconds(with_model(scene, {"", Method::lambert}, chosen));
-      for (std::size_t m = 0; m < models.size(); ++m) {
-        const Scene modelled = with_model(scene, models[m], chosen);
-        const ModelError error = measured_error(modelled, models[m], cells);
-        const bool is_chosen = models[m].method == Method::hierarchical && models[m].profile == chosen.kind;
-        const char* mark = is_chosen ? "**" : "";
-        fmt::print(" {}{:.1f} / {:+.1f} / {:.0f}{} |", mark, 100 * error.rms, 100 * error.bias,
-                   100 * error.p99, mark);
-        std::fflush(stdout);
-        costs[m].push_back(picture_seconds(modelled) / lambert);
-      }
+  for (const Pair& pair : all_pairs(folder)) {
+    const Scene scene = scene_of(pair, {});
+    const WalkedCells cells = walked_cells(scene, pair.stem + ".truth");
+    fmt::print("\n| {} | {} |", pair.shape->name, pair.medium->name);
+    const ChosenProfile chosen = chosen_profile(scene);
+    const double lambert = picture_seconds(with_model(scene, {"", Method::lambert}, chosen));
+    for (std::size_t m = 0; m < models.size(); ++m) {
+      const Scene modelled = with_model(scene, models[m], chosen);
+      const ModelError error = worst_of(measured_errors(modelled, models[m], cells));
+      const bool is_chosen = models[m].method == Method::hierarchical && models[m].profile == chosen.kind;
+      const char* mark = is_chosen ? "**" : "";
+      fmt::print(" {}{:.1f} / {:+.1f} / {:.0f}{} |", mark, 100 * error.rms, 100 * error.bias, 100 * error.p99,
+                 mark);
+      std::fflush(stdout);
+      costs[m].push_back(picture_seconds(modelled) / lambert);
     }
+  }
   fmt::print("\n| user CPU over lambert, median | |");
   for (const std::vector<double>& cost : costs) fmt::print(" {:.1f} |", median(cost));
   fmt::print("\n");
+}
+
+void print_model_channels(const std::string& folder, const std::string& name,
+                          const std::vector<std::string>& overrides) {
+  const std::vector<Model> models = all_models();
+  const auto model = std::ranges::find(models, name, &Model::name);
+  if (model == models.end())
+    throw bad_file(folder, "no model of the table", "volume_diffusion or a profile", name);
+  std::filesystem::create_directories(folder);
+  fmt::print("rms / bias / p99 in %: R, G, B; user CPU of the exitance, s\n");
+  for (const Pair& pair : all_pairs(folder)) {
+    const WalkedCells cells = walked_cells(scene_of(pair, {}), pair.stem + ".truth");
+    const Scene scene = scene_of(pair, overrides);
+    const Scene modelled = with_model(scene, *model, chosen_profile(scene));
+    std::array<ModelError, 3> errors;
+    const double seconds = user_seconds([&] { errors = measured_errors(modelled, *model, cells); });
+    fmt::print("{:<24} {:<7}", pair.shape->name, pair.medium->name);
+    for (const ModelError& error : errors)
+      fmt::print(" {:6.2f} /{:+6.2f} /{:5.1f}  ", 100 * error.rms, 100 * error.bias, 100 * error.p99);
+    fmt::print("{:6.2f}\n", seconds);
+    std::fflush(stdout);
+  }
 }
 
 }  // namespace opaline

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace opaline {
 
@@ -10,5 +11,11 @@ namespace opaline {
 /// run that was stopped goes on after the last pair that was complete.
 /// error Error{bad_output} where the folder cannot be written
 void print_model_table(const std::string& folder);
+
+/// Prints the errors of one model channel by channel, from the same scenes and truths.
+/// in    name: a column of the table; overrides: of the model's settings, not of the truth's
+/// error Error{bad_input}: no such model; else as print_model_table
+void print_model_channels(const std::string& folder, const std::string& name,
+                          const std::vector<std::string>& overrides);
 
 }  // namespace opaline
