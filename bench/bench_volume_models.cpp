@@ -3,7 +3,7 @@
 //
 //   bench_volume_models SCENE TRUTH [KEY=VALUE ...]
 //   bench_volume_models FOLDER
-//   bench_volume_models FOLDER --model NAME [KEY=VALUE ...]
+//   bench_volume_models FOLDER --model NAME [KEY=VALUE ...] [PART OF SHAPE AND MEDIUM ...]
 //
 // The second prints one table of models by shape by medium (model_table.h), with scenes and truths in FOLDER; the third
 // one model of it channel by channel. In the first
@@ -104,7 +104,7 @@ int main(int argc, char** argv) {
   if (argc < 3)
     return fmt::print(
                "usage: bench_volume_models SCENE TRUTH [KEY=VALUE ...], or bench_volume_models FOLDER\n"
-               "       [--model NAME [KEY=VALUE ...]]\n"),
+               "       [--model NAME [KEY=VALUE ...] [PART OF SHAPE AND MEDIUM ...]]\n"),
            2;
   const std::vector<std::string> overrides(argv + 3, argv + argc);
   Scene scene = load_scene(argv[1], overrides);

@@ -252,7 +252,10 @@ void print_model_table(const std::string& folder) {
 }
 
 void print_model_channels(const std::string& folder, const std::string& name,
-                          const std::vector<std::string>& overrides) {
+                          const std::vector<std::string>& choices) {
+  std::vector<std::string> overrides, parts;
+  for (const std::string& choice : choices)
+    (choice.find('=') != std::string::npos ? overrides : parts).push_back(choice);
   const std::vector<Model> models = all_models();
   const auto model = std::ranges::find(models, name, &Model::name);
   if (model == models.end())
@@ -260,12 +263,15 @@ void print_model_channels(const std::string& folder, const std::string& name,
   std::filesystem::create_directories(folder);
   fmt::print("rms / bias / p99 in %: R, G, B; user CPU of the exitance, s\n");
   for (const Pair& pair : all_pairs(folder)) {
+    const std::string title = fmt::format("{} {}", pair.shape->name, pair.medium->name);
+    const auto is_in_title = [&](const std::string& part) { return title.find(part) != std::string::npos; };
+    if (!parts.empty() && std::ranges::none_of(parts, is_in_title)) continue;
     const WalkedCells cells = walked_cells(scene_of(pair, {}), pair.stem + ".truth");
     const Scene scene = scene_of(pair, overrides);
     const Scene modelled = with_model(scene, *model, chosen_profile(scene));
     std::array<ModelError, 3> errors;
     const double seconds = user_seconds([&] { errors = measured_errors(modelled, *model, cells); });
-    fmt::print("{:<24} {:<7}", pair.shape->name, pair.medium->name);
+    fmt::print("{:<30}", title);
     for (const ModelError& error : errors)
       fmt::print(" {:6.2f} /{:+6.2f} /{:5.1f}  ", 100 * error.rms, 100 * error.bias, 100 * error.p99);
     fmt::print("{:6.2f}\n", seconds);

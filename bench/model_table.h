@@ -13,9 +13,10 @@ namespace opaline {
 void print_model_table(const std::string& folder);
 
 /// Prints the errors of one model channel by channel, from the same scenes and truths.
-/// in    name: a column of the table; overrides: of the model's settings, not of the truth's
+/// in    name: a column of the table; choices: of the model's settings KEY=VALUE, not of the truth's, and parts of
+///       "shape medium", of which those that are printed have one
 /// error Error{bad_input}: no such model; else as print_model_table
 void print_model_channels(const std::string& folder, const std::string& name,
-                          const std::vector<std::string>& overrides);
+                          const std::vector<std::string>& choices);
 
 }  // namespace opaline

@@ -59,7 +59,8 @@ std::vector<BenchScene> open_scenes(const BenchArguments& arguments, const Bench
       scenes.push_back(std::move(scene));
     }
   }
-  const std::string folder = arguments.halves.empty() ? reference_folder(arguments, report) : std::string();
+  const bool makes_references = arguments.halves.empty() || arguments.truth;
+  const std::string folder = makes_references ? reference_folder(arguments, report) : std::string();
   for (BenchScene& scene : scenes) prepare_reference(arguments, folder, scene, monitor);
   return scenes;
 }

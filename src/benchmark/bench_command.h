@@ -22,6 +22,7 @@ struct BenchArguments {
   int repeats = 3, threads = 1;
   bool quick = false;
   bool profiles = false;  ///< each translucent scene with each radial profile
+  bool truth = false;     ///< each translucent scene against random walks, too
   std::string command_line;
   Log log;
 };

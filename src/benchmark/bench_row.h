@@ -69,7 +69,8 @@ struct BenchSubject {
   std::string reference;  ///< in words
   double half_noise = 0;  ///< of one half of the reference, rms, worst channel
   std::array<int, 2> resolution{};
-  std::string picture;  ///< of the reference, PNG; empty: not kept
+  std::string picture;    ///< of the reference, PNG; empty: not kept
+  bool is_truth = false;  ///< the reference is random walks, not `direct` on the same model
 };
 
 /// Notes say where and how it was measured: key and value, in the order they are written.

@@ -113,6 +113,7 @@ std::vector<BudgetJob> run_budget(const BenchArguments& arguments, const BenchFo
                                   const std::vector<BenchScene>& scenes, Monitor& monitor) {
   std::vector<BudgetJob> jobs;
   for (const BenchScene& scene : scenes) {
+    if (scene.reference.cells > 0) continue;  // the same scene has its parts already
     PartPictures pictures(arguments, folder, scene);
     for (const BudgetPart& part : error_budget(scene.planned_samples, scene.scene.settings)) {
       BudgetJob job{&scene, part, {}, {}, {}};

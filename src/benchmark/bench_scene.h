@@ -15,11 +15,12 @@
 
 namespace opaline {
 
-/// Two pictures with independent noise.
+/// Two pictures with independent noise, by `direct` or by random walks.
 struct BenchReference {
   std::array<std::string, 2> halves;  ///< file names
   std::array<std::string, 2> seeds;   ///< "unknown" where a file does not say
   std::string made;                   ///< in words
+  std::size_t cells = 0;              ///< of random walks, on the body with the most; 0: `direct`
 };
 
 struct BenchScene {
@@ -35,14 +36,14 @@ struct BenchScene {
   std::uint64_t direct_seed = 0;  ///< of the direct rungs: not one of the reference's
 };
 
-/// Its settings and rungs, once, or once for each profile if that is asked for and something is translucent;
-/// the plan is asked of a child process.
+/// Its settings and rungs, once, or once for each profile if that is asked for and something is translucent; with
+/// `truth` once more, against random walks. The plan is asked of a child process.
 /// error Error{bad_input} as load_scene and make_plan
 std::vector<BenchScene> open_bench_scenes(const BenchArguments& arguments, const std::string& file,
                                           Monitor& monitor);
 
-/// The user's halves, or two direct renderings, kept in and taken from `folder` under names that hold their
-/// key.
+/// The user's halves (against random walks never), or two renderings, kept in and taken from `folder` under names that
+/// hold their key.
 /// error Error{bad_input}: halves of another size; Error{run_failed}: a rendering failed
 void prepare_reference(const BenchArguments& arguments, const std::string& folder, BenchScene& scene,
                        Monitor& monitor);

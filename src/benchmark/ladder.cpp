@@ -2,6 +2,9 @@
 #include "benchmark/ladder.h"
 
 #include <algorithm>
+#include <string_view>
+
+#include "opaline/scene/enumerations.h"
 
 namespace opaline {
 namespace {
@@ -41,10 +44,14 @@ std::string name_of(const Rung& rung) {
   return name;
 }
 
-std::vector<std::string> overrides_of(const Rung& rung) {
+std::vector<std::string> overrides_of(const Rung& rung, std::span<const std::string> media) {
   std::vector<std::string> overrides{"settings.method=" + rung.method};
   if (!rung.evaluator.empty()) overrides.push_back("settings.evaluator=" + rung.evaluator);
-  if (!rung.knob.empty()) overrides.push_back("settings." + rung.knob + '=' + rung.value);
+  if (rung.of_media)
+    for (const std::string& medium : media)
+      overrides.push_back("media." + medium + '.' + rung.knob + '=' + rung.value);
+  else if (!rung.knob.empty())
+    overrides.push_back("settings." + rung.knob + '=' + rung.value);
   return overrides;
 }
 
@@ -56,6 +63,17 @@ std::vector<Rung> ladder(const LadderInput& input) {
     for (const std::string& value : input.quick ? series.quick_values : series.values)
       rungs.push_back({series.method, series.evaluator, series.knob, value});
   }
+  return rungs;
+}
+
+std::vector<Rung> truth_ladder(bool quick) {
+  std::vector<Rung> rungs{{"lambert", "", "", ""}, {"hierarchical", "", "", ""}};
+  for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind)
+    if (ProfileKind(kind) != ProfileKind::directional_dipole)  // by `direct` alone
+      rungs.push_back({"hierarchical", "", "profile", std::string(kProfileNames[kind]), true});
+  for (const char* cells : {"3", "1.5", "0.75"})
+    if (!quick || cells == std::string_view("1.5"))
+      rungs.push_back({"volume_diffusion", "", "cell_size", cells});
   return rungs;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,13 +13,15 @@ namespace opaline {
 struct Rung {
   std::string method, evaluator;
   std::string knob, value;  ///< one more of the scene's settings
+  bool of_media = false;    ///< the knob is one of each medium, not of the settings
 };
 
 /// "hierarchical classic max_solid_angle=0.1"
 std::string name_of(const Rung& rung);
 
 /// For load_scene, in this order: "settings.method=hierarchical", ...
-std::vector<std::string> overrides_of(const Rung& rung);
+/// in    media: names of the scene's
+std::vector<std::string> overrides_of(const Rung& rung, std::span<const std::string> media = {});
 
 struct LadderInput {
   std::size_t planned_samples = 0;  ///< of the group with the most; 0: nothing is translucent
@@ -28,5 +31,9 @@ struct LadderInput {
 /// The first rung is `lambert`, what all the others are measured against. Sample counts are a quarter of the
 /// plan's, the plan's and four times that, the same for each group of the scene.
 std::vector<Rung> ladder(const LadderInput& input);
+
+/// What is held against random walks: `lambert` first, then the scene as it is, with each radial profile in turn, and
+/// `volume_diffusion`.
+std::vector<Rung> truth_ladder(bool quick);
 
 }  // namespace opaline

@@ -34,8 +34,29 @@ std::size_t first_shown(const PageScene& scene, const std::vector<std::size_t>& 
   return rows.front();
 }
 
+/// "11.4 %", or "less than 2 %".
+std::string error_words(const BenchRow& row) {
+  const ErrorFigures& worst = row.error->worst;
+  return worst.error < worst.error_floor ? fmt::format("less than {} %", figure(100 * worst.error_floor))
+                                         : fmt::format("{} %", figure(100 * worst.error));
+}
+
+/// How far the scene's own model is from random walks, and what the diffusion equation makes of it.
+std::string truth_answer_html(const PageScene& scene) {
+  std::string html;
+  for (const std::size_t row : rows_of(scene)) {
+    const BenchRow& r = scene.report->rows[row];
+    const bool is_own = name_of(r.rung) == "hierarchical";
+    if (!r.error || !(is_own || r.rung.method == "volume_diffusion")) continue;
+    html += fmt::format("{}<b>{}</b> off for <b>{} s</b> CPU ({})", html.empty() ? "" : "; ", error_words(r),
+                        figure(r.job.cpu.median), is_own ? "as the scene has it" : escaped(name_of(r.rung)));
+  }
+  return html.empty() ? html : "<p class=\"answer\">Against random walks: " + html + ".</p>\n";
+}
+
 /// The answer before the figures: what the target costs, and what it would cost by `direct`.
 std::string answer_html(const PageScene& scene) {
+  if (scene.subject->is_truth) return truth_answer_html(scene);
   constexpr double target = .01;
   const TradeSeries* best = nullptr;
   Estimate least, direct;
@@ -139,15 +160,20 @@ std::vector<std::string> to_charts(const BenchReport& report) {
 std::string to_page(const BenchReport& report) {
   const CsvTable table = bench_table(report);
   std::string body, titles;
+  const bool has_truth = std::ranges::any_of(report.subjects, &BenchSubject::is_truth);
   for (std::size_t n = 0; n < report.subjects.size(); ++n) {
     const BenchSubject& subject = report.subjects[n];
     body += scene_html({&report, &table, &subject, n, trade_series(report.rows, subject.scene)});
     titles += (n > 0 ? ", " : "") + subject.title;
   }
-  return framed({"bench", titles, "Speed and error", lead_of(report.notes),
-                 "What each setting costs, and how far its picture is from a converged one of the same "
-                 "diffusion model. The error of the model itself is not in any figure here.",
-                 body + notes_html(report)});
+  return framed(
+      {"bench", titles, "Speed and error", lead_of(report.notes),
+       std::string("What each setting costs, and how far its picture is from a converged one of the same "
+                   "diffusion model. The error of the model itself is ") +
+           (has_truth ? "in the sections against random walks."
+                      : "the part of that name (--truth measures "
+                        "it by random walks)."),
+       body + notes_html(report)});
 }
 
 }  // namespace opaline

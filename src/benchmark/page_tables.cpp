@@ -152,7 +152,9 @@ std::string budget_html(const PageScene& scene) {
                  "<th scope=\"col\">signed, %</th><th scope=\"col\">p99, %</th></tr>\n",
                  100 * most),
              body) +
-         "<p class=\"small\">Not among them: the error of the diffusion model itself.</p>\n";
+         "<p class=\"small\">The model's part is told from the diffusion equation solved inside the bodies, "
+         "which is "
+         "itself some percent off random walks.</p>\n";
 }
 
 std::string settings_html(const PageScene& scene) {

@@ -26,7 +26,7 @@ ErrorFigures worst_of(const std::array<ErrorFigures, 3>& channels) {
 }  // namespace
 
 PictureError picture_error(const Layer& picture, const Layer& half1, const Layer& half2,
-                           const std::vector<std::uint8_t>& object) {
+                           const std::vector<std::uint8_t>& object, double alike) {
   const HalvesComparison estimates = compare_with_halves(picture, half1, half2, object);
   const Layer mean = mean_of(half1, half2);
   const RelativeErrors errors = relative_errors(picture, mean, object);
@@ -36,7 +36,7 @@ PictureError picture_error(const Layer& picture, const Layer& half1, const Layer
   for (std::size_t c = 0; c < 3; ++c) {
     const HalvesEstimate& estimate = estimates.channels[c];
     result.channels[c] = {estimate.error,
-                          std::sqrt(2 * estimate.standard_error),
+                          std::sqrt(2 * estimate.standard_error * std::sqrt(alike)),
                           estimate.signed_mean,
                           error_statistics(errors.channels[c]).p99,
                           error_statistics(noise.channels[c]).p99,

@@ -37,6 +37,7 @@ Json subject_json(const BenchSubject& subject) {
           {"title", subject.title},
           {"resolution", subject.resolution},
           {"reference", subject.reference},
+          {"truth", subject.is_truth},
           {"reference_half_noise", 100 * subject.half_noise},
           {"reference_picture", subject.picture}};
 }

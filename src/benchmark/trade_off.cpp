@@ -23,7 +23,10 @@ std::string series_name(const Rung& rung) {
     return "hierarchical, as the scene has it";
   std::string name = rung.method;
   if (!rung.evaluator.empty()) name += ' ' + rung.evaluator;
-  if (!rung.knob.empty()) name += ", by " + rung.knob;
+  if (rung.of_media)  // profiles are no steps of one knob
+    name += ' ' + rung.value;
+  else if (!rung.knob.empty())
+    name += ", by " + rung.knob;
   return name;
 }
 

@@ -73,6 +73,10 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
   app.add_flag("--profiles", bench.profiles,
                "each translucent scene with each radial profile (dipole, normalized_diffusion), which has a "
                "reference of its own");
+  app.add_flag(
+      "--truth", bench.truth,
+      "each translucent scene against random walks, too: the scene as it is, each radial profile, and "
+      "volume_diffusion");
   app.add_flag("--quick", bench.quick, "to try it: few rungs, 128 pixels wide");
   app.footer(kBenchNotes);
 }

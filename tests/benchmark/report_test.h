@@ -32,7 +32,7 @@ inline BenchRow row_of(const std::string& scene, const Rung& rung, double cpu, d
 inline BenchReport small_report() {
   BenchReport report;
   report.notes = {{"version", "opaline 0"}, {"threads", "1"}, {"command", "opaline bench <&>\"'"}};
-  report.subjects = {{"a/ball.json", "KEY", "ball", "direct", .02, {16, 8}, "pictures/ball.png"}};
+  report.subjects = {{"a/ball.json", "KEY", "ball", "direct", .02, {16, 8}, "pictures/ball.png", false}};
   report.rows = {row_of("a/ball.json", {"lambert", "", "", ""}, 1, .5),
                  row_of("a/ball.json", {"hierarchical", "classic", "max_solid_angle", "0.4"}, 2, .04),
                  row_of("a/ball.json", {"hierarchical", "classic", "max_solid_angle", "0.1"}, 8, .01),

@@ -67,5 +67,26 @@ TEST(Ladder, SettingsAreTheScenes) {
   }
 }
 
+// Claim: against random walks stand lambert, first, the scene as it is, each profile that samples can have, set in every
+// medium, and volume_diffusion. Source: ladder.h. Fails if: a profile is lost, or set in one medium alone.
+TEST(Ladder, AgainstRandomWalks) {
+  const std::vector<std::string> media{"wax", "milk"};
+  const std::string file = R"({"media": {"wax": {"preset": "marble"}, "milk": {"preset": "wholemilk"}}})";
+  const std::vector<Rung> rungs = truth_ladder(/*quick=*/false);
+  EXPECT_EQ(name_of(rungs.at(0)), "lambert");
+  std::set<ProfileKind> profiles;
+  for (const Rung& rung : rungs) {
+    Scene scene;
+    ASSERT_NO_THROW(scene = parse_scene(file, "media.json", overrides_of(rung, media))) << name_of(rung);
+    EXPECT_EQ(scene.media.at(0).profile, scene.media.at(1).profile) << name_of(rung);
+    if (scene.media[0].profile) profiles.insert(*scene.media[0].profile);
+  }
+  EXPECT_EQ(profiles.size(), kProfileNames.size() - 1);  // directional_dipole is direct's
+  const std::set<std::string> all = names_of(rungs);
+  EXPECT_TRUE(all.contains("hierarchical"));
+  EXPECT_TRUE(all.contains("volume_diffusion cell_size=1.5"));
+  EXPECT_TRUE(std::ranges::includes(all, names_of(truth_ladder(/*quick=*/true))));
+}
+
 }  // namespace
 }  // namespace opaline

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <regex>
+#include <set>
 
 #include "benchmark/csv.h"
 #include "benchmark/page.h"
+#include "benchmark/trade_off.h"
 #include "report_test.h"
 
 namespace opaline {
@@ -84,7 +86,35 @@ TEST(Page, ChartAndText) {
   EXPECT_EQ(page.find("http"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
   EXPECT_EQ(page.find("{{"), std::string::npos);
-  EXPECT_NE(page.find("model itself is not in any figure"), std::string::npos);
+  EXPECT_NE(page.find("model itself is the part of that name"), std::string::npos);
+}
+
+// Claim: a section against random walks begins with how far the scene's own model and volume_diffusion are off, and does
+// not ask what 1 % costs; profiles are series of one setting each, not steps along a line. By hand: report_test.h's
+// figures. Fails if: the section is told from others by its title, or profiles are joined by a line.
+TEST(Page, AgainstRandomWalks) {
+  BenchReport report = small_report();
+  report.subjects[0].is_truth = true;
+  report.rows = {row_of("a/ball.json", {"lambert", "", "", ""}, 1, .5),
+                 row_of("a/ball.json", {"hierarchical", "", "", ""}, 2, .12),
+                 row_of("a/ball.json", {"hierarchical", "", "profile", "dipole", true}, 2, .13),
+                 row_of("a/ball.json", {"hierarchical", "", "profile", "tabulated", true}, 3, .11),
+                 row_of("a/ball.json", {"volume_diffusion", "", "cell_size", "1.5"}, 8, .01, .02)};
+  const std::string page = to_page(report);
+  EXPECT_NE(
+      page.find(
+          "Against random walks: <b>12.0 %</b> off for <b>2.00 s</b> CPU (as the scene has it); <b>less than "
+          "2.00 %</b> off for <b>8.00 s</b> CPU (volume_diffusion cell_size=1.5)."),
+      std::string::npos);
+  EXPECT_EQ(page.find("An error of 1 % costs"), std::string::npos);
+  EXPECT_NE(page.find("in the sections against random walks"), std::string::npos);
+  std::set<std::string> series;
+  for (const TradeSeries& one : trade_series(report.rows, "a/ball.json")) {
+    EXPECT_EQ(one.points.size(), 1u) << one.name;
+    series.insert(one.name);
+  }
+  EXPECT_EQ(series, (std::set<std::string>{"hierarchical, as the scene has it", "hierarchical dipole",
+                                           "hierarchical tabulated", "volume_diffusion, by cell_size"}));
 }
 
 // Claim: the answer before the figures says what an error of 1 % costs and how many times as long direct
