@@ -19,9 +19,10 @@
 namespace opaline {
 
 /// The stages of a rendering that are told apart.
-inline constexpr std::array<std::string_view, 8> kBenchStages{"loading", "rays",     "sampling", "irradiance",
-                                                              "octree",  "exitance", "shading",  "writing"};
-inline constexpr std::size_t kShadingStage = 6;
+inline constexpr std::array<std::string_view, 11> kBenchStages{
+    "loading", "rays",    "sampling", "irradiance", "diffusion", "random walks",
+    "octree",  "bounces", "exitance", "shading",    "writing"};
+inline constexpr std::size_t kShadingStage = 9;
 static_assert(kBenchStages[kShadingStage] == "shading");  // it and the later ones: again for each frame
 
 /// As the kernel accounts for it. It tells user from system by its ticks: their sum is the exact one.

@@ -38,7 +38,7 @@ struct ErrorPlane {
 };
 // Fitted to the table of bench_volume_models.
 constexpr ErrorPlane kErrorOfBodies{.05, .9, .5}, kErrorOfPlates{.07, .25, .55},
-    kErrorOfDiffusion{.028, 0, .35};
+    kErrorOfDiffusion{.028, 0, .13};
 
 MediumExtremes extremes_of(Medium medium) {
   medium.profile = kOfBodies;

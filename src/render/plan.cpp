@@ -82,12 +82,25 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
   group.spacing = std::sqrt(group.area / double(group.samples));
 }
 
-// The cells of volume_diffusion: as asked for, but no more than memory should hold, and several across a thin body.
+/// The least length over which diffused light fades, of the channels that scatter, mm.
+double shortest_fading(Medium medium) {
+  medium.profile = ProfileKind::dipole;  // the classical D, as of the equation that is solved
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  double shortest = INFINITY;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (profile.total[c] > 0) shortest = std::min(shortest, profile.diffuse_mean_free_path[c]);
+  return shortest;
+}
+
+// The cells of volume_diffusion: as asked for, but smaller where light fades within them, no more than memory should
+// hold, and several across a thin body.
 void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
   constexpr double kMostCells = 1.2e6, kAcrossThin = 4, kSmallest = .25;
   constexpr double kTooWide = 3, kTooThin = 3;  // mean free paths
+  constexpr double kPerFading = .45;            // of settings.cell_size: measured, src/volume/README.md
   const double length = group.smallest_mean_free_path;
-  group.cell = scene.settings.cell_size * length;
+  group.cell =
+      scene.settings.cell_size * std::min(length, kPerFading * shortest_fading(scene.media[group.medium]));
   if (group.thickness > 0)
     group.cell = std::min(group.cell, std::max(group.thickness / kAcrossThin, kSmallest * group.cell));
   group.cell = std::max(group.cell, std::sqrt(expected_cells(group.area, 1) / kMostCells));

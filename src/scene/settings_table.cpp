@@ -235,10 +235,10 @@ std::span<const Member<Settings>> settings_members() {
           "until_error", number, "", {0, 1, true}, "none",
           "direct, volume: stop when the estimated noise of the pixels or cells (rms "
           "of the standard error, relative) is this small"),
-      member<&Settings::cell_size>(
-          "cell_size", number, "mean free paths", {.05, 100}, "",
-          "volume_diffusion: edge of the cells at the surface; smaller is slower and "
-          "closer to the truth"),
+      member<&Settings::cell_size>("cell_size", number, "mean free paths", {.05, 100}, "",
+                                   "volume_diffusion: edge of the cells at the surface; .45 diffuse mean "
+                                   "free paths count for one where they are less; smaller is slower and "
+                                   "closer to the truth"),
       member<&Settings::reenter>(
           "reenter", flag, "", kFiniteNumber, "",
           "volume: light that has left a body, or was mirrored by it, may meet the same "

@@ -107,35 +107,36 @@ CellFit::CellFit(std::span<const SurfaceSample> samples, const World& world, std
     centers_.push_back(s.centroid);
     normals_.push_back(s.normal);
   }
-  std::vector<Rgb> surprises(samples.size());
+  std::vector<Surprise> surprises(samples.size());
   parallel_chunks(samples.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) fits_[i] = fitted(i, samples, means, errors, surprises[i]);
   });
-  // That of one cell is mostly chance. Means of means reach as far as a wide one, past fewer empty cubes.
+  // That of one cell is mostly chance. Means of means reach as far as a wide one, past fewer cells.
+  std::vector<Rgb> smoothed(surprises.size());
   for (int round = 0; round < kSurpriseRounds; ++round) {
-    std::vector<Rgb> smoothed(surprises.size());
     parallel_chunks(samples.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i) {
+        Rgb sum{};
         double weights = 0;
-        for_alike(samples[i].centroid, samples[i].normal, kSurpriseRadius,
-                  [&](std::uint32_t other, double weight) {
-                    smoothed[i] += surprises[other] * weight;
-                    weights += weight;
-                  });
-        if (weights > 0) smoothed[i] = smoothed[i] / weights;
+        for (const auto& [other, weight] : surprises[i].near) {
+          sum += surprises[other].square * double(weight);
+          weights += double(weight);
+        }
+        smoothed[i] = weights > 0 ? sum / weights : Rgb{};
       }
     });
-    surprises = std::move(smoothed);
+    for (std::size_t i = 0; i < surprises.size(); ++i) surprises[i].square = smoothed[i];
   }
   for (std::size_t i = 0; i < samples.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      fits_[i].shape[c] = float(kShapePerSurprise * std::sqrt(std::max(0.0, surprises[i][c])));
+      fits_[i].shape[c] = float(kShapePerSurprise * std::sqrt(std::max(0.0, smoothed[i][c])));
 }
 
 // Least squares, neighbours weighted by area. The surprise is the square of what the fit's mean over the cell misses of
 // the cell's mean, less what the means' errors make of it on average.
 CellFit::Fit CellFit::fitted(std::size_t i, std::span<const SurfaceSample> samples,
-                             std::span<const RgbF> means, std::span<const RgbF> errors, Rgb& surprise) const {
+                             std::span<const RgbF> means, std::span<const RgbF> errors,
+                             Surprise& surprise) const {
   const SurfaceSample& own = samples[i];
   const double scale = 1 / double(spacing_);
   Fit fit{own.centroid, own.normal, {}, errors[i], {}};
@@ -143,12 +144,16 @@ CellFit::Fit CellFit::fitted(std::size_t i, std::span<const SurfaceSample> sampl
   tangent_frame(own.normal, along_u, along_v);
   const auto moment_of = [&](const SurfaceSample& s) { return kCellMoment * double(s.area) * scale * scale; };
   std::vector<Neighbour> near;
+  near.reserve(32);
+  surprise.near.reserve(24);
   NormalEquations equations;
   double weights = 0;
   for_alike(own.centroid, own.normal, kFitRadius, [&](std::uint32_t other, double weight) {
     const SurfaceSample& s = samples[other];
     weight *= double(s.area);
     const Vec3f apart = s.centroid - own.centroid;
+    if (const double close = bump(apart, double(kSurpriseRadius * spacing_)); close > 0)
+      surprise.near.push_back({other, float(close * alike(s.normal, own.normal))});
     const double u = double(dot(apart, along_u)) * scale, v = double(dot(apart, along_v)) * scale;
     near.push_back({other, weight, {1, u, v, u * u + moment_of(s), u * v, v * v + moment_of(s)}});
     weights += weight;
@@ -178,7 +183,7 @@ CellFit::Fit CellFit::fitted(std::size_t i, std::span<const SurfaceSample> sampl
     for (std::size_t t = 0; t < kTerms; ++t) fit.terms[t][c] = float(solved[t]);
     fit.noise[c] = float(std::sqrt(noise2[c]));
   }
-  surprise = missed * missed - missed_noise2;
+  surprise.square = missed * missed - missed_noise2;
   return fit;
 }
 

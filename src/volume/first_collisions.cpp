@@ -45,6 +45,10 @@ Vec3f towards_light(const Light& light, const BoundaryPoint& point, double eta, 
   return chosen;
 }
 
+float edge_of(const DiffusionGrid::Cell& cell) {
+  return cell.volume > 64 ? 8 : cell.volume > 8 ? 4 : cell.volume > 1 ? 2 : 1;
+}
+
 /// The boundary points of each cell.
 class PointsOfCells {
  public:
@@ -103,16 +107,18 @@ class Depositor {
   FirstCollisions result_;
 };
 
-// Steps of less than a cell, then the plane of the boundary point nearest to the way's end.
+// Steps of less than a cell, through larger cells, which lie as deep as they are large, of their edge; then the plane of the boundary point nearest to the way's end.
 std::optional<Depositor::Exit> Depositor::exit_of(const Way& way, double start, std::uint32_t first,
                                                   double farthest) const {
   constexpr double kStep = .8;  // cells
   std::uint32_t last = first;
-  for (double length = start + kStep * space_.lattice.cell;; length += kStep * space_.lattice.cell) {
+  double step = kStep;
+  for (double length = start + kStep * space_.lattice.cell;; length += step * space_.lattice.cell) {
     if (length > farthest) return {};
     const std::uint32_t cell = space_.grid.at(Vec3f(at(way, length)));
     if (cell != DiffusionGrid::kNone) {
       last = cell;
+      step = std::max(kStep, double(edge_of(space_.grid.cells()[cell])));
       continue;
     }
     Exit exit{length, ~0u, last};
@@ -142,7 +148,7 @@ void Depositor::deposit(const Vec3d& position, std::uint32_t fallback, std::size
   double left = 1;
   if (found != DiffusionGrid::kNone) {
     const DiffusionGrid::Cell& cell = space_.grid.cells()[home];
-    const float edge = cell.volume > 64 ? 8 : cell.volume > 8 ? 4 : cell.volume > 1 ? 2 : 1;
+    const float edge = edge_of(cell);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float offset = place[axis] - cell.centre[axis];
       Vec3f beside = cell.centre;
@@ -187,6 +193,7 @@ void Depositor::enter(const EnteringLight& light, std::size_t l, std::size_t i) 
   const double path = depth / cosine;
   const Way way{space_.in_lattice(point.position), inward};
   const std::optional<Exit> exit = exit_of(way, path, attached.cell, path + kFarthest * longest_);
+  const double endless = -std::log1p(-golden_point(i));  // free paths
   for (std::size_t c = 0; c < 3; ++c) {
     const CalibratedMedium& medium = space_.media[c];
     if (!(medium.albedo > 0)) continue;
@@ -199,7 +206,7 @@ void Depositor::enter(const EnteringLight& light, std::size_t l, std::size_t i) 
     const double flux = enters * double(point.area);
     result_.source[attached.cell].c[c] += float(flux * (1 - passed - at_once));
     const double crosses = exit ? std::exp(-exit->length / free_path) : 0;
-    const double collided = -std::log1p(-golden_point(i) * (1 - crosses / passed));  // free paths
+    const double collided = exit ? -std::log1p(-golden_point(i) * (1 - crosses / passed)) : endless;
     deposit(at(way, path + free_path * collided), attached.cell, c, flux * (passed - crosses));
     if (exit) leave(way, *exit, i, c, entering[c] * double(point.area) * crosses);
   }

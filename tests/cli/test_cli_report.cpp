@@ -99,6 +99,42 @@ TEST(CliReport, FolderIsWholeAndKept) {
   EXPECT_FALSE(contains(other.wait().err, "kept from before"));
 }
 
+// Claim: --truth adds a scene of its own to every form of the report: rows whose halves are random walks, the same body as
+// the scene's, lambert first; volume_diffusion is nearer to them than the scene's own profile, and lambert farther; the
+// rows of the scene itself are those of a report without it, and a second time nothing is walked again. Source: the help of
+// bench (and of the stages, bounces and diffusion, that its rows can name); a ball of 26 mean free paths, where the models are 7 and 2 % off (README, the table of models). Tolerance: the
+// noise here is 1.5 %, so a factor of two. Fails if: the halves are `direct`'s, or the profile of a rung is not set.
+TEST(CliReport, AgainstRandomWalks) {
+  const SceneFolder folder;
+  const Outcome outcome = run_program(report_line(folder, {"--truth", "--rung", "bounces=1"}));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto results = nlohmann::json::parse(bytes_of(folder.file("report/results.json")));
+  ASSERT_EQ(results.at("scenes").size(), 2u);
+  EXPECT_FALSE(results.at("scenes")[0].at("truth"));
+  EXPECT_TRUE(results.at("scenes")[1].at("truth"));
+  EXPECT_TRUE(
+      contains(results.at("scenes")[1].at("reference").get<std::string>(), "random walks on 500 cells"));
+  const CsvTable table = results_of(folder);
+  std::map<std::string, double> errors;
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    EXPECT_EQ(cell(table, row, "failure"), "");
+    if (cell(table, row, "scene") == folder.scene) continue;
+    EXPECT_EQ(cell(table, row, "scene"), folder.scene + " (random walks)");
+    EXPECT_EQ(errors.empty(), cell(table, row, "rung") == "lambert");
+    errors[cell(table, row, "rung")] = std::stod(cell(table, row, "error_worst"));
+  }
+  EXPECT_EQ(table.rows.size(), 9u + 12u);
+  EXPECT_EQ(errors.size(), 12u);
+  EXPECT_LT(2 * errors.at("volume_diffusion cell_size=1.5"), errors.at("hierarchical"));
+  EXPECT_GT(errors.at("lambert"), errors.at("hierarchical"));
+  EXPECT_NE(errors.at("hierarchical profile=normalized_diffusion"), errors.at("hierarchical profile=dipole"));
+  EXPECT_TRUE(contains(bytes_of(folder.file("report/index.html")), "Against random walks: <b>"));
+  EXPECT_TRUE(fs::exists(folder.path / "report/trade-2.svg"));
+  const auto before = times_in(folder.path / "report/runs");
+  ASSERT_EQ(run_program(report_line(folder, {"--truth", "--rung", "bounces=1"})).exit_code, 0);
+  EXPECT_EQ(times_in(folder.path / "report/runs"), before);
+}
+
 // Claim: --against exits with 1 and names the rung whose ratio was better before; results of another scene,
 // or none, are bad input, the latter said before any run. Source: the help of bench. By hand: a hundredth of
 // a cost cannot be noise. Fails if: better and worse are exchanged, or a missing file is said after the work.

@@ -33,10 +33,20 @@ class CellFit {
     std::array<RgbF, 6> terms;  ///< of 1, u, v, u^2, u v, v^2; u, v: spacings along tangent_frame(normal)
     RgbF noise, shape;
   };
+  /// What a cell has to do with another one.
+  struct Share {
+    std::uint32_t sample;
+    float weight;
+  };
+  /// What is known of a cell beside its fit while that of all is made.
+  struct Surprise {
+    Rgb square{};
+    std::vector<Share> near;  ///< the cells over which it is averaged
+  };
   template <class Use>
   void for_alike(const Vec3f& position, const Vec3f& normal, float spacings, const Use& use) const;
   Fit fitted(std::size_t sample, std::span<const SurfaceSample> samples, std::span<const RgbF> means,
-             std::span<const RgbF> errors, Rgb& surprise) const;
+             std::span<const RgbF> errors, Surprise& surprise) const;
   RgbF value_of(const Fit& fit, const Vec3f& position) const;
 
   NearestSample cells_;
