@@ -11,19 +11,22 @@ struct SequencePart {
   std::uint64_t shift, part;
 };
 
-inline constexpr std::uint64_t kOfPixel = std::uint64_t(1) << 63;
-inline constexpr int kPartBits = 16;
+// The upper 12 bits of a key that has a part; a key that is a hash has them by chance, and is as random then.
+inline constexpr std::uint64_t kHasPart = 0xa5b;
+inline constexpr int kTagBits = 12, kPartBits = 16, kShiftBits = 64 - kTagBits - kPartBits;
 
 /// The key of a camera ray among those of its pixel: together they take successive parts of one sequence, so that the
 /// pixel's mean has the error of all their light samples as one set.
 /// in    ray: the rays of a pixel are numbered one after the other, from a multiple of samples_per_pixel
 inline std::uint64_t key_in_pixel(std::uint64_t ray, std::uint64_t samples_per_pixel) {
-  return kOfPixel | ray / samples_per_pixel << kPartBits | ray % samples_per_pixel;
+  if (samples_per_pixel == 1) return ray;
+  const std::uint64_t pixel = ray / samples_per_pixel % (std::uint64_t(1) << kShiftBits),
+                      part = ray % samples_per_pixel % (std::uint64_t(1) << kPartBits);
+  return kHasPart << (64 - kTagBits) | pixel << kPartBits | part;
 }
 
-/// Any other key is a sequence of its own; one that is a hash may have the bit of a pixel's, and is as random then.
 inline SequencePart part_of(std::uint64_t key) {
-  if ((key & kOfPixel) == 0) return {key, 0};
+  if (key >> (64 - kTagBits) != kHasPart) return {key, 0};
   return {key >> kPartBits, key & ((std::uint64_t(1) << kPartBits) - 1)};
 }
 

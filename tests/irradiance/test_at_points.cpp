@@ -100,7 +100,7 @@ TEST(IrradianceAtPoints, RaysOfAPixelShareASequence) {
   for (const std::uint64_t pixel : {0u, 1u, 5000u}) {
     mean = {};
     for (std::uint64_t s = 0; s < 16; ++s) mean += at(key_in_pixel(16 * pixel + s, 16), 4) * (1.0f / 16);
-    const RgbF whole = at(key_in_pixel(pixel, 1), 64);
+    const RgbF whole = at(key_in_pixel(16 * pixel, 16), 64);
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(mean[c] / whole[c], 1, 1e-5);
     EXPECT_NE(whole, last);
     last = whole;
