@@ -6,6 +6,7 @@
 
 #include "opaline/core/error.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline {
 namespace {
@@ -32,9 +33,12 @@ void check_pixels(const Scene& scene) {
 /// A page cannot have files opened: neither by their key, nor in an object with one, however it is spelled.
 void check_opens_nothing(const std::string& file, const std::string& edit) {
   const std::size_t end = edit.find('=');
-  const std::string path = edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
-  if (path == "file" || path.ends_with(".file") || value.find("\"file\"") != std::string::npos ||
-      value.find('\\') != std::string::npos)
+  const std::string path = '.' + edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
+  const bool opens = std::ranges::any_of(file_keys(), [&](std::string_view key) {
+    return path.ends_with('.' + std::string(key)) ||
+           value.find('"' + std::string(key) + '"') != std::string::npos;
+  });
+  if (opens || value.find('\\') != std::string::npos)
     throw bad_file(file, "a view does not change files", "those of the scene that was opened");
 }
 
