@@ -112,6 +112,7 @@ EnvironmentPicture::EnvironmentPicture(std::size_t width, std::size_t height, st
     for (const float value : {p.x, p.y, p.z}) hash_ = hash_bits(hash_, std::bit_cast<std::uint32_t>(value));
   }
   make_means();
+  make_importance();
   make_blocks();
   make_cosine_tables();
 }
@@ -159,12 +160,29 @@ void EnvironmentPicture::make_means() {
   }
 }
 
+// Rays that a coat mirrors see the picture interpolated: beside a lamp they meet some of it in a dark cell, and would be
+// worth as much as the lamp if no light sample went there.
+void EnvironmentPicture::make_importance() {
+  constexpr float kOfNeighbours = .25f;
+  importance_.resize(means_.size());
+  for (std::size_t r = 0; r < rows_; ++r)
+    for (std::size_t c = 0; c < columns_; ++c) {
+      float around = 0;
+      for (const std::size_t row : {r > 0 ? r - 1 : 0, r, std::min(r + 1, rows_ - 1)})
+        for (const std::size_t column : {c > 0 ? c - 1 : columns_ - 1, c, c + 1 < columns_ ? c + 1 : 0})
+          around += mean_of(means_[row * columns_ + column]) *
+                    ((row == r ? 2.0f : 1.0f) * (column == c ? 2.0f : 1.0f) / 16);
+      importance_[r * columns_ + c] =
+          mean_of(means_[r * columns_ + c]) * (1 - kOfNeighbours) + around * kOfNeighbours;
+    }
+}
+
 // Of a cell, integrated over its directions.
 double EnvironmentPicture::flux_of(std::size_t row, std::size_t column) const {
   const auto share = [this](std::size_t cell) {
     return double(std::min(cell * step_, width_)) / double(width_);
   };
-  return double(mean_of(means_[row * columns_ + column])) * (row_cosines_[row] - row_cosines_[row + 1]) * 2 *
+  return double(importance_[row * columns_ + column]) * (row_cosines_[row] - row_cosines_[row + 1]) * 2 *
          kPi * (share(column + 1) - share(column));
 }
 
@@ -274,7 +292,7 @@ EnvironmentPicture::Sample EnvironmentPicture::sample(std::array<double, 2> unit
   const std::size_t c =
       first + draw(&cell_columns_[r * columns_ + first], std::min(block_, columns_ - first), u);
   const RgbF mean = means_[r * columns_ + c];
-  const double density = block_share(n, block_row, block_column) * double(mean_of(mean));
+  const double density = block_share(n, block_row, block_column) * double(importance_[r * columns_ + c]);
   if (!(density > 0)) return {{0, 1, 0}, {}};
   const double cosine = row_cosines_[r] + (row_cosines_[r + 1] - row_cosines_[r]) * v,
                sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
@@ -290,8 +308,8 @@ float EnvironmentPicture::density(const Vec3d& direction, const Vec3d& normal) c
                     r = std::min(rows_ - 1, std::size_t(y) / step_);
   const double flux = block_flux_[r / block_ * block_columns_ + c / block_];
   if (!(flux > 0)) return 0;
-  return float(block_share(table_of(normal), r / block_, c / block_) *
-               double(mean_of(means_[r * columns_ + c])) / flux);
+  return float(block_share(table_of(normal), r / block_, c / block_) * double(importance_[r * columns_ + c]) /
+               flux);
 }
 
 }  // namespace opaline

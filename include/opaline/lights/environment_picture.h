@@ -49,6 +49,7 @@ class EnvironmentPicture {
   std::array<double, 2> place_of(const Vec3d& direction) const;
   Vec3d direction_of(std::array<double, 2> place) const;
   void make_means();
+  void make_importance();
   void make_blocks();
   void make_cosine_tables();
   double flux_of(std::size_t row, std::size_t column) const;
@@ -62,9 +63,10 @@ class EnvironmentPicture {
   std::size_t step_ = 1, columns_ = 0, rows_ = 0;
   std::vector<double> row_cosines_;  ///< of the angles from +y at the rows' borders
   std::vector<RgbF> means_;
+  std::vector<float> importance_;  ///< of a cell: its brightness and a little of its neighbours'
   // Blocks of cells.
   std::size_t block_ = 1, block_columns_ = 0, block_rows_ = 0;
-  std::vector<double> block_flux_;  ///< integral of the channels' mean over a block's directions
+  std::vector<double> block_flux_;  ///< integral of the importance over a block's directions
   std::vector<float> cell_rows_;    ///< cumulative shares of a block's rows, one block column after the other
   std::vector<float> cell_columns_;  ///< cumulative shares of a row's cells within each block
   std::vector<float> block_row_ends_, block_column_ends_;  ///< cumulative shares of blocks, for each normal
