@@ -163,7 +163,7 @@ void EnvironmentPicture::make_means() {
 // Rays that a coat mirrors see the picture interpolated: beside a lamp they meet some of it in a dark cell, and would be
 // worth as much as the lamp if no light sample went there.
 void EnvironmentPicture::make_importance() {
-  constexpr float kOfNeighbours = .25f;
+  constexpr float kOfNeighbours = .04f;
   importance_.resize(means_.size());
   for (std::size_t r = 0; r < rows_; ++r)
     for (std::size_t c = 0; c < columns_; ++c) {
