@@ -199,27 +199,24 @@ void check_method_options(const RenderArguments& arguments, Method method) {
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct or volume");
 }
 
-/// One picture; `frame`: of a range, whose session is anchored; whether it was rendered, and not there
-/// already.
-bool render_scene(const RenderArguments& arguments, Session& session, const Shared& shared,
-                  std::optional<int> frame) {
-  StageRunner stages(arguments.log);
-  if (arguments.time_budget) stages.note({"start", 0, process_cpu_seconds(), 0, peak_memory()});
-  bool is_there = false;
-  std::string hash = stages.run("loading", [&] {
+/// Gives the session its scene, unless the frame is there already (none); the scene's hash.
+std::optional<std::string> load(StageRunner& stages, const RenderArguments& arguments, Session& session,
+                                std::optional<int> frame) {
+  return stages.run("loading", [&]() -> std::optional<std::string> {
     Scene scene = load_scene(arguments.scene, arguments.overrides, frame.value_or(1));
-    std::string bytes_hash = frame ? frame_hash(arguments.scene, arguments.overrides, scene)
-                                   : scene_hash(arguments.scene, arguments.overrides, scene);
-    is_there = frame && is_rendered(arguments, bytes_hash, *frame);
+    std::string hash = frame ? frame_hash(arguments.scene, arguments.overrides, scene)
+                             : scene_hash(arguments.scene, arguments.overrides, scene);
+    if (frame && is_rendered(arguments, hash, *frame)) return std::nullopt;
     if (frame) session.expect_pictures(scene.camera_frames);
     session.hold_view(frame.has_value() || is_named(arguments.layers, kLightGroups));
-    if (!is_there) session.edit(std::move(scene));
-    return bytes_hash;
+    session.edit(std::move(scene));
+    return hash;
   });
-  if (is_there) {
-    print_skipped(arguments.log, arguments.outputs);
-    return false;
-  }
+}
+
+/// Chooses settings that are left open, and says what will be done.
+/// error Error{bad_input}: what is asked for does not go together, or does not fit into memory
+KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session& session) {
   const Scene& scene = session.scene();
   check_method_options(arguments, scene.settings.method);
   check_layers(arguments.layers, scene);
@@ -229,14 +226,19 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   KnownErrors errors = choose_settings(stages, arguments, session);
   print_plan(arguments.log, scene, announced_plan(arguments, session));
   check_memory(scene, session.plan(), layer_bytes);  // of the settings that were chosen
+  return errors;
+}
 
+/// The picture without its metadata, with warnings about it.
+Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Session& session,
+                     const Shared& shared, bool is_frame) {
   std::optional<PartialPicture> partial;
   if (arguments.write_partial || shared.viewer != nullptr)
-    show_first_light(stages, session, partial.emplace(arguments, scene.film, shared.viewer));
+    show_first_light(stages, session, partial.emplace(arguments, session.scene().film, shared.viewer));
   const std::size_t noted = session.costs().size();
   prepare(stages, arguments, session);
   for (std::size_t i = noted; i < session.costs().size(); ++i) stages.note(session.costs()[i]);
-  if (shared.cache != nullptr || frame)
+  if (shared.cache != nullptr || is_frame)
     print_decisions(arguments.log, session.decisions(),
                     shared.cache != nullptr ? shared.cache->warning() : "");
   for (const Body& body : session.bodies())
@@ -247,30 +249,53 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   if (shading.picture.non_finite > 0)
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
-  Image& image = shading.picture.image;
-  for (const std::string& text : picture_warnings(scene, session.world(), image))
+  for (const std::string& text : picture_warnings(session.scene(), session.world(), shading.picture.image))
     print_warning(arguments.log, text);
-  errors.measured = verify_picture(stages, arguments, session, errors, shading.picture);
-  const RenderArguments repeated = repeating(arguments, session, shading);
-  if (arguments.time_budget) hash = scene_hash(repeated.scene, repeated.overrides, scene);
-  image.metadata = make_metadata(repeated, hash, scene, session.world(), session.bodies(), frame);
-  if (errors.target || errors.measured)
-    image.metadata.emplace_back("opaline:error", compact(errors_json(errors)));
-  add_asked_layers(stages, arguments.layers, session, image);
-  if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
+  return shading;
+}
 
-  auto outputs = stages.run("writing", [&] { return write_outputs(arguments, session, image); });
+/// Writes the outputs, and says what they are and what they cost.
+void finish(StageRunner& stages, const RenderArguments& arguments, const RenderArguments& repeated,
+            const Session& session, const Shading& shading, const KnownErrors& errors) {
+  auto outputs =
+      stages.run("writing", [&] { return write_outputs(arguments, session, shading.picture.image); });
   Summary summary = summarize(session, shading);
   if (arguments.time_budget) {
     double spent = 0;
     for (const StageCost& cost : stages.costs()) spent += cost.stage == "verifying" ? 0 : cost.cpu_seconds;
     summary.budget = {*arguments.time_budget, spent, command_again(repeated)};
-    warn_of_little_time(arguments, scene.film, spent, shading.direct);
+    warn_of_little_time(arguments, session.scene().film, spent, shading.direct);
   }
   summary.costs = stages.costs();
   summary.errors = errors;
   summary.outputs = std::move(outputs);
   print_summary(arguments.log, summary);
+}
+
+/// One picture; `frame`: of a range, whose session is anchored; whether it was rendered, and not there
+/// already.
+bool render_scene(const RenderArguments& arguments, Session& session, const Shared& shared,
+                  std::optional<int> frame) {
+  StageRunner stages(arguments.log);
+  if (arguments.time_budget) stages.note({"start", 0, process_cpu_seconds(), 0, peak_memory()});
+  std::optional<std::string> hash = load(stages, arguments, session, frame);
+  if (!hash) {
+    print_skipped(arguments.log, arguments.outputs);
+    return false;
+  }
+  const Scene& scene = session.scene();
+  KnownErrors errors = plan(stages, arguments, session);
+  Shading shading = make_picture(stages, arguments, session, shared, frame.has_value());
+  errors.measured = verify_picture(stages, arguments, session, errors, shading.picture);
+  const RenderArguments repeated = repeating(arguments, session, shading);
+  if (arguments.time_budget) hash = scene_hash(repeated.scene, repeated.overrides, scene);
+  Image& image = shading.picture.image;
+  image.metadata = make_metadata(repeated, *hash, scene, session.world(), session.bodies(), frame);
+  if (errors.target || errors.measured)
+    image.metadata.emplace_back("opaline:error", compact(errors_json(errors)));
+  add_asked_layers(stages, arguments.layers, session, image);
+  if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
+  finish(stages, arguments, repeated, session, shading, errors);
   return true;
 }
 
