@@ -6,6 +6,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "irradiance/sample_key.h"
 #include "irradiance/shadow_batch.h"
 #include "irradiance/shadow_edges.h"
 #include "opaline/core/parallel.h"
@@ -135,6 +136,11 @@ std::vector<RgbF> combine_lights(std::span<const LightTransfer> transfers, std::
 
 namespace {
 
+void add_point(const PointIrradianceInput& input, std::size_t i, ShadowBatch& batch) {
+  const auto [shift, part] = part_of(input.keys[i]);
+  batch.add(input.points[i], shift, part * std::uint64_t(batch.samples()));
+}
+
 // To lights that share their rays.
 std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std::span<const Light> lights) {
   const std::size_t n = input.points.size(), batch_size = batch_points(input.light_samples);
@@ -149,7 +155,7 @@ std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std:
   batch.reserve(std::min(batch_size, n));
   for (std::size_t begin = 0; begin < n; begin += batch_size) {
     const std::size_t count = std::min(n - begin, batch_size);
-    for (std::size_t i = begin; i < begin + count; ++i) batch.add(input.points[i], input.keys[i]);
+    for (std::size_t i = begin; i < begin + count; ++i) add_point(input, i, batch);
     if (batch.samples() < 2) {
       batch.trace_lights(
           [&](std::size_t l, std::size_t p, int, float e, float) { transfers[l].weights[begin + p] = e; });
@@ -183,8 +189,7 @@ void for_each_ray(const PointIrradianceInput& input, std::size_t light, const Us
                     light_seed(input.seed, input.lights[light]));
   batch.keep_directions();
   for (std::size_t begin = 0; begin < n; begin += batch_size) {
-    for (std::size_t i = begin; i < std::min(n, begin + batch_size); ++i)
-      batch.add(input.points[i], input.keys[i]);
+    for (std::size_t i = begin; i < std::min(n, begin + batch_size); ++i) add_point(input, i, batch);
     batch.trace([&](std::size_t p, int s, float e, float) {
       if (e > 0) use(begin + p, batch.direction(p, s), e);
     });

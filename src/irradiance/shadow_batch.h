@@ -11,7 +11,7 @@
 #include "opaline/core/morton.h"
 #include "opaline/core/random.h"
 #include "opaline/geometry/ray_scene.h"
-#include "opaline/lights/light.h"
+#include "opaline/lights/shared_rays.h"
 #include "opaline/transport/fresnel.h"
 
 namespace opaline {
@@ -64,15 +64,16 @@ class ShadowBatch {
       shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
     for (int s = 0; s < samples_; ++s) {
       const std::array<double, 2> square = r2_point(first + std::uint64_t(s), shift);
-      LightSample sample = sample_light(lights_[0], point.position, point.normal, square, samples_);
+      std::array<float, 3> weights{};
+      const LightSample sample =
+          sample_lights(lights_, point.position, point.normal, square, samples_, weights);
       const float cosine = dot(point.normal, sample.direction);
       const bool is_above = cosine > 0 && dot(point.geometric, sample.direction) > 0;
       const float transmitted =
           is_above && eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f;
       bool is_carried = false;
       for (std::size_t l = 0; l < lights_.size(); ++l) {
-        if (l > 0) sample = sample_light(lights_[l], point.position, point.normal, square, samples_);
-        carried_.push_back(is_above && sample.weight > 0 ? sample.weight * cosine * transmitted : 0);
+        carried_.push_back(is_above && weights[l] > 0 ? weights[l] * cosine * transmitted : 0);
         is_carried |= carried_.back() > 0;
       }
       if (keeps_directions_) directions_.push_back(sample.direction);

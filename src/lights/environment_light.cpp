@@ -72,17 +72,28 @@ EnvironmentLight LightOf<EnvironmentLight>::recentred(EnvironmentLight light, co
 }
 
 template <>
-LightSample LightOf<EnvironmentLight>::sample(const EnvironmentLight& light, const Vec3f&, const Vec3f&,
-                                              std::array<double, 2> unit_square, int samples) {
-  const EnvironmentPicture::Sample drawn = light.picture->sample(unit_square);
-  return {Vec3f(turned(drawn.direction, light.rotation)), std::numeric_limits<float>::infinity(),
-          channel_of(light, drawn.weight) / float(samples)};
+LightSample LightOf<EnvironmentLight>::sample_channels(const EnvironmentLight& light, const Vec3f&,
+                                                       const Vec3f& normal, std::array<double, 2> unit_square,
+                                                       int samples, RgbF& weights) {
+  const EnvironmentPicture::Sample drawn =
+      light.picture->sample(unit_square, turned(Vec3d(normal), -light.rotation), light.rotation);
+  weights = drawn.weight * (1 / float(samples));
+  return {Vec3f(drawn.direction), std::numeric_limits<float>::infinity(), channel_of(light, weights)};
 }
 
 template <>
-float LightOf<EnvironmentLight>::density(const EnvironmentLight& light, const Vec3f&, const Vec3f&,
+LightSample LightOf<EnvironmentLight>::sample(const EnvironmentLight& light, const Vec3f& point,
+                                              const Vec3f& normal, std::array<double, 2> unit_square,
+                                              int samples) {
+  RgbF weights;
+  return sample_channels(light, point, normal, unit_square, samples, weights);
+}
+
+template <>
+float LightOf<EnvironmentLight>::density(const EnvironmentLight& light, const Vec3f&, const Vec3f& normal,
                                          const Vec3f& direction) {
-  return light.picture->density(turned(Vec3d(direction), -light.rotation));
+  return light.picture->density(turned(Vec3d(direction), -light.rotation),
+                                turned(Vec3d(normal), -light.rotation));
 }
 
 template <>

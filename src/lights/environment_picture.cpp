@@ -18,7 +18,31 @@ namespace opaline {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::size_t kMostColumns = 1024;
+constexpr std::size_t kMostColumns = 1024, kBlockColumns = 64;
+constexpr std::size_t kNormals = 17;  // along each side of the unfolded octahedron
+// How far a normal is from its table's, at most, and what directions weigh that such a normal alone sees: radians, and
+// as a cosine.
+constexpr double kBetweenNormals = .15, kLeastCosine = .05;
+
+// Of the unfolded octahedron, both in [-1, 1].
+Vec3d unfolded_normal(double x, double y) {
+  const double z = 1 - std::abs(x) - std::abs(y), over = std::max(-z, 0.0);
+  return normalized(Vec3d{x + (x < 0 ? over : -over), y + (y < 0 ? over : -over), z});
+}
+
+std::size_t table_of(const Vec3d& normal) {
+  const double sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
+  double x = normal.x / sum, y = normal.y / sum;
+  if (normal.z < 0) {
+    const double unfolded = (1 - std::abs(y)) * (x < 0 ? -1 : 1);
+    y = (1 - std::abs(x)) * (y < 0 ? -1 : 1);
+    x = unfolded;
+  }
+  const auto step = [](double v) {
+    return std::size_t(std::clamp(std::round((v * .5 + .5) * (kNormals - 1)), 0.0, double(kNormals - 1)));
+  };
+  return step(y) * kNormals + step(x);
+}
 
 float mean_of(const RgbF& colour) {
   return (colour.x + colour.y + colour.z) / 3;
@@ -56,8 +80,14 @@ struct KnownPicture {
 
 // The share of [0, 1) that `u` lies in, by its end; u becomes its place within.
 std::size_t draw(const float* ends, std::size_t count, double& u) {
-  const std::size_t i =
-      std::min(count - 1, std::size_t(std::upper_bound(ends, ends + count, float(u)) - ends));
+  // As upper_bound, without branches that cannot be foretold.
+  const float* first = ends;
+  for (std::size_t left = count; left > 1;) {
+    const std::size_t half = left / 2;
+    first += first[half - 1] <= float(u) ? half : 0;
+    left -= half;
+  }
+  const std::size_t i = std::size_t(first - ends);
   const double begin = i > 0 ? double(ends[i - 1]) : 0, width = double(ends[i]) - begin;
   u = width > 0 ? std::clamp((u - begin) / width, 0.0, 1.0) : .5;
   return i;
@@ -81,7 +111,10 @@ EnvironmentPicture::EnvironmentPicture(std::size_t width, std::size_t height, st
     is_grey_ = is_grey_ && p.x == p.y && p.y == p.z;
     for (const float value : {p.x, p.y, p.z}) hash_ = hash_bits(hash_, std::bit_cast<std::uint32_t>(value));
   }
-  make_table();
+  make_means();
+  make_importance();
+  make_blocks();
+  make_cosine_tables();
 }
 
 std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::string& path) {
@@ -104,13 +137,13 @@ std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::st
   return picture;
 }
 
-void EnvironmentPicture::make_table() {
+void EnvironmentPicture::make_means() {
   step_ = (width_ + kMostColumns - 1) / kMostColumns;
   columns_ = (width_ + step_ - 1) / step_;
   rows_ = (height_ + step_ - 1) / step_;
   means_.resize(columns_ * rows_);
-  row_ends_.resize(rows_);
-  column_ends_.resize(columns_ * rows_);
+  for (std::size_t r = 0; r <= rows_; ++r)
+    row_cosines_.push_back(std::cos(kPi * double(std::min(height_, r * step_)) / double(height_)));
   for (std::size_t r = 0; r < rows_; ++r) {
     std::vector<double> weights(columns_);
     std::vector<Rgb> sums(columns_);
@@ -123,16 +156,96 @@ void EnvironmentPicture::make_table() {
         sums[x / step_] += Rgb(pixels_[y * width_ + x]) * band;
       }
     }
-    double sum = 0;
-    for (std::size_t c = 0; c < columns_; ++c) {
-      const std::size_t i = r * columns_ + c;
-      means_[i] = RgbF(sums[c] / weights[c]);
-      column_ends_[i] = float(sum += (sums[c].x + sums[c].y + sums[c].z) / 3);
-    }
-    normalize(&column_ends_[r * columns_], columns_, sum);
-    row_ends_[r] = float(total_ += sum * 2 * kPi / double(width_));
+    for (std::size_t c = 0; c < columns_; ++c) means_[r * columns_ + c] = RgbF(sums[c] / weights[c]);
   }
-  normalize(row_ends_.data(), rows_, total_);
+}
+
+// Rays that a coat mirrors see the picture interpolated: beside a lamp they meet some of it in a dark cell, and would be
+// worth as much as the lamp if no light sample went there.
+void EnvironmentPicture::make_importance() {
+  constexpr float kOfNeighbours = .04f;
+  importance_.resize(means_.size());
+  for (std::size_t r = 0; r < rows_; ++r)
+    for (std::size_t c = 0; c < columns_; ++c) {
+      float around = 0;
+      for (const std::size_t row : {r > 0 ? r - 1 : 0, r, std::min(r + 1, rows_ - 1)})
+        for (const std::size_t column : {c > 0 ? c - 1 : columns_ - 1, c, c + 1 < columns_ ? c + 1 : 0})
+          around += mean_of(means_[row * columns_ + column]) *
+                    ((row == r ? 2.0f : 1.0f) * (column == c ? 2.0f : 1.0f) / 16);
+      importance_[r * columns_ + c] =
+          mean_of(means_[r * columns_ + c]) * (1 - kOfNeighbours) + around * kOfNeighbours;
+    }
+}
+
+// Of a cell, integrated over its directions.
+double EnvironmentPicture::flux_of(std::size_t row, std::size_t column) const {
+  const auto share = [this](std::size_t cell) {
+    return double(std::min(cell * step_, width_)) / double(width_);
+  };
+  return double(importance_[row * columns_ + column]) * (row_cosines_[row] - row_cosines_[row + 1]) * 2 *
+         kPi * (share(column + 1) - share(column));
+}
+
+void EnvironmentPicture::make_blocks() {
+  block_ = (columns_ + kBlockColumns - 1) / kBlockColumns;
+  block_columns_ = (columns_ + block_ - 1) / block_;
+  block_rows_ = (rows_ + block_ - 1) / block_;
+  block_flux_.resize(block_columns_ * block_rows_);
+  cell_rows_.resize(block_columns_ * rows_);
+  cell_columns_.resize(columns_ * rows_);
+  for (std::size_t block_row = 0; block_row < block_rows_; ++block_row)
+    for (std::size_t block_column = 0; block_column < block_columns_; ++block_column) {
+      const std::size_t first_row = block_row * block_, first = block_column * block_;
+      const std::size_t end_row = std::min(rows_, first_row + block_),
+                        end = std::min(columns_, first + block_);
+      float* const row_ends = &cell_rows_[block_column * rows_];
+      double whole = 0;
+      for (std::size_t r = first_row; r < end_row; ++r) {
+        float* const column_ends = &cell_columns_[r * columns_];
+        double row = 0;
+        for (std::size_t c = first; c < end; ++c) column_ends[c] = float(row += flux_of(r, c));
+        normalize(column_ends + first, end - first, row);
+        row_ends[r] = float(whole += row);
+      }
+      normalize(row_ends + first_row, end_row - first_row, whole);
+      block_flux_[block_row * block_columns_ + block_column] = whole;
+    }
+}
+
+void EnvironmentPicture::make_cosine_tables() {
+  const double half_block = std::hypot(kPi / double(block_rows_), 2 * kPi / double(block_columns_)) / 2;
+  const double lowest = -std::sin(std::min(kPi / 2, kBetweenNormals + half_block));
+  std::vector<Vec3d> middles;
+  for (std::size_t r = 0; r < block_rows_; ++r)
+    for (std::size_t c = 0; c < block_columns_; ++c)
+      middles.push_back(direction_of(
+          {(double(c) + .5) * double(block_ * step_), (double(r) + .5) * double(block_ * step_)}));
+  block_row_ends_.resize(kNormals * kNormals * block_rows_);
+  block_column_ends_.resize(kNormals * kNormals * middles.size());
+  for (std::size_t n = 0; n < kNormals * kNormals; ++n) {
+    const auto side = [](std::size_t i) { return 2 * double(i) / (kNormals - 1) - 1; };
+    const Vec3d normal = unfolded_normal(side(n % kNormals), side(n / kNormals));
+    float* const row_ends = &block_row_ends_[n * block_rows_];
+    double whole = 0;
+    for (std::size_t r = 0; r < block_rows_; ++r) {
+      float* const column_ends = &block_column_ends_[(n * block_rows_ + r) * block_columns_];
+      double row = 0;
+      for (std::size_t c = 0; c < block_columns_; ++c) {
+        const std::size_t b = r * block_columns_ + c;
+        const double cosine = dot(normal, middles[b]);
+        column_ends[c] = float(row += cosine > lowest ? block_flux_[b] * std::max(cosine, kLeastCosine) : 0);
+      }
+      normalize(column_ends, block_columns_, row);
+      row_ends[r] = float(whole += row);
+    }
+    normalize(row_ends, block_rows_, whole);
+  }
+}
+
+Vec3d EnvironmentPicture::direction_of(std::array<double, 2> place) const {
+  const double angle = kPi * std::min(1.0, place[1] / double(height_)), sine = std::sin(angle);
+  const double longitude = (.5 - std::min(1.0, place[0] / double(width_))) * 2 * kPi;
+  return {sine * std::sin(longitude), std::cos(angle), sine * std::cos(longitude)};
 }
 
 std::array<double, 2> EnvironmentPicture::place_of(const Vec3d& direction) const {
@@ -156,30 +269,47 @@ RgbF EnvironmentPicture::radiance(const Vec3d& direction) const {
          (at(left, top + 1) * (1 - right_share) + at(left + 1, top + 1) * right_share) * bottom_share;
 }
 
-EnvironmentPicture::Sample EnvironmentPicture::sample(std::array<double, 2> unit_square) const {
-  auto [u, v] = unit_square;
-  const std::size_t r = draw(row_ends_.data(), rows_, v);
-  const std::size_t c = draw(&column_ends_[r * columns_], columns_, u);
-  const RgbF mean = means_[r * columns_ + c];
-  if (!(mean_of(mean) > 0)) return {{0, 1, 0}, {}};
-  const auto between = [this](std::size_t cell, double share, std::size_t end) {
-    const double first = double(cell * step_);
-    return first + (std::min(double(end), first + double(step_)) - first) * share;
+// That a direction in the block is drawn.
+double EnvironmentPicture::block_share(std::size_t normal, std::size_t block_row,
+                                       std::size_t block_column) const {
+  const auto share = [](const float* ends, std::size_t i) {
+    return double(ends[i]) - (i > 0 ? double(ends[i - 1]) : 0);
   };
-  const double cos_top = std::cos(kPi * between(r, 0, height_) / double(height_)),
-               cos_bottom = std::cos(kPi * between(r, 1, height_) / double(height_));
-  const double cosine = cos_top + (cos_bottom - cos_top) * v,
-               sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  const double longitude = (.5 - between(c, u, width_) / double(width_)) * 2 * kPi;
-  return {{sine * std::sin(longitude), cosine, sine * std::cos(longitude)},
-          mean * float(total_ / double(mean_of(mean)))};
+  return share(&block_row_ends_[normal * block_rows_], block_row) *
+         share(&block_column_ends_[(normal * block_rows_ + block_row) * block_columns_], block_column);
 }
 
-float EnvironmentPicture::density(const Vec3d& direction) const {
+EnvironmentPicture::Sample EnvironmentPicture::sample(std::array<double, 2> unit_square, const Vec3d& normal,
+                                                      double turn) const {
+  auto [u, v] = unit_square;
+  const std::size_t n = table_of(normal);
+  const std::size_t block_row = draw(&block_row_ends_[n * block_rows_], block_rows_, v);
+  const std::size_t block_column =
+      draw(&block_column_ends_[(n * block_rows_ + block_row) * block_columns_], block_columns_, u);
+  const std::size_t first_row = block_row * block_, first = block_column * block_;
+  const std::size_t r =
+      first_row + draw(&cell_rows_[block_column * rows_ + first_row], std::min(block_, rows_ - first_row), v);
+  const std::size_t c =
+      first + draw(&cell_columns_[r * columns_ + first], std::min(block_, columns_ - first), u);
+  const RgbF mean = means_[r * columns_ + c];
+  const double density = block_share(n, block_row, block_column) * double(importance_[r * columns_ + c]);
+  if (!(density > 0)) return {{0, 1, 0}, {}};
+  const double cosine = row_cosines_[r] + (row_cosines_[r + 1] - row_cosines_[r]) * v,
+               sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  const double left = double(c * step_), right = std::min(double(width_), left + double(step_));
+  const double longitude = (.5 - (left + (right - left) * u) / double(width_)) * 2 * kPi + turn * kPi / 180;
+  return {{sine * std::sin(longitude), cosine, sine * std::cos(longitude)},
+          mean * float(block_flux_[block_row * block_columns_ + block_column] / density)};
+}
+
+float EnvironmentPicture::density(const Vec3d& direction, const Vec3d& normal) const {
   const auto [x, y] = place_of(direction);
   const std::size_t c = std::min(columns_ - 1, std::size_t(x) / step_),
                     r = std::min(rows_ - 1, std::size_t(y) / step_);
-  return total_ > 0 ? float(double(mean_of(means_[r * columns_ + c])) / total_) : 0;
+  const double flux = block_flux_[r / block_ * block_columns_ + c / block_];
+  if (!(flux > 0)) return 0;
+  return float(block_share(table_of(normal), r / block_, c / block_) * double(importance_[r * columns_ + c]) /
+               flux);
 }
 
 }  // namespace opaline

@@ -3,6 +3,7 @@
 
 #include "lights/light_of.h"
 #include "opaline/core/random.h"
+#include "opaline/lights/shared_rays.h"
 
 namespace opaline {
 namespace {
@@ -64,6 +65,27 @@ LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& no
                          std::array<double, 2> unit_square, int samples) {
   return by_kind(
       light, [&](const auto& kind, auto of) { return of.sample(kind, point, normal, unit_square, samples); });
+}
+
+LightSample sample_lights(std::span<const Light> lights, const Vec3f& point, const Vec3f& normal,
+                          std::array<double, 2> unit_square, int samples, std::span<float> weights) {
+  return std::visit(
+      [&]<class Kind>(const Kind& kind) {
+        if constexpr (requires { kind.channel; }) {
+          RgbF channels;
+          LightSample sample =
+              LightOf<Kind>::sample_channels(kind, point, normal, unit_square, samples, channels);
+          for (std::size_t l = 0; l < lights.size(); ++l)
+            weights[l] = channels[std::get<Kind>(lights[l].source).channel.value_or(0)];
+          sample.weight = weights[0];
+          return sample;
+        } else {
+          const LightSample sample = LightOf<Kind>::sample(kind, point, normal, unit_square, samples);
+          weights[0] = sample.weight;
+          return sample;
+        }
+      },
+      lights[0].source);
 }
 
 float sampling_density(const Light& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "irradiance/sample_key.h"
 #include "irradiance/shadow_batch.h"
 #include "opaline/core/random.h"
 #include "render/shade.h"
@@ -118,6 +119,7 @@ struct Shader::GlossyHits {
   std::vector<const Appearance*> appearances;
   int facets, to_lights;
   std::uint64_t seed;
+  std::vector<std::uint64_t> keys;  // of directions, in the sequence of the pixel
 
   GlossyHits(const Shader& shader, const SurfaceHits& all, const RayBatch& rays)
       : hits(all), batch(rays), seed(point_irradiance_seed(shader.input_.scene.settings) + 1) {
@@ -127,6 +129,7 @@ struct Shader::GlossyHits {
     to_lights = (kLightSamples + shared_by - 1) / shared_by;
     textured.reserve(hits.textures.size());
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+      keys.push_back(key_in_pixel(hits.keys[i], std::uint64_t(spp)));
       frames.emplace_back(hits.points[i], -normalized(batch.rays[hits.rays[i]].ray.direction));
       if (!hits.textures.empty()) textured.push_back(shader.appearance_of(hits, i));
       appearances.push_back(hits.textures.empty() ? &shader.appearances_[hits.hits[i].mesh]
@@ -159,7 +162,7 @@ void Shader::add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pa
 
 // By directions to the lights.
 void Shader::add_highlights(const GlossyHits& glossy) const {
-  const PointIrradianceInput lighting{input_.rays, glossy.hits.points, glossy.hits.keys, lights_,
+  const PointIrradianceInput lighting{input_.rays, glossy.hits.points, glossy.keys, lights_,
                                       0,           glossy.to_lights,   glossy.seed};
   for (std::size_t l = 0; l < lights_.size(); ++l) {
     const Light& light = lights_[l];
@@ -189,12 +192,13 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
   std::vector<TracedRay> rays;
   std::vector<Drawn> drawn;
   for (std::size_t i = 0; i < glossy.hits.rays.size(); ++i) {
-    const std::uint64_t key = glossy.hits.keys[i];
+    const auto [key, part] = part_of(glossy.keys[i]);
     const std::array<double, 2> shift{unit_double(hash_bits(glossy.seed, 2 * key)),
                                       unit_double(hash_bits(glossy.seed, 2 * key + 1))};
     for (int k = 0; k < glossy.facets; ++k) {
+      const std::uint64_t number = part * std::uint64_t(glossy.facets) + std::uint64_t(k);
       const auto [direction, weight] =
-          glossy.boundary(i).sample(glossy.frames[i].view, r2_point(std::uint64_t(k), shift));
+          glossy.boundary(i).sample(glossy.frames[i].view, r2_point(number, shift));
       const Vec3f towards = glossy.frames[i].world(direction);
       if (!(weight > 0 && dot(towards, glossy.hits.points[i].geometric) > 0)) continue;
       rays.push_back(leaving(glossy.hits.points[i], towards));

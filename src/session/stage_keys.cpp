@@ -10,8 +10,8 @@ namespace opaline {
 namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
-constexpr std::uint64_t kSamplesVersion = 2, kCarriedVersion = 3, kTransferVersion = 2, kOctreeVersion = 1,
-                        kExitanceVersion = 6, kWalksVersion = 2, kWalkedProfileVersion = 1;
+constexpr std::uint64_t kSamplesVersion = 2, kCarriedVersion = 3, kTransferVersion = 3, kOctreeVersion = 1,
+                        kExitanceVersion = 7, kWalksVersion = 3, kWalkedProfileVersion = 1;
 
 const char* widest_instructions() {
   if (__builtin_cpu_supports("avx512f")) return "avx512";
@@ -73,7 +73,7 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
                       std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
-  KeyBuilder key("surfaces in their light", 2);
+  KeyBuilder key("surfaces in their light", 3);
   key.add(settings.seed).add(settings.tolerance).add(settings.evaluator).add(settings.max_solid_angle);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {

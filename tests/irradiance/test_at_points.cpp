@@ -2,6 +2,7 @@
 // Irradiance at points that are not samples.
 #include <gtest/gtest.h>
 
+#include "irradiance/sample_key.h"
 #include "support/lighting.h"
 
 namespace opaline {
@@ -85,6 +86,25 @@ TEST(IrradianceAtPoints, OrderAndThreadsDoNotMatter) {
   std::vector<RgbF> backward = scene.at_points(1.5);
   std::reverse(backward.begin(), backward.end());
   EXPECT_TRUE(same_bytes(forward, backward));
+}
+
+// Claim: the 16 rays of a pixel, with 4 light samples each, have together the light of one point with the 64 samples of
+// one sequence; and no pixel that of another. Source: parts of a sequence are the whole. Tolerance: rounding. Fails if:
+// each ray of a pixel begins its own sequence, as it did: its mean then has four times the variance and more.
+TEST(IrradianceAtPoints, RaysOfAPixelShareASequence) {
+  const Scene scene;
+  const auto at = [&](std::uint64_t key, int rays) {
+    return irradiance_at({scene.lit.rays, {&scene.points[7], 1}, {&key, 1}, scene.lights, 1.5, rays})[0];
+  };
+  RgbF mean, last;
+  for (const std::uint64_t pixel : {0u, 1u, 5000u}) {
+    mean = {};
+    for (std::uint64_t s = 0; s < 16; ++s) mean += at(key_in_pixel(16 * pixel + s, 16), 4) * (1.0f / 16);
+    const RgbF whole = at(key_in_pixel(16 * pixel, 16), 64);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(mean[c] / whole[c], 1, 1e-5);
+    EXPECT_NE(whole, last);
+    last = whole;
+  }
 }
 
 }  // namespace

@@ -54,35 +54,75 @@ TEST(EnvironmentLight, WhereThePictureIs) {
   EXPECT_GT(sample_light(turned, {}, {1, 0, 0}, {.5, .5}, 1).direction.x, .99f);
 }
 
-// Claim: the mean of the samples' weights is the picture's integral over all directions, also of parts of it, and
-// each sample has the radiance of its direction. Source: the integral over pixels of radiance x solid angle.
-// Tolerance: 1 % at 65,536 samples; the width that is no multiple of the table's has rows and columns left over.
-// Fails when: rows are weighted by their number instead of their solid angle (11 %), or densities by pixels.
-TEST(EnvironmentLight, SamplesAddUpToThePicture) {
-  for (const std::size_t width : {64u, 1000u, 2300u}) {
-    SCOPED_TRACE(width);
+// Claim: for a surface that faces any way, the mean of the samples' weights times the cosine is its irradiance from
+// the picture, also from parts of it, and the density is that of the weights. Source: the integral over pixels of
+// radiance x cosine x solid angle. Tolerance: 1 % of 65,536 samples; widths that are no multiples of the tables' have
+// rows and columns left over. Fails when: rows are weighted by their number instead of their solid angle, or
+// directions that only a table's neighbours see are never drawn.
+TEST(EnvironmentLight, SamplesAddUpToTheIrradiance) {
+  for (const std::size_t width : {6u, 64u, 1000u, 2300u}) {
     const auto picture = picture_of(width, [&](std::size_t x, std::size_t y) { return room(x, y, width); });
-    Rgb whole{}, upper{}, sampled{}, sampled_upper{};
-    const double height = double(width / 2);
-    for (std::size_t y = 0; y < width / 2; ++y)
-      for (std::size_t x = 0; x < width; ++x) {
-        const double angle = 2 * pi / double(width) *
-                             (std::cos(pi * double(y) / height) - std::cos(pi * double(y + 1) / height));
-        whole += Rgb(room(x, y, width)) * angle;
-        if (y < width / 8) upper += Rgb(room(x, y, width)) * angle;
+    for (const Vec3d& way : {Vec3d{0, 1, 0}, Vec3d{1, 0, 0}, Vec3d{.3, -.8, .2}, Vec3d{-.35, .21, -.6}}) {
+      SCOPED_TRACE(testing::Message() << width << ' ' << way.x);
+      const Vec3d normal = normalized(way);
+      Rgb whole{}, left{}, sampled{}, sampled_left{};
+      const auto integrate = [&](std::size_t across) {
+        for (std::size_t i = 0; i < across * across / 2; ++i) {
+          const double x = (double(i % across) + .5) / double(across),
+                       y = (double(i / across) + .5) / double(across / 2);
+          const double longitude = (.5 - x) * 2 * pi, sine = std::sin(pi * y);
+          const Vec3d d{sine * std::sin(longitude), std::cos(pi * y), sine * std::cos(longitude)};
+          const double angle = 2 * pi * pi / (double(across) * double(across / 2)) * sine;
+          const RgbF colour = room(std::size_t(x * double(width)), std::size_t(y * double(width / 2)), width);
+          const Rgb light = Rgb(colour) * (angle * std::max(0.0, dot(d, normal)));
+          whole += light;
+          if (d.x > 0) left += light;
+        }
+      };
+      integrate(1200);
+      constexpr int kSamples = 65536;
+      double hemisphere = 0;
+      for (int i = 0; i < kSamples; ++i) {
+        const auto [direction, weight] = picture->sample(r2_point(std::uint64_t(i), {.5, .5}), normal);
+        EXPECT_NEAR(length(direction), 1, 1e-9);
+        const Rgb light = Rgb(weight) * (std::max(0.0, dot(direction, normal)) / kSamples);
+        sampled += light;
+        if (direction.x > 0) sampled_left += light;
+        if (dot(direction, normal) > 0)
+          hemisphere += 1 / (double(picture->density(direction, normal)) * kSamples);
       }
-    constexpr int kSamples = 65536;
-    for (int i = 0; i < kSamples; ++i) {
-      const auto [direction, weight] = picture->sample(r2_point(std::uint64_t(i), {.5, .5}));
-      EXPECT_NEAR(length(direction), 1, 1e-9);
-      sampled += Rgb(weight) / kSamples;
-      if (direction.y > std::cos(pi / 4)) sampled_upper += Rgb(weight) / kSamples;
-    }
-    for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_NEAR(sampled[c] / whole[c], 1, .01) << c;
-      EXPECT_NEAR(sampled_upper[c] / upper[c], 1, .015) << c;
+      EXPECT_NEAR(hemisphere / (2 * pi), 1, .03);
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(sampled[c] / whole[c], 1, .01) << c;
+        if (left[c] > .05 * whole[c]) {
+          EXPECT_NEAR(sampled_left[c] / left[c], 1, .015) << c;
+        }
+      }
     }
   }
+}
+
+// Claim: of a surface in the open 64 samples know the irradiance with a standard error of 2 %. Source: measured, 1.5 %:
+// directions are drawn by brightness times cosine; by brightness above the horizon alone it is 2.9 %. Fails when: the
+// cosine is left out of the tables.
+TEST(EnvironmentLight, KnowsTheCosine) {
+  const auto picture = picture_of(512, [](std::size_t x, std::size_t y) { return room(x, y, 512); });
+  const auto irradiance = [&](int samples, std::array<double, 2> shift) {
+    double sum = 0;
+    for (int i = 0; i < samples; ++i) {
+      const auto [direction, weight] = picture->sample(r2_point(std::uint64_t(i), shift), {0, 1, 0});
+      sum += double(weight.x + weight.y + weight.z) * std::max(0.0, direction.y) / samples;
+    }
+    return sum;
+  };
+  const double expected = irradiance(1 << 16, {.5, .5});
+  double squares = 0;
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    const double off =
+        irradiance(64, {unit_double(hash_bits(1, i)), unit_double(hash_bits(2, i))}) / expected - 1;
+    squares += off * off / 100;
+  }
+  EXPECT_LT(std::sqrt(squares), .02);
 }
 
 // Claim: a constant picture is `surroundings`. Source: both are the same light. Tolerance: .5 % of the mean over 1000

@@ -13,7 +13,9 @@
 namespace opaline {
 
 /// A lat-long picture, twice as wide as high: +y at the top, +z in the middle, +x left of it, as OpenEXR has them
-/// (OpenEXR, ImfEnvmap.h). Directions are drawn with a density in proportion to the mean of its channels.
+/// (OpenEXR, ImfEnvmap.h). Directions are drawn for a surface, by the mean of the picture's channels times the cosine:
+/// first one of at most 64 x 32 blocks, from a table for the nearest of 17 x 17 normals, then a pixel of the block by
+/// its brightness. (The normals are an octahedron's, unfolded: Cigolle et al. 2014; floor and walls are among them.)
 class EnvironmentPicture {
  public:
   /// in    pixels: rows from the top, all finite and >= 0
@@ -26,14 +28,17 @@ class EnvironmentPicture {
   /// in    direction: unit
   RgbF radiance(const Vec3d& direction) const;
 
-  /// A direction, and radiance over its density: their mean over the unit square is the integral over all directions.
+  /// A direction, and radiance over its density: their mean over the unit square, where the direction is above the
+  /// surface, is the integral over all directions above it.
   struct Sample {
     Vec3d direction;
     RgbF weight;
   };
-  Sample sample(std::array<double, 2> unit_square) const;
+  /// in    normal: unit, of the surface, where some directions below it are drawn, too
+  ///       turn: about +y, degrees, from the picture to where the direction is wanted
+  Sample sample(std::array<double, 2> unit_square, const Vec3d& normal, double turn = 0) const;
   /// Of sample(), 1/sr.
-  float density(const Vec3d& direction) const;
+  float density(const Vec3d& direction, const Vec3d& normal) const;
 
   bool is_grey() const { return is_grey_; }
   /// Of the pixels.
@@ -42,17 +47,29 @@ class EnvironmentPicture {
  private:
   /// Column and row, in pixels, from the picture's corner.
   std::array<double, 2> place_of(const Vec3d& direction) const;
-  void make_table();
+  Vec3d direction_of(std::array<double, 2> place) const;
+  void make_means();
+  void make_importance();
+  void make_blocks();
+  void make_cosine_tables();
+  double flux_of(std::size_t row, std::size_t column) const;
+  double block_share(std::size_t normal, std::size_t block_row, std::size_t block_column) const;
 
   std::size_t width_, height_;
   std::vector<RgbF> pixels_;
   bool is_grey_ = true;
   std::uint64_t hash_ = 0;
-  // Directions are drawn from means over pixels, where there are many.
+  // Cells: means over pixels, where there are many.
   std::size_t step_ = 1, columns_ = 0, rows_ = 0;
+  std::vector<double> row_cosines_;  ///< of the angles from +y at the rows' borders
   std::vector<RgbF> means_;
-  std::vector<float> row_ends_, column_ends_;  ///< cumulative shares: of rows, and within each row
-  double total_ = 0;                           ///< integral of the channels' mean over all directions
+  std::vector<float> importance_;  ///< of a cell: its brightness and a little of its neighbours'
+  // Blocks of cells.
+  std::size_t block_ = 1, block_columns_ = 0, block_rows_ = 0;
+  std::vector<double> block_flux_;  ///< integral of the importance over a block's directions
+  std::vector<float> cell_rows_;    ///< cumulative shares of a block's rows, one block column after the other
+  std::vector<float> cell_columns_;  ///< cumulative shares of a row's cells within each block
+  std::vector<float> block_row_ends_, block_column_ends_;  ///< cumulative shares of blocks, for each normal
 };
 
 }  // namespace opaline

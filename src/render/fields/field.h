@@ -58,8 +58,10 @@ class Field {
   virtual bool asks_samples() const { return false; }
 };
 
-/// Irradiance at the hits, from lights by shadow rays unless it is held, and from other surfaces; without tints.
-std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, HeldView::Surface* held);
+/// Irradiance at the hits, from lights by shadow rays unless it is held, and from other surfaces; without tints. The
+/// camera rays of a pixel, numbered by their keys, share one set of light samples.
+std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, int samples_per_pixel,
+                                     HeldView::Surface* held);
 
 /// What of it enters, and its variance: tinted.
 void tint_entering(std::span<const HitTextures> textures, std::span<RgbF> irradiance,

@@ -9,7 +9,8 @@ LocalField::LocalField(const RenderInput& input, std::span<const RgbF> albedos, 
     : albedos_(albedos.begin(), albedos.end()),
       eta_(eta),
       estimates_error_(has_samples(input.scene.settings.method)),
-      is_noisy_(has_area_lights(input.scene)) {}
+      is_noisy_(has_area_lights(input.scene)),
+      samples_per_pixel_(input.scene.film.samples_per_pixel) {}
 
 LeavingLight LocalField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass&,
                             HeldView::Surface* held) const {
@@ -17,7 +18,7 @@ LeavingLight LocalField::at(const SurfaceHits& hits, PointIrradianceInput lighti
   if (estimates_error_) light.error.resize(hits.points.size());
   if (estimates_error_ && is_noisy_) light.noise.resize(hits.points.size());
   lighting.variance = light.noise;
-  light.irradiance = irradiance_at_hits(lighting, held);
+  light.irradiance = irradiance_at_hits(lighting, samples_per_pixel_, held);
   tint_entering(hits.textures, light.irradiance, light.noise);
   for (std::size_t i = 0; i < hits.points.size(); ++i) {
     const RgbF& albedo = albedos_[hits.hits[i].mesh];

@@ -22,6 +22,7 @@ class LocalField : public Field {
   std::vector<RgbF> albedos_;
   float eta_;
   bool estimates_error_, is_noisy_;
+  int samples_per_pixel_;
 };
 
 }  // namespace opaline

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "irradiance/sample_key.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/lights/light.h"
 #include "render/fields/direct_field.h"
@@ -97,8 +98,14 @@ std::vector<RgbF> from_lights(const PointIrradianceInput& lighting, HeldView::Su
 
 }  // namespace
 
-std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, HeldView::Surface* held) {
-  std::vector<RgbF> irradiance = from_lights(lighting, held);
+std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, int samples_per_pixel,
+                                     HeldView::Surface* held) {
+  std::vector<std::uint64_t> keys;
+  for (const std::uint64_t ray : lighting.keys)
+    keys.push_back(key_in_pixel(ray, std::uint64_t(samples_per_pixel)));
+  PointIrradianceInput at_hits = lighting;
+  at_hits.keys = keys;
+  std::vector<RgbF> irradiance = from_lights(at_hits, held);
   for (std::size_t i = 0; i < lighting.bounced.size(); ++i) irradiance[i] += lighting.bounced[i];
   return irradiance;
 }

@@ -40,7 +40,7 @@ LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput light
   if (looks_near) {
     light.noise.resize(hits.points.size());
     if (is_noisy_) lighting.variance = light.noise;
-    light.irradiance = irradiance_at_hits(lighting, held);
+    light.irradiance = irradiance_at_hits(lighting, input_.scene.film.samples_per_pixel, held);
     lighting.variance = {};
     tint_entering(hits.textures, light.irradiance, light.noise);
   }
