@@ -32,13 +32,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void check_memory(const Plan& plan) {
-  const std::size_t taken = resident_memory(), left = available_memory();
-  if (plan.bytes > taken && plan.bytes - taken > left)
-    throw run_failed({}, "out of memory: the picture needs about " + short_bytes(plan.bytes) +
-                             ", and there are " + short_bytes(left + taken));
-}
-
 /// The same view in fewer pixels, of one ray each.
 Film coarse_film(Film film, int stride) {
   for (int& side : film.resolution) side = (side + stride - 1) / stride;
@@ -59,6 +52,13 @@ double pixels_of(const Film& film) {
 }
 
 }  // namespace
+
+void check_memory(const Plan& plan) {
+  const std::size_t taken = resident_memory(), left = available_memory();
+  if (plan.bytes > taken && plan.bytes - taken > left)
+    throw run_failed({}, "out of memory: the picture needs about " + short_bytes(plan.bytes) +
+                             ", and there are " + short_bytes(left + taken));
+}
 
 ViewRenderer::ViewRenderer(ViewEvents events)
     : events_(std::move(events)), session_(new_session()), thread_([this] { run(); }) {}
@@ -170,8 +170,9 @@ void ViewRenderer::draw_final(const Wanted& wanted, Spent& spent, Monitor* monit
   RenderResult result = session_->render(monitor);
   spent.final = seconds_since(start);
   StageCost shading = watch.cost("shading");
-  const auto picture = publish(wanted, PictureStep::final, std::move(result.image));
-  report(wanted, picture->image, estimated_relative_error(picture->image, result.translucent),
+  const auto picture =
+      publish(wanted, PictureStep::final, std::move(result.image), std::move(result.translucent));
+  report(wanted, picture->image, estimated_relative_error(picture->image, picture->translucent),
          std::move(shading));
 }
 
@@ -185,10 +186,10 @@ void ViewRenderer::draw_direct(const Wanted& wanted) {
   report(wanted, picture->image, result.relative_error, std::move(shading));
 }
 
-std::shared_ptr<const ViewPicture> ViewRenderer::publish(const Wanted& wanted, PictureStep step,
-                                                         Image image) {
-  const auto picture = std::make_shared<const ViewPicture>(
-      ViewPicture{wanted.revision, step, seconds_since(wanted.since), std::move(image)});
+std::shared_ptr<const ViewPicture> ViewRenderer::publish(const Wanted& wanted, PictureStep step, Image image,
+                                                         std::vector<std::uint8_t> translucent) {
+  const auto picture = std::make_shared<const ViewPicture>(ViewPicture{
+      wanted.revision, step, seconds_since(wanted.since), std::move(image), std::move(translucent)});
   events_.picture(picture);
   return picture;
 }

@@ -21,14 +21,15 @@
 namespace opaline {
 
 /// moving: whatever is there within a thirtieth of a second; sharper: more pixels, the same samples; final: the bits
-/// of `opaline render`.
-enum class PictureStep : std::uint32_t { moving, sharper, final };
+/// of `opaline render`. reference: of another method, for comparison (view_background.h).
+enum class PictureStep : std::uint32_t { moving, sharper, final, reference };
 
 struct ViewPicture {
   std::uint32_t revision = 0;
   PictureStep step = PictureStep::moving;
-  double seconds = 0;  ///< from the change to this picture
-  Image image;         ///< R G B A first
+  double seconds = 0;                          ///< from the change to this picture
+  Image image;                                 ///< R G B A first
+  std::vector<std::uint8_t> translucent = {};  ///< of a final picture, as in RenderResult; empty: not known
 };
 
 /// What is known once a final picture is there.
@@ -47,6 +48,9 @@ struct ViewEvents {
   std::function<void(const ViewReport& report)> report;
   std::function<void(std::uint32_t revision, const std::string& why)> failed;
 };
+
+/// error Error{run_failed}: the picture needs more memory than the machine has left
+void check_memory(const Plan& plan);
 
 class ViewRenderer {
  public:
@@ -86,7 +90,8 @@ class ViewRenderer {
   void draw_direct(const Wanted& wanted);
   void draw_draft(const Wanted& wanted, int stride, PictureStep step, Monitor* monitor);
   int draft_stride(const Film& film) const;
-  std::shared_ptr<const ViewPicture> publish(const Wanted& wanted, PictureStep step, Image image);
+  std::shared_ptr<const ViewPicture> publish(const Wanted& wanted, PictureStep step, Image image,
+                                             std::vector<std::uint8_t> translucent = {});
   void report(const Wanted& wanted, const Image& image, double error, StageCost shading);
 
   ViewEvents events_;

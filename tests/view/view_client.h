@@ -193,10 +193,12 @@ class ViewClient {
       texts[text.at("is")] = text;
       newest = text.at("is");
     } else {
-      frame = frame_of(bytes);
+      const Frame news = frame_of(bytes);
+      const bool is_reference = news.step == PictureStep::reference;
+      (is_reference ? reference : frame) = news;
       ++frames;
-      newest = "frame";
-      if (answers_frames) send({{"do", "shown"}, {"frame", frame.number}});
+      newest = is_reference ? "reference frame" : "frame";
+      if (answers_frames) send({{"do", "shown"}, {"frame", news.number}});
     }
     return true;
   }
@@ -224,7 +226,7 @@ class ViewClient {
 
   std::map<std::string, Json> texts;
   std::string newest;
-  Frame frame;
+  Frame frame, reference;
   std::size_t frames = 0;
   bool answers_frames = true;
   unsigned close_code = 0;
