@@ -285,8 +285,9 @@ Command parse_arguments(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) render.command_line += ' ' + shell_quoted(argv[i]);
   info.log.format = render.log.format = precompute.log.format = view.log.format = format;
   info.overrides = render.overrides = precompute.overrides = view.overrides = overrides_of(options);
+  if (!options.frames.empty())
+    render.frames = precompute.frames = view.frames = *parse_frames(options.frames);
   if (view_command.parsed()) return view;
-  if (!options.frames.empty()) render.frames = precompute.frames = *parse_frames(options.frames);
   if (precompute_command.parsed()) return precompute;
   if (info_command.parsed()) return info;
   if (!options.layers.empty()) render.layers = *layers_of(options.layers);

@@ -96,6 +96,11 @@ const std::vector<Kind>& kinds() {
       {"render", {"do", "name"}, [](Reader r) -> PageMessage { return RenderFile{r.text("name")}; }},
       {"layer", {"do", "name"}, [](Reader r) -> PageMessage { return ChooseLayer{r.text("name")}; }},
       {"behind", {"do", "trade", "reference"}, [](Reader r) -> PageMessage { return read_work(r); }},
+      {"frame",
+       {"do", "frame"},
+       [](Reader r) -> PageMessage {
+         return GoToFrame{int(std::min<std::uint64_t>(r.whole("frame"), 1 << 30))};
+       }},
       {"shown",
        {"do", "frame"},
        [](Reader r) -> PageMessage { return FrameShown{std::uint32_t(r.whole("frame"))}; }},

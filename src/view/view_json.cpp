@@ -103,7 +103,9 @@ std::string scene_text(const SceneEdits& edits, const std::string& command) {
                   {"edits", edits.edits()},
                   {"undo", edits.can_undo()},
                   {"redo", edits.can_redo()},
-                  {"command", command}});
+                  {"command", command},
+                  {"frames", edits.frames()},
+                  {"frame", edits.frame().value_or(1)}});
 }
 
 std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan) {

@@ -15,7 +15,7 @@ namespace opaline {
 /// knobs are made of.
 std::string schema_text();
 
-/// "scene": all values, the edits, and whether there is a way back. command: that renders the same.
+/// "scene": all values, the edits, whether there is a way back, and the frames. command: that renders the same.
 std::string scene_text(const SceneEdits& edits, const std::string& command);
 
 /// "plan": what the scene requires, in words.

@@ -72,10 +72,10 @@ ViewRenderer::~ViewRenderer() {
   changed_.notify_one();
 }
 
-void ViewRenderer::show(Scene scene, std::uint32_t revision) {
+void ViewRenderer::show(Scene scene, std::uint32_t revision, std::optional<Scene> reference) {
   {
     const std::lock_guard lock(mutex_);
-    wanted_ = Wanted{std::move(scene), revision, Clock::now()};
+    wanted_ = Wanted{std::move(scene), std::move(reference), revision, Clock::now()};
     monitor_.cancelled = true;
   }
   changed_.notify_one();
@@ -99,6 +99,7 @@ void ViewRenderer::run() {
     } catch (const std::exception& failure) {
       session_ = new_session();
       prepared_.reset();
+      anchor_.reset();
       events_.failed(wanted->revision, dynamic_cast<const std::bad_alloc*>(&failure) != nullptr
                                            ? "out of memory"
                                            : failure.what());
@@ -106,7 +107,25 @@ void ViewRenderer::run() {
   }
 }
 
+/// Frames share samples, as those of `opaline render --frames` do, and with them whatever is equal between them. A new
+/// session where the samples are to be others: an anchor is for good.
+void ViewRenderer::anchor(const Wanted& wanted) {
+  Scene reference = *wanted.reference;
+  reference.camera = {};
+  reference.lights.clear();
+  if (anchor_ != reference) {
+    anchor_.reset();
+    prepared_.reset();
+    session_ = new_session();
+    session_->match_new_session(false);
+    session_->anchor(*wanted.reference);
+    anchor_ = std::move(reference);
+  }
+  session_->expect_pictures(wanted.scene.camera_frames);
+}
+
 void ViewRenderer::draw(const Wanted& wanted) {
+  if (wanted.reference) anchor(wanted);
   Change change = anything;
   if (prepared_) {
     Scene before = std::move(*prepared_);

@@ -62,7 +62,8 @@ class ViewRenderer {
 
   /// Takes the place of a scene that waits, and cancels the pictures of the one under way; what is on its way within
   /// a frame's time is still shown, so that a knob that turns without pause shows pictures.
-  void show(Scene scene, std::uint32_t revision);
+  /// reference: of a scene with frames, the one whose surfaces all frames' samples are placed on (Session::anchor)
+  void show(Scene scene, std::uint32_t revision, std::optional<Scene> reference = {});
 
   /// For whoever shows progress.
   const Monitor& monitor() const { return monitor_; }
@@ -71,6 +72,7 @@ class ViewRenderer {
   using Clock = std::chrono::steady_clock;
   struct Wanted {
     Scene scene;
+    std::optional<Scene> reference;
     std::uint32_t revision = 0;
     Clock::time_point since;
   };
@@ -85,6 +87,7 @@ class ViewRenderer {
   void run();
   std::optional<Wanted> next();
   void draw(const Wanted& wanted);
+  void anchor(const Wanted& wanted);
   void refine(const Wanted& wanted, Spent& spent);
   void draw_final(const Wanted& wanted, Spent& spent, Monitor* monitor);
   void draw_direct(const Wanted& wanted);
@@ -97,6 +100,7 @@ class ViewRenderer {
   ViewEvents events_;
   std::unique_ptr<Session> session_;
   std::optional<Scene> prepared_;
+  std::optional<Scene> anchor_;  ///< that the session is anchored at, without what samples do not depend on
   std::array<Spent, kChanges> spent_;
   double seconds_per_pixel_ = 2e-6;  // of drafts
   Monitor monitor_;

@@ -20,6 +20,7 @@
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/scene/json_tree.h"
+#include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
 #include "view/http_connection.h"
 #include "view/view_background.h"
@@ -255,6 +256,7 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
     if (reference != nullptr) page.send(reference);
   }
   if (const auto* wanted = std::get_if<WorkBehind>(&message)) work_behind(*wanted);
+  if (const auto* frame = std::get_if<GoToFrame>(&message)) edits.go_to_frame(frame->frame);
   if (const auto* shown = std::get_if<FrameShown>(&message)) page.shown(shown->frame);
   if (edits.revision() != before) after_edit();
 }
@@ -271,8 +273,8 @@ void ViewServer::State::work_behind(const WorkBehind& wanted) {
 void ViewServer::State::after_edit() {
   background->stop();
   reference.reset();
-  tell(PageText::scene, scene_text(edits, hooks.command(edits.overrides())));
-  renderer->show(edits.scene(), edits.revision());
+  tell(PageText::scene, scene_text(edits, hooks.command(edits.overrides(), edits.frame())));
+  renderer->show(edits.scene(), edits.revision(), edits.reference());
 }
 
 void ViewServer::State::save(PageConnection& page, const std::string& name) {
@@ -283,14 +285,20 @@ void ViewServer::State::save(PageConnection& page, const std::string& name) {
 }
 
 void ViewServer::State::render_file(PageConnection& page, const std::string& name) {
-  const std::string path = path_beside(edits.file(), name, {".exr", ".png"}, written);
+  const std::optional<int> frame = edits.frame();
+  std::string numbered = name;
+  if (frame && name.find("##") == std::string::npos)
+    numbered.insert(name.size() - std::filesystem::path(name).extension().string().size(), ".####");
+  const std::string path =
+      path_beside(edits.file(), frame ? with_frame(numbered, *frame) : name, {".exr", ".png"}, written);
+  const std::string pattern = frame ? (std::filesystem::path(path).parent_path() / numbered).string() : path;
   if (renders_file) throw bad_file(path, "another file is being rendered", "one after the other");
   renders_file = true;
   page.answer(told_text(true, "rendering " + path));
-  file_thread = std::jthread([this, path, overrides = edits.overrides()] {
+  file_thread = std::jthread([this, path, pattern, frame, overrides = edits.overrides()] {
     std::string failure;
     try {
-      hooks.render_file(overrides, path, file_monitor);
+      hooks.render_file(overrides, frame, pattern, file_monitor);
     } catch (const std::exception& error) {
       failure = error.what();
     }

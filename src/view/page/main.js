@@ -214,8 +214,18 @@ function takeScene(message) {
   one("redo").disabled = !message.redo;
   one("reset").disabled = !message.edits.length;
   one("failed").hidden = true;
+  takeFrames(message);
   knobs.update(message.scene, message.edits);
   fit();
+}
+
+// Where a person holds the slider, it stays.
+function takeFrames({frames, frame: now}) {
+  one("frames").hidden = frames.length < 2;
+  state.frames = frames;
+  one("playhead").max = Math.max(0, frames.length - 1);
+  if (!one("playhead").matches(":active")) one("playhead").value = Math.max(0, frames.indexOf(now));
+  one("shown-frame").textContent = now;
 }
 
 function sizeWarnings(groups) {
@@ -327,6 +337,7 @@ one("exposure").oninput = () => { setExposure(Number(one("exposure").value)); re
 one("transform").onchange = () => { display.transform = one("transform").value; redraw(); };
 one("channel").onchange = chooseChannel;
 one("wipe").oninput = redraw;
+one("playhead").oninput = () => connection.send({do: "frame", frame: state.frames[Number(one("playhead").value)]});
 for (const id of ["x", "y"]) one(id).oninput = inspect;
 const canvas = one("picture");
 canvas.addEventListener("pointerdown", dragCamera);
