@@ -6,13 +6,14 @@
 
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
+#include "opaline/scene/nearest_name.h"
 
 namespace opaline {
 
 std::string read_asset_bytes(const std::string& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw bad_file(path, "no such file");
+  if (!std::filesystem::exists(status)) throw bad_file(path, "no such file" + did_you_mean_file(path));
   if (!std::filesystem::is_regular_file(status))
     throw bad_file(path, "cannot be read", "a file",
                    std::filesystem::is_directory(status) ? "a folder" : "something else");

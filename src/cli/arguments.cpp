@@ -77,10 +77,24 @@ void check_outputs(const RenderArguments& render) {
   std::vector<std::string> files = render.outputs;
   for (const std::string& more : {render.samples_ply, render.resume})
     if (!more.empty()) files.push_back(more);
-  for (const std::string& path : files)
-    if (!render.frames.empty() && path.find("##") == std::string::npos)
+  for (const std::string& path : files) {
+    const bool has_place = path.find("##") != std::string::npos;
+    if (!render.frames.empty() && !has_place)
       throw usage_error("all frames would be written to '" + path + "'",
                         "## for their number, as in out.####.exr");
+    if (render.frames.empty() && has_place)
+      throw usage_error("'" + path + "' has a place for the number of a frame, and none is asked for",
+                        "--frames FIRST-LAST, or a name without ##");
+  }
+}
+
+/// error Error{bad_input}: layers that no output would hold
+void check_layers_have_a_file(const RenderArguments& render, const std::string& asked) {
+  const bool has_exr = std::ranges::any_of(
+      render.outputs, [](const std::string& path) { return output_format(path) == OutputFormat::exr; });
+  if (!asked.empty() && asked != "none" && !has_exr)
+    throw usage_error("--layers are written to EXR files, and no output is one", "-o FILE.exr",
+                      "'" + render.outputs.front() + "'");
 }
 
 CompareArguments checked(CompareArguments compare, const Options& options) {
@@ -91,7 +105,6 @@ CompareArguments checked(CompareArguments compare, const Options& options) {
   if (!std::isfinite(compare.exposure.value_or(0)))
     throw usage_error("--exposure", "a finite number", fmt::format("{}", *compare.exposure));
   if (!options.fail_above.empty()) compare.fail_above = share_of(options.fail_above);
-  compare.log.format = options.json ? LogFormat::json : LogFormat::text;
   return compare;
 }
 
@@ -199,6 +212,88 @@ std::vector<std::string> words_of(const CLI::App& app, int argc, const char* con
   return words;
 }
 
+/// What each command's options write to.
+struct Parsed {
+  RenderArguments render;
+  InfoArguments info;
+  CompareArguments compare;
+  PrecomputeArguments precompute;
+  BenchArguments bench;
+  CacheArguments cache;
+  ProfileArguments profile;
+  ImportArguments import;
+  ViewArguments view;
+  Options options;
+  std::string program, words;  ///< as it was called, and the words behind that, for a shell
+};
+
+void add_commands(CLI::App& app, Parsed& parsed) {
+  const auto command = [&](const char* name, const char* help) -> CLI::App& {
+    return *app.add_subcommand(name, help);
+  };
+  Options& options = parsed.options;
+  add_render_options(command("render", "render a scene to EXR and PNG files"), parsed.render, options);
+  add_view_options(command("view", "show a scene on a page, and what every change makes of it"), parsed.view,
+                   options);
+  add_precompute_options(command("precompute", "fill a cache with what rendering will ask for"),
+                         parsed.precompute, options);
+  CLI::App& info = command("info", "print what a scene requires and why; nothing is rendered");
+  add_common_options(info, parsed.info.scene, options);
+  add_picture_options(info, options);
+  add_import_options(command("import", "write an asset (.glb, .gltf, .obj) as a scene file, to be edited"),
+                     parsed.import);
+  add_compare_options(command("compare", "print how far a picture is from a reference"), parsed.compare,
+                      options);
+  add_bench_options(command("bench", "measure what scenes cost and how far off they are, at many settings"),
+                    parsed.bench, options);
+  add_profile_options(
+      command("profile", "measure how far diffusion models are from random walks, for one medium"),
+      parsed.profile, options);
+  add_cache_commands(command("cache", "look after a folder of stage results (--cache)"), parsed.cache,
+                     options);
+}
+
+RenderArguments checked(RenderArguments render, const Options& options) {
+  if (!options.layers.empty()) render.layers = *layers_of(options.layers);
+  render.display_server = parse_server_address(options.display_server);
+  check_outputs(render);
+  check_layers_have_a_file(render, options.layers);
+  if (!options.target_error.empty()) render.target_error = share_of(options.target_error);
+  render.time_budget = options.time_budget;
+  render.entry_samples = options.entry_samples.has_value();
+  render.until_error = !options.until_error.empty();
+  check_quality(render);
+  return render;
+}
+
+Command command_of(const std::string& name, Parsed parsed) {
+  const Options& options = parsed.options;
+  const auto with_log = [&](auto arguments) {
+    arguments.log.format = options.json || options.log == "json" ? LogFormat::json : LogFormat::text;
+    return arguments;
+  };
+  const auto with_overrides = [&](auto arguments) {
+    arguments.overrides = overrides_of(options);
+    return with_log(std::move(arguments));
+  };
+  const auto with_frames = [&](auto arguments) {
+    if (!options.frames.empty()) arguments.frames = *parse_frames(options.frames);
+    return with_overrides(std::move(arguments));
+  };
+  if (name == "compare") return checked(with_log(std::move(parsed.compare)), options);
+  if (name == "import") return checked(std::move(parsed.import));
+  if (name == "cache") return with_log(std::move(parsed.cache));
+  parsed.profile.command_line = parsed.bench.command_line = parsed.words;
+  if (name == "profile") return with_log(std::move(parsed.profile));
+  if (name == "bench") return checked(std::move(parsed.bench), options);
+  if (name == "view") return with_frames(std::move(parsed.view));
+  if (name == "precompute") return with_frames(std::move(parsed.precompute));
+  if (name == "info") return with_overrides(std::move(parsed.info));
+  parsed.render.program = parsed.program;
+  parsed.render.command_line = shell_quoted(parsed.program) + parsed.words;
+  return checked(with_frames(std::move(parsed.render)), options);
+}
+
 }  // namespace
 
 OutputFormat output_format(const std::string& path) {
@@ -211,47 +306,14 @@ OutputFormat output_format(const std::string& path) {
 }
 
 Command parse_arguments(int argc, const char* const* argv) {
-  RenderArguments render;
-  InfoArguments info;
-  CompareArguments compare;
-  PrecomputeArguments precompute;
-  BenchArguments bench;
-  CacheArguments cache;
-  ProfileArguments profile;
-  ImportArguments import;
-  ViewArguments view;
-  Options options;
   CLI::App app("opaline renders translucent things fast, and says how accurate the picture is.", "opaline");
   app.get_formatter()->column_width(34);
   app.set_version_flag("--version", "opaline " OPALINE_VERSION, "print the version");
   app.set_help_flag("-h,--help", "print this help");
   app.require_subcommand(0, 1);  // none at all is answered below: CLI11 would hide a misspelt one behind it
   app.footer(kExamples);
-  CLI::App& render_command = *app.add_subcommand("render", "render a scene to EXR and PNG files");
-  CLI::App& view_command =
-      *app.add_subcommand("view", "show a scene on a page, and what every change makes of it");
-  CLI::App& precompute_command =
-      *app.add_subcommand("precompute", "fill a cache with what rendering will ask for");
-  CLI::App& info_command =
-      *app.add_subcommand("info", "print what a scene requires and why; nothing is rendered");
-  CLI::App& import_command =
-      *app.add_subcommand("import", "write an asset (.glb, .gltf, .obj) as a scene file, to be edited");
-  CLI::App& compare_command = *app.add_subcommand("compare", "print how far a picture is from a reference");
-  CLI::App& bench_command =
-      *app.add_subcommand("bench", "measure what scenes cost and how far off they are, at many settings");
-  CLI::App& profile_command = *app.add_subcommand(
-      "profile", "measure how far diffusion models are from random walks, for one medium");
-  CLI::App& cache_command = *app.add_subcommand("cache", "look after a folder of stage results (--cache)");
-  add_render_options(render_command, render, options);
-  add_view_options(view_command, view, options);
-  add_precompute_options(precompute_command, precompute, options);
-  add_common_options(info_command, info.scene, options);
-  add_picture_options(info_command, options);
-  add_import_options(import_command, import);
-  add_compare_options(compare_command, compare, options);
-  add_bench_options(bench_command, bench, options);
-  add_profile_options(profile_command, profile, options);
-  add_cache_commands(cache_command, cache, options);
+  Parsed parsed;
+  add_commands(app, parsed);
   try {
     std::vector<std::string> words = words_of(app, argc, argv);
     std::ranges::reverse(words);  // as CLI11 takes them
@@ -260,43 +322,27 @@ Command parse_arguments(int argc, const char* const* argv) {
     if (failure.get_exit_code() == 0) return shown_text(app, failure);
     throw parse_error(app, failure);
   }
-  if (app.get_subcommands().empty())
+  const std::vector<CLI::App*> called = app.get_subcommands();
+  if (called.empty())
     throw usage_error(
         "no command given: render, view, info, import, compare, bench, profile, cache or precompute" +
         hint(app));
-  if (compare_command.parsed()) return checked(std::move(compare), options);
-  if (import_command.parsed()) return checked(std::move(import));
-  if (cache_command.parsed()) {
-    cache.log.format = options.json ? LogFormat::json : LogFormat::text;
-    return cache;
-  }
-  if (profile_command.parsed()) {
-    for (int i = 1; i < argc; ++i) profile.command_line += ' ' + shell_quoted(argv[i]);
-    profile.log.format = options.json ? LogFormat::json : LogFormat::text;
-    return profile;
-  }
-  if (bench_command.parsed()) {
-    for (int i = 1; i < argc; ++i) bench.command_line += ' ' + shell_quoted(argv[i]);
-    return checked(std::move(bench), options);
-  }
-  const LogFormat format = options.log == "json" ? LogFormat::json : LogFormat::text;
-  render.program = argv[0];
-  render.command_line = shell_quoted(render.program);
-  for (int i = 1; i < argc; ++i) render.command_line += ' ' + shell_quoted(argv[i]);
-  info.log.format = render.log.format = precompute.log.format = view.log.format = format;
-  info.overrides = render.overrides = precompute.overrides = view.overrides = overrides_of(options);
-  if (!options.frames.empty())
-    render.frames = precompute.frames = view.frames = *parse_frames(options.frames);
-  if (view_command.parsed()) return view;
-  if (precompute_command.parsed()) return precompute;
-  if (info_command.parsed()) return info;
-  if (!options.layers.empty()) render.layers = *layers_of(options.layers);
-  render.display_server = parse_server_address(options.display_server);
-  check_outputs(render);
-  if (!options.target_error.empty()) render.target_error = share_of(options.target_error);
-  render.time_budget = options.time_budget;
-  check_quality(render);
-  return render;
+  parsed.program = argv[0];
+  for (int i = 1; i < argc; ++i) parsed.words += ' ' + shell_quoted(argv[i]);
+  return command_of(called.front()->get_name(), std::move(parsed));
+}
+
+Error placed_at_option(const Error& failure, int argc, const char* const* argv) {
+  constexpr std::string_view set = "--set ";
+  if (!failure.file.starts_with(set)) return failure;
+  const std::string given = failure.file.substr(set.size());
+  const std::string_view option = option_of_key(std::string_view(given).substr(0, given.find('=')));
+  const bool is_set = std::any_of(argv + 1, argv + argc, [&](const char* word) {
+    return printable(word) == given || printable(word) == "--set=" + given;
+  });
+  if (option.empty() || is_set) return failure;
+  return Error(failure.kind, std::string(option), failure.line, failure.column, failure.message,
+               failure.expected, failure.got);
 }
 
 }  // namespace opaline

@@ -11,6 +11,7 @@
 #include "cli/display_server.h"
 #include "core/log.h"
 #include "opaline/cache/blob_cache.h"
+#include "opaline/core/error.h"
 #include "opaline/image/picture_layers.h"
 #include "view/view_server.h"
 
@@ -36,6 +37,7 @@ struct RenderArguments {
   std::optional<double> target_error;  ///< settings are chosen for it; relative, > 0
   std::optional<double> time_budget;   ///< settings are chosen for it; CPU of the whole process, s, > 0
   bool verify = false;                 ///< measure the error of the picture
+  bool entry_samples = false, until_error = false;  ///< whether these options were given, not --set
   Log log;
 };
 
@@ -119,5 +121,8 @@ enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case
 /// error Error{bad_input}: an unknown option, a value that is not one, an output that is neither EXR nor PNG
 Command parse_arguments(int argc, const char* const* argv);
+
+/// A failure whose place is "--set KEY=VALUE", where the command line has an option in its stead: its place is the option.
+Error placed_at_option(const Error& failure, int argc, const char* const* argv);
 
 }  // namespace opaline

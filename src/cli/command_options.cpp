@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "cli/frames.h"
 #include "cli/help_texts.h"
 #include "cli/option_helpers.h"
@@ -16,7 +20,7 @@ void add_frames_option(CLI::App& app, Options& options) {
   app.add_option(
          "--frames", options.frames,
          "frames of a range, e.g. 1-24, 1-24x2 or 1,5,7-9; ## in the names of outputs and meshes is their "
-         "number; frames that are there already as EXR, whole and of this scene, are left alone")
+         "number; frames that are there already, whole and of this scene, are left alone")
       ->check(CLI::Validator(
           [](std::string& text) {
             return parse_frames(text) ? std::string()
@@ -37,16 +41,34 @@ std::string plain_text(std::string_view markdown) {
 /// An option that stands for a key of film or settings, with its documentation and, for a whole number,
 /// range.
 template <class T>
-CLI::Option* add_key(CLI::App& app, const char* name, T& value, std::string_view path) {
+CLI::Option* add_key(CLI::App& app, T& value, std::string_view path) {
   const std::size_t dot = path.find('.');
   const KeyInfo& info = key_info(path.substr(0, dot), path.substr(dot + 1));
   CLI::Option* option = app.add_option(
-      name, value, fmt::format("{} (default {})", plain_text(info.meaning), plain_text(info.default_value)));
+      std::string(option_of_key(path)), value,
+      fmt::format("{} (default {})", plain_text(info.meaning), plain_text(info.default_value)));
   if (info.type == ValueType::whole_number) option->transform(whole_number(info.range));
   return option;
 }
 
 }  // namespace
+
+std::string_view option_of_key(std::string_view key) {
+  constexpr std::pair<std::string_view, std::string_view> options[] = {
+      {"film.samples_per_pixel", "--spp"},
+      {"film.resolution", "--resolution"},
+      {"film.crop", "--crop"},
+      {"film.exposure", "--exposure"},
+      {"film.view", "--view"},
+      {"settings.method", "--method"},
+      {"settings.evaluator", "--evaluator"},
+      {"settings.entry_samples", "--entry-samples"},
+      {"settings.until_error", "--until-error"},
+      {"settings.seed", "--seed"},
+      {"lights", "--environment"}};
+  const auto found = std::ranges::find(options, key, &std::pair<std::string_view, std::string_view>::first);
+  return found == std::end(options) ? std::string_view() : found->second;
+}
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {
   app.add_option("SCENE", scene, "scene file (JSON with comments), or an asset (.glb, .gltf, .obj)")
@@ -61,24 +83,23 @@ void add_common_options(CLI::App& app, std::string& scene, Options& options) {
 }
 
 void add_picture_options(CLI::App& app, Options& options) {
-  const auto option = [&](const char* name, auto& value, const char* key, const char* type) {
-    return add_key(app, name, value, key)->type_name(type)->group("Picture");
+  const auto option = [&](auto& value, const char* key, const char* type) {
+    return add_key(app, value, key)->type_name(type)->group("Picture");
   };
-  option("--spp", options.spp, "film.samples_per_pixel", "N");
-  option("--resolution", options.resolution, "film.resolution", "WxH")->check(resolution_check());
-  option("--crop", options.crop, "film.crop", "x0,y0,x1,y1")->check(crop_check());
-  option("--exposure", options.exposure, "film.exposure", "STOPS");
-  option("--view", options.view, "film.view", "NAME");
+  option(options.spp, "film.samples_per_pixel", "N");
+  option(options.resolution, "film.resolution", "WxH")->check(resolution_check());
+  option(options.crop, "film.crop", "x0,y0,x1,y1")->check(crop_check());
+  option(options.exposure, "film.exposure", "STOPS");
+  option(options.view, "film.view", "NAME");
   app.add_option("--environment", options.environment,
                  "a lat-long picture (EXR, HDR) of a room in place of the scene's lights, at exposure 0")
       ->type_name("FILE")
       ->group("Picture");
-  option("--method", options.method, "settings.method", "NAME");
-  option("--evaluator", options.evaluator, "settings.evaluator", "NAME");
-  option("--entry-samples", options.entry_samples, "settings.entry_samples", "N");
-  option("--until-error", options.until_error, "settings.until_error", "PERCENT")
-      ->check(positive_share_check());
-  option("--seed", options.seed, "settings.seed", "N");
+  option(options.method, "settings.method", "NAME");
+  option(options.evaluator, "settings.evaluator", "NAME");
+  option(options.entry_samples, "settings.entry_samples", "N");
+  option(options.until_error, "settings.until_error", "PERCENT")->check(positive_share_check());
+  option(options.seed, "settings.seed", "N");
 }
 
 void add_render_options(CLI::App& app, RenderArguments& render, Options& options) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/arguments.h"
@@ -30,6 +31,9 @@ struct Options {
   std::string display_server;
   std::string layers;
 };
+
+/// The option that stands for a key of a scene: "film.crop" -> "--crop"; empty where none does.
+std::string_view option_of_key(std::string_view key);
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options);
 void add_picture_options(CLI::App& app, Options& options);

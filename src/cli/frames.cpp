@@ -117,13 +117,11 @@ RenderArguments arguments_of_frame(const RenderArguments& arguments, int frame) 
 }
 
 bool is_rendered(const RenderArguments& arguments, const std::string& hash, int frame) {
-  bool known = false;
   std::vector<std::string> others = arguments.outputs;
   if (!arguments.samples_ply.empty()) others.push_back(arguments.samples_ply);
   for (const std::string& path : others)
     if (!std::filesystem::exists(path)) return false;
   for (const std::string& path : arguments.outputs) {
-    if (output_format(path) != OutputFormat::exr) continue;
     try {
       const Metadata stated = read_image(path).metadata;
       for (const auto& entry : frame_metadata(arguments, hash, frame))
@@ -131,9 +129,8 @@ bool is_rendered(const RenderArguments& arguments, const std::string& hash, int 
     } catch (const Error&) {
       return false;  // no picture: to be written over
     }
-    known = true;
   }
-  return known;
+  return true;
 }
 
 }  // namespace opaline

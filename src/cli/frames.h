@@ -35,8 +35,8 @@ std::string frame_hash(const std::string& path, const std::vector<std::string>& 
 /// The command's arguments with the frame's number in the names of its files.
 RenderArguments arguments_of_frame(const RenderArguments& arguments, int frame);
 
-/// Whether all the outputs are there and each EXR says that this frame was made by this version from this
-/// hash with this command; false without an EXR, for other files say nothing.
+/// Whether all the outputs are there and each picture says that this frame was made by this version from this
+/// hash with this command.
 bool is_rendered(const RenderArguments& arguments, const std::string& hash, int frame);
 
 }  // namespace opaline

@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/process_start.h"
+#include "opaline/core/error.h"
 
 namespace {
 
@@ -48,6 +49,8 @@ int main(int argc, char** argv) {
     const opaline::Command command = opaline::parse_arguments(argc, argv);
     log = log_of(command);
     return run(command);
+  } catch (const opaline::Error& failure) {
+    return opaline::print_failure(log, opaline::placed_at_option(failure, argc, argv));
   } catch (const std::exception& failure) {
     return opaline::print_failure(log, failure);
   }

@@ -58,6 +58,13 @@ void print_group(const Scene& scene, const GroupPlan& group) {
                             group.reason));
 }
 
+/// How an asset without a translucent material gets one: few formats can name it.
+std::string marble_text(const Scene& scene) {
+  if (scene.translation.empty() || scene.shapes.empty() || !scene.media.empty()) return {};
+  return fmt::format("; --set media.marble.preset=marble --set shapes.{}.medium=marble makes marble of {}",
+                     scene.shapes[0].name, scene.shapes[0].name);
+}
+
 void print_text(const Scene& scene, const Plan& plan) {
   print_row("scene", fmt::format("{}: {}, {}", scene.file, counted(scene.shapes.size(), "shape"),
                                  counted(plan.triangles, "triangle")));
@@ -65,7 +72,7 @@ void print_text(const Scene& scene, const Plan& plan) {
   print_row("picture", picture_text(scene.film));
   print_row("lights", lights_text(scene.lights));
   for (const GroupPlan& group : plan.groups) print_group(scene, group);
-  if (plan.groups.empty()) print_row("translucent", "nothing: no samples are needed");
+  if (plan.groups.empty()) print_row("translucent", "nothing: no samples are needed" + marble_text(scene));
   for (std::size_t i = 0; i < plan.stages.size(); ++i) print_row(i == 0 ? "stages" : "", plan.stages[i]);
   print_row("memory", "about " + short_bytes(plan.bytes) + " at the peak");
 }

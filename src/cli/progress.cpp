@@ -61,6 +61,7 @@ std::string stage_text(const ProgressState& state) {
   if (state.noise >= 0 && std::isfinite(state.noise) && !text.empty())
     text += fmt::format(", noise {:.2g} %", 100 * state.noise);
   if (text.empty() && state.seconds >= kSecondsBeforeElapsed) text = short_time(state.seconds) + " so far";
+  if (!state.trial.empty()) text += (text.empty() ? "(" : "  (") + state.trial + ")";
   return text;
 }
 
@@ -104,10 +105,11 @@ std::string progress_line(const ProgressState& state, std::size_t columns) {
   return (label + text).substr(0, room);
 }
 
-Progress::Progress(const Log& log, const Monitor& monitor, std::string stage)
+Progress::Progress(const Log& log, const Monitor& monitor, std::string stage, InnerStages inner)
     : log_(log),
       monitor_(monitor),
       stage_(std::move(stage)),
+      inner_(inner),
       style_(log.quiet                       ? Style::none
              : log.format == LogFormat::json ? Style::json
              : on_terminal()                 ? Style::terminal
@@ -123,7 +125,7 @@ void Progress::watch(const std::stop_token& stop) {
   const auto start = Clock::now();
   auto shown = start;
   ProgressEstimate estimate(start);
-  if (style_ != Style::lines) show(state_of(estimate));
+  if (style_ != Style::lines) show(state_of(estimate, 0));
   while (!wake.wait_for(lock, stop, kPoll, [&] { return stop.stop_requested(); })) {
     const auto now = Clock::now();
     estimate.update(monitor_, now);
@@ -132,20 +134,28 @@ void Progress::watch(const std::stop_token& stop) {
     if (style_ == Style::lines &&
         since < std::max(kLineSeconds, kLineGrowth * duration<double>(now - start).count()))
       continue;
-    show(state_of(estimate));
+    show(state_of(estimate, duration<double>(now - start).count()));
     shown = now;
   }
   if (style_ == Style::terminal) write_terminal(kClearLine);
 }
 
-ProgressState Progress::state_of(const ProgressEstimate& estimate) const {
-  const char* part = monitor_.stage;
-  ProgressState state{part != nullptr ? part : stage_,
-                      estimate.fraction(),
-                      estimate.seconds_left(),
-                      estimate.seconds(),
-                      {},
-                      estimate.noise()};
+// seconds: since the stage began
+ProgressState Progress::state_of(const ProgressEstimate& estimate, double seconds) const {
+  const char* inner = monitor_.stage;
+  ProgressState state;
+  if (inner_ == InnerStages::trials) {
+    state.stage = stage_;
+    state.seconds = seconds;
+    if (inner != nullptr) state.trial = inner;
+  } else {
+    state = {inner != nullptr ? inner : stage_,
+             estimate.fraction(),
+             estimate.seconds_left(),
+             estimate.seconds(),
+             {},
+             estimate.noise()};
+  }
   if (log_.frames != nullptr) state.frames = *log_.frames;
   return state;
 }
@@ -156,6 +166,7 @@ void Progress::show(const ProgressState& state) {
     if (state.fraction >= 0) members["fraction"] = state.fraction;
     if (state.seconds_left >= 0) members["seconds_left"] = state.seconds_left;
     if (state.noise >= 0 && std::isfinite(state.noise)) members["noise"] = state.noise;
+    if (!state.trial.empty()) members["trial"] = state.trial;
     if (state.frames)
       members["frames_finished"] = state.frames->finished, members["frames"] = state.frames->count;
     print_event(log_, "progress", members);

@@ -39,17 +39,22 @@ struct ProgressState {
   double fraction = -1, seconds_left = -1, seconds = 0;  ///< of the stage, as ProgressEstimate has them
   std::optional<FramesSoFar> frames = {};                ///< of a range: the line is about the whole of it
   double noise = -1;                                     ///< of the stage
+  std::string trial = {};                                ///< the stage that a search is trying; empty: none
 };
 
 /// The line, shorter than `columns` so that no terminal wraps it: the bar goes first, then the end is cut.
 std::string progress_line(const ProgressState& state, std::size_t columns);
+
+/// Stages under way inside of what is shown: parts of it, one after the other, or the trials of a search, whose own
+/// progress says nothing about the search's.
+enum class InnerStages { parts, trials };
 
 /// While it lives, a thread polls the monitor ten times a second and shows the stage on stderr: on a terminal
 /// as one line that updates and goes away, otherwise as a line after ten seconds and ever more rarely. With a
 /// JSON log: an event at the start and at most two a second. Nothing with --quiet.
 class Progress {
  public:
-  Progress(const Log& log, const Monitor& monitor, std::string stage);
+  Progress(const Log& log, const Monitor& monitor, std::string stage, InnerStages inner = InnerStages::parts);
   ~Progress() = default;
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -57,12 +62,13 @@ class Progress {
  private:
   enum class Style { none, terminal, lines, json };
   void watch(const std::stop_token& stop);
-  ProgressState state_of(const ProgressEstimate& estimate) const;
+  ProgressState state_of(const ProgressEstimate& estimate, double seconds) const;
   void show(const ProgressState& state);
 
   const Log& log_;
   const Monitor& monitor_;
   std::string stage_;
+  InnerStages inner_;
   Style style_;
   std::string shown_;    // the terminal's line
   std::jthread thread_;  // last: it uses the others, and its destructor stops and joins it

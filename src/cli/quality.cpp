@@ -33,10 +33,13 @@ KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, 
   const double before = process_cpu_seconds();
   const Scene scene = session.scene();
   check_groups(session, "--time-budget");
-  const TimeBudget chosen = stages.run("choosing", [&] {
-    return fit_budget(session, scene, budget_left(arguments), trial_writing(arguments, scene.film),
-                      &stages.monitor());
-  });
+  const TimeBudget chosen = stages.run(
+      "choosing",
+      [&] {
+        return fit_budget(session, scene, budget_left(arguments), trial_writing(arguments, scene.film),
+                          &stages.monitor());
+      },
+      InnerStages::trials);
   print_budget(arguments.log, *arguments.time_budget, before, chosen, session.scene().settings);
   return {{}, chosen.predicted, {}};
 }
@@ -164,9 +167,10 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
     throw bad_usage(fmt::format("{} cannot tell the error of the classic traversal", option_of(arguments)),
                     "another --evaluator", "classic");
   if (arguments.time_budget) return fit_settings(stages, arguments, session);
-  const TargetError chosen = stages.run("choosing", [&] {
-    return reach_error(session, session.scene(), *arguments.target_error, &stages.monitor());
-  });
+  const TargetError chosen = stages.run(
+      "choosing",
+      [&] { return reach_error(session, session.scene(), *arguments.target_error, &stages.monitor()); },
+      InnerStages::trials);
   print_target(arguments.log, *arguments.target_error, chosen, session.scene().settings);
   KnownErrors errors{arguments.target_error, {}, {}};
   if (chosen.sees_translucent) errors.predicted = chosen.predicted;

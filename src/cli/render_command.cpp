@@ -23,6 +23,7 @@
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/walk_warnings.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/scene/names.h"
 #include "opaline/session/scene_hash.h"
 #include "opaline/session/session.h"
 
@@ -184,6 +185,20 @@ struct Shared {
   DisplayServer* viewer = nullptr;
 };
 
+/// error Error{bad_input}: an option that the method has no use for
+void check_method_options(const RenderArguments& arguments, Method method) {
+  if (method == Method::direct) return;
+  const auto no_use = [&](const char* option, const char* methods) {
+    return Error(ErrorKind::bad_input, {}, 0, 0, std::string(option) + " has no effect with this method",
+                 std::string("--method ") + methods, std::string(name_of(method)));
+  };
+  if (arguments.entry_samples) throw no_use("--entry-samples", "direct");
+  if (method == Method::volume) return;
+  if (arguments.until_error) throw no_use("--until-error", "direct or volume");
+  if (!arguments.resume.empty())
+    throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct or volume");
+}
+
 /// One picture; `frame`: of a range, whose session is anchored; whether it was rendered, and not there
 /// already.
 bool render_scene(const RenderArguments& arguments, Session& session, const Shared& shared,
@@ -206,9 +221,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
     return false;
   }
   const Scene& scene = session.scene();
-  if (!arguments.resume.empty() && scene.settings.method != Method::direct &&
-      scene.settings.method != Method::volume)
-    throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct or volume");
+  check_method_options(arguments, scene.settings.method);
   check_layers(arguments.layers, scene);
   check_precompute(arguments, scene, session.plan());
   const std::size_t layer_bytes = asked_layer_bytes(arguments.layers, scene);

@@ -22,18 +22,18 @@ class StageRunner {
   /// error Error{interrupted} before it if the user asked to stop, besides the stage's own. So
   /// the last one, writing, is not cut short between two files.
   template <class Work>
-  auto run_unmeasured(const std::string& stage, const Work& work) {
+  auto run_unmeasured(const std::string& stage, const Work& work, InnerStages inner = InnerStages::parts) {
     advance(&monitor_, 0);
     monitor_.begin(nullptr, 0);
-    const Progress progress(log_, monitor_, stage);
+    const Progress progress(log_, monitor_, stage, inner);
     return work();
   }
 
   /// The same, and its cost is noted.
   template <class Work>
-  auto run(const std::string& stage, const Work& work) {
+  auto run(const std::string& stage, const Work& work, InnerStages inner = InnerStages::parts) {
     const Stopwatch watch;
-    auto result = run_unmeasured(stage, work);
+    auto result = run_unmeasured(stage, work, inner);
     note(watch.cost(stage));
     return result;
   }

@@ -64,8 +64,8 @@ double sample_diffusion_distance(const NormalizedDiffusion& profile, double beyo
   return 3 * profile.d * std::log((1 + 1 / root + root) / (4 * beyond));
 }
 
-// exp(-r/L) / (2 pi r L) gives the density (1 + R/L) exp(-R/L) / (2L): half an exponential, half a gamma of
-// order 2.
+// The radius R of the spheres whose chords have the lengths of one exponential of R_d: exp(-r/L) / (2 pi r L) gives the
+// density (1 + R/L) exp(-R/L) / (2L), half an exponential, half a gamma of order 2.
 double sample_chord_sphere_radius(const NormalizedDiffusion& profile, double u, double v) {
   const bool narrow = u < 0.25;
   const double length = narrow ? profile.d : 3 * profile.d;

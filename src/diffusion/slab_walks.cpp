@@ -36,7 +36,7 @@ End walk_through_slab(double reduced_albedo, double thickness, double eta, WalkN
   for (;;) {
     depth -= std::log(1 - numbers.next()) * cosine;
     while (depth < 0 || depth > thickness) {
-      // Seen from inside, "outside" is the plate.
+      // Light meets the boundary from within, so the ratio of the indices is 1 / eta.
       if (numbers.next() >= fresnel_reflectance(std::abs(cosine), 1 / eta))
         return depth < 0 ? End::back : End::through;
       depth = depth < 0 ? -depth : 2 * thickness - depth;

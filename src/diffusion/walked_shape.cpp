@@ -45,7 +45,7 @@ SlabWalks walk(double absorbed, double eta) {
 }
 
 RadialReference reference_of(double absorbed, double eta) {
-  // Half way up to the mirror image of a source at a depth of one mean free path.
+  // The width is half the distance between the dipole's source, one mean free path deep, and its image: 1 + 2 A / 3.
   const double inside = std::min(.99, average_reflectance_inside(eta));
   return {decay_constant(absorbed), 1 + 2. / 3 * (1 + inside) / (1 - inside)};
 }
@@ -92,8 +92,8 @@ class SmoothFit {
   }
 
  private:
-  // What f may change by from knot to knot, and its change: bending is dearer. Chosen by the walks' own noise
-  // (Tabulated.IsTheLongerWalk).
+  // Expected sizes, as standard deviations, of f's first and second differences from knot to knot. Chosen by the walks'
+  // own noise (Tabulated.IsTheLongerWalk).
   static constexpr double kSlope = .12, kBend = .03, kLongestStep = 2;
   static constexpr std::size_t kBand = 2;
   using Row = std::array<double, kBand + 1>;  // of the symmetric matrix: diagonal, and to its right
@@ -139,7 +139,7 @@ class SmoothFit {
   }
 
   std::vector<double> reference_, walked_;
-  double variance_;  ///< of a share, over the share
+  double variance_;  ///< a ring's share has this times the share as its variance
 };
 
 RadialTable walked_table(double absorbed, double eta) {
@@ -154,7 +154,8 @@ RadialTable walked_table(double absorbed, double eta) {
     sum += shares.back();
     variance += ring.share.error / total * (ring.share.error / total);
   }
-  shares.push_back(std::max(0.0, 1 - sum));  // what was given up, too
+  shares.push_back(
+      std::max(0.0, 1 - sum));  // the rest beyond the last knot, walks that were cut off included
   return {reference,
           SmoothFit(reference_shares(reference), std::move(shares), std::max(1e-12, variance / sum)).solve()};
 }

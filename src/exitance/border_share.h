@@ -6,8 +6,9 @@
 
 namespace opaline {
 
-/// SplitKernel::border for a profile split at h: the surface is taken for a half plane at the distance at
-/// which as much area is missing as the samples say. Numerical, error below 1e-3.
+/// SplitKernel::border for a profile split at h: what is left of the near field beside the straight edge of a half plane.
+/// Each row is for an edge that cuts off as much of the area, weighted as the samples are, as the row stands for.
+/// Numerical, error below 1e-3.
 std::array<std::array<float, 3>, SplitKernel::kBorderRows> border_shares(const DiffuseProfile& profile,
                                                                          double h);
 

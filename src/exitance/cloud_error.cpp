@@ -104,7 +104,7 @@ float flattened_part(const std::vector<Exitance>& fine, const std::vector<Exitan
     const float m = fine[i].exitance[c];
     if (!(m > 0)) continue;
     off += double(std::abs(classic[i].exitance[c] - m) / m);
-    expected += double(classic[i].error[c] / m) / double(kMeanDeviation);
+    expected += double(classic[i].error[c] / m) / double(kDeviationOfMean);
   }
   return expected > 0 ? float(std::clamp(off / expected, kLeastFlattened, kMostFlattened)) : 1;
 }

@@ -85,7 +85,7 @@ std::array<F, 3> surface_share(const SplitKernel& kernel, F near_area) {
 }
 
 // A normal distribution's standard deviation over its mean deviation.
-inline constexpr float kMeanDeviation = 1.2533f;
+inline constexpr float kDeviationOfMean = 1.2533f;
 // A sample stands off its cell's middle by this fraction of the distance over which neighbours differ.
 inline constexpr float kOffset = 0.2f;
 
@@ -111,7 +111,7 @@ F estimated_error(const PointSums<F>& sums, std::size_t c, F near, F variance, c
   const float scale = cloud.scale[c], rough = kRough * cloud.roughness[c], sheets = cloud.other_sheets;
   // Samples within nodes are not in the sum of squares.
   const F squares = sums.squares[c] + cloud.far_squares[c] * sums.far[c] * sums.far[c];
-  const F shift = kMeanDeviation * cloud.light_shift[c] * sums.far[c];
+  const F shift = kDeviationOfMean * cloud.light_shift[c] * sums.far[c];
   return root(shift * shift + scale * scale * local + rough * rough * squares +
               sheets * sheets * sums.sheets[c] + sums.hierarchy[c] * sums.hierarchy[c]);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/geometry/mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace opaline {
@@ -20,6 +21,22 @@ double enclosed_volume(const Mesh& mesh) {
         dot(mesh.positions[a] - first, cross(mesh.positions[b] - first, mesh.positions[c] - first));
   }
   return std::abs(six_volumes) / 6;
+}
+
+MeshMeasures measures_of(const Mesh& mesh) {
+  constexpr double kSlender = 32;
+  MeshMeasures measures{surface_area(mesh), enclosed_volume(mesh), {}, 0};
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3d ij = mesh.positions[j] - mesh.positions[i], ik = mesh.positions[k] - mesh.positions[i],
+                jk = ik - ij, n = cross(ij, ik);
+    const double twice_area = length(n);
+    if (std::max({dot(ij, ij), dot(ik, ik), dot(jk, jk)}) > kSlender * twice_area)
+      measures.needle_area += twice_area / 2;
+    if (!(twice_area > 0)) continue;
+    const std::array<double, 6> products{n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.y * n.z, n.z * n.x};
+    for (std::size_t p = 0; p < 6; ++p) measures.normal_products[p] += products[p] / (2 * twice_area);
+  }
+  return measures;
 }
 
 Bounds bounds(const Mesh& mesh) {

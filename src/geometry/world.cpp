@@ -78,6 +78,7 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
   world.meshes.resize(count);
   world.reports.resize(count);
   world.boxes.resize(count);
+  world.measures.resize(count);
   loaded = 0;
   if (count == 0) return world;
   Bounds all;
@@ -97,10 +98,12 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
     if (kept[i] && world.origin == old.origin && world.unit == old.unit) {
       world.meshes[i] = old.meshes[*kept[i]];
       world.reports[i] = old.reports[*kept[i]];
+      world.measures[i] = old.measures[*kept[i]];
     } else {
       if (kept[i]) load(i);
       move(world.meshes[i]);
       check_shape(world, scene.shapes[i], i);
+      world.measures[i] = measures_of(world.meshes[i]);
     }
   }
   return world;

@@ -34,7 +34,27 @@ std::uint32_t big_endian(std::string_view bytes) {
   return value;
 }
 
+void append_big_endian(std::string& bytes, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(value >> shift & 0xff));
+}
+
 }  // namespace
+
+std::string with_png_texts(const std::string& bytes,
+                           std::span<const std::pair<std::string, std::string>> texts) {
+  constexpr std::size_t header_end = 8 + 12 + 13;  // the signature, and IHDR with its 13 bytes of data
+  std::string result = bytes.substr(0, header_end);
+  for (const auto& [keyword, text] : texts) {
+    // After the keyword: not compressed, by method 0, of no language, without a translation of the keyword.
+    std::string chunk = "iTXt" + keyword;
+    chunk.append(5, '\0');
+    chunk += text;
+    append_big_endian(result, static_cast<std::uint32_t>(chunk.size() - 4));
+    result += chunk;
+    append_big_endian(result, crc_of(chunk));
+  }
+  return result.append(bytes, header_end);
+}
 
 void check_png_chunks(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

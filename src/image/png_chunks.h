@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a PNG is whole, before a decoder sees it: on a damaged one libpng prints to stderr by itself, takes
-// a missing end for an end, and its long jump out of OpenImageIO 2.4 leaks.
+// The frame of a PNG. Whether it is whole is checked before a decoder sees it: on a damaged one libpng prints to stderr by
+// itself, takes a missing end for an end, and its long jump out of OpenImageIO 2.4 leaks. Text is added after an encoder
+// made it: libpng's simple encoder writes none.
 #pragma once
 
 #include <cstdint>
 #include <istream>
+#include <span>
 #include <string>
+#include <utility>
 
 namespace opaline {
 
@@ -16,5 +19,11 @@ namespace opaline {
 void check_png_chunks(const std::string& path);
 /// The same of a file's bytes in memory. name: for messages
 void check_png_chunks(std::istream& file, std::uintmax_t size, const std::string& name);
+
+/// A PNG with texts behind its header, each a chunk iTXt.
+/// in    bytes: a whole PNG; texts: keywords of 1 to 79 ASCII characters, and UTF-8
+/// from  PNG specification, section 11.3.4.5
+std::string with_png_texts(const std::string& bytes,
+                           std::span<const std::pair<std::string, std::string>> texts);
 
 }  // namespace opaline

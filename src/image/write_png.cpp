@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "image/png_chunks.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
@@ -73,7 +74,7 @@ void write_png(const std::string& path, const Image& image, double exposure, Vie
       for (std::size_t c = 0; c < 3; ++c) bytes[3 * i + c] = quantize(shown[c]);
     }
   });
-  file.append(encoded(path, image.width, image.height, bytes));
+  file.append(with_png_texts(encoded(path, image.width, image.height, bytes), image.metadata));
   file.commit();
 }
 

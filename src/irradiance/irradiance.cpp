@@ -74,7 +74,7 @@ void trace_transfers(const IrradianceInput& input, std::span<const Light> lights
                                              std::vector<ErrorSums>(chunk_count(n, batch_size)));
   parallel_chunks(n, batch_size, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     ShadowBatch batch(input.rays, lights, input.eta, input.light_samples, light_seed(input.seed, lights[0]));
-    batch.scatter();
+    batch.sort_rays();
     batch.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceSample& s = input.samples[i];

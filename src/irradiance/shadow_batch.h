@@ -43,8 +43,8 @@ class ShadowBatch {
   ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
       : ShadowBatch(rays, std::span(&light, 1), eta, samples, seed) {}
 
-  /// To be told where points that follow each other do not lie together.
-  void scatter() { scattered_ = samples_ == 1; }
+  /// To be called where points that follow each other do not lie together: their rays are sorted before they are traced.
+  void sort_rays() { scattered_ = samples_ == 1; }
 
   /// To be told where `trace` is to be asked for directions.
   void keep_directions() { keeps_directions_ = true; }

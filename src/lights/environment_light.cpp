@@ -27,7 +27,7 @@ std::vector<KeyInfo> LightReader<EnvironmentLight>::rows() {
   return {
       {.key = "type", .type = choice, .meaning = "`\"environment\"`: a picture of the room, all around"},
       {.key = "file",
-       .type = text,
+       .type = file,
        .meaning =
            "a lat-long EXR or HDR picture, twice as wide as high, +y up, +z in its middle; relative to the "
            "scene file"},

@@ -73,11 +73,14 @@ ShadingCost::ShadingCost(const Scene& scene, const Image& probe) : tried_(kFirst
   std::ranges::stable_sort(tiles_, {}, &Tile::coverage);
 }
 
-double ShadingCost::of(const Session& session, const Scene& scene) {
+double ShadingCost::of(const SettingsSearch& search) {
+  const Session& session = search.session;
+  RenderInput input{search.scene, session.world(), session.rays(), session.bodies()};
+  input.bounced = search.bounced;
   const auto cost_of = [&](const std::vector<Rectangle>& parts) {
     rest();
     const Stopwatch watch;
-    shade_parts({scene, session.world(), session.rays(), session.bodies()}, parts);
+    shade_parts(input, parts);
     rest();
     return watch.cost({}).cpu_seconds;
   };

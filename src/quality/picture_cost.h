@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "opaline/quality/time_budget.h"
-#include "opaline/session/session.h"
+#include "quality/settings_search.h"
 
 namespace opaline {
 
@@ -16,8 +16,8 @@ class ShadingCost {
   /// probe: of this scene; where it shows what tells which tiles stand for the others
   ShadingCost(const Scene& scene, const Image& probe);
 
-  /// s, of the scene with what the session has prepared.
-  double of(const Session& session, const Scene& scene);
+  /// s, of the search's scene with what its session has prepared; light between things is there.
+  double of(const SettingsSearch& search);
 
  private:
   struct Tile {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "opaline/core/random.h"
 #include "opaline/image/metrics.h"
@@ -68,9 +69,12 @@ Scene probe_scene(const Scene& scene, double most_pixels) {
   return probe;
 }
 
-RenderResult probe_picture(const Session& session, Scene probe, std::uint64_t noise, Monitor* monitor) {
+RenderResult probe_picture(const Session& session, Scene probe, std::uint64_t noise, Monitor* monitor,
+                           std::shared_ptr<const BouncedPlaces> bounced) {
   probe.settings.seed = hash_bits(probe.settings.seed, noise);
-  RenderResult result = render({probe, session.world(), session.rays(), session.bodies(), monitor});
+  RenderInput input{probe, session.world(), session.rays(), session.bodies(), monitor};
+  input.bounced = std::move(bounced);
+  RenderResult result = render(input);
   blacken_opaque(result);
   return result;
 }

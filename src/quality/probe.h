@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "opaline/session/session.h"
@@ -14,8 +15,10 @@ Scene probe_scene(const Scene& scene, double most_pixels);
 
 /// The probe seen with the samples, trees and surface caches that the session has prepared.
 /// in    noise: pictures of different ones share no random number of a shadow ray
+///       bounced: light between things, of any picture of the same view (RenderInput::bounced)
 /// out   opaque surfaces have no diffuse light
-RenderResult probe_picture(const Session& session, Scene probe, std::uint64_t noise, Monitor* monitor);
+RenderResult probe_picture(const Session& session, Scene probe, std::uint64_t noise, Monitor* monitor,
+                           std::shared_ptr<const BouncedPlaces> bounced = nullptr);
 
 /// 1 for each pixel of a probe's picture that shows lit translucent surface.
 std::vector<std::uint8_t> translucent_pixels(const Image& picture);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "opaline/core/stopwatch.h"
 #include "quality/probe.h"
 
 namespace opaline {
@@ -34,10 +35,15 @@ void SettingsSearch::place(double samples) {
   scene.settings.sample_spacing = std::sqrt(area / samples);
   session.edit(scene);
   session.prepare(monitor);
+  if (bounces_of(scene) == 0 || bounced != nullptr) return;
+  const Stopwatch watch;
+  bounced = bounced_places({scene, session.world(), session.rays(), session.bodies(), monitor});
+  bounced_seconds = watch.cost({}).cpu_seconds;
 }
 
 Image SettingsSearch::picture() {
-  RenderResult result = probe_picture(session, probe_scene(scene, probe_pixels), ++pictures, monitor);
+  RenderResult result =
+      probe_picture(session, probe_scene(scene, probe_pixels), ++pictures, monitor, bounced);
   estimated = estimated_relative_error(result.image, result.translucent);
   return std::move(result.image);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "opaline/session/session.h"
 
@@ -17,12 +18,15 @@ struct SettingsSearch {
   std::size_t enough_points = 3000;   ///< of a probe, lit and translucent
   std::uint64_t pictures = 0;
   double estimated = 0;  ///< mean relative error of the last picture, by its own `error` layer
+  /// Light between things, where there is any: gathered for the first picture, and for all others too.
+  std::shared_ptr<const BouncedPlaces> bounced = {};
+  double bounced_seconds = 0;  ///< CPU of that
 
   /// Settings that the search itself needs: the evaluator is not left open; edits the session, and learns the
   /// area and the most samples of all groups.
   void begin(double tolerance);
 
-  /// Samples of all groups together.
+  /// Samples of all groups together, prepared.
   void place(double samples);
 
   /// A probe of the scene as it is now; no two share a random number of a shadow ray.

@@ -33,7 +33,7 @@ struct Tried {
   double samples = 0;
   Image picture;
   double sampling = 0;
-  double preparing = 0;  ///< sampling, irradiance, octree
+  double preparing = 0;  ///< sampling, irradiance, octree, bounces
   double shading = 0;    ///< of the whole picture
   double looking = 0;    ///< what trying it cost besides
 };
@@ -51,7 +51,7 @@ double cost_of(const Session& session, std::initializer_list<std::string_view> s
 
 Tried tried(const Session& session, double samples, Image picture) {
   return {samples, std::move(picture), cost_of(session, {"sampling"}),
-          cost_of(session, {"sampling", "irradiance", "octree"})};
+          cost_of(session, {"sampling", "irradiance", "octree", "bounces"})};
 }
 
 class BudgetSearch {
@@ -98,15 +98,15 @@ void BudgetSearch::try_first(const FinishPicture& finish) {
   Tried& first = tried_.emplace_back(tried(search_.session, samples, std::move(picture)));
   shading_.emplace(search_.scene, first.picture);
   const Stopwatch looking;
-  first.shading = shading_->of(search_.session, search_.scene);
+  first.shading = shading_->of(search_);
   first.looking = looking.cost({}).cpu_seconds;
   // As it will be, opaque surfaces and all.
   Scene whole = probe_scene(search_.scene, search_.probe_pixels);
   whole.shapes = search_.scene.shapes;
   const Session& session = search_.session;
-  finishing_ = finishing_cost(
-      render({whole, session.world(), session.rays(), session.bodies(), search_.monitor}).image,
-      search_.scene.film, finish);
+  RenderInput input{whole, session.world(), session.rays(), session.bodies(), search_.monitor};
+  input.bounced = search_.bounced;
+  finishing_ = search_.bounced_seconds + finishing_cost(render(input).image, search_.scene.film, finish);
 }
 
 void BudgetSearch::try_samples(double samples) {
@@ -115,7 +115,7 @@ void BudgetSearch::try_samples(double samples) {
   const Stopwatch watch;
   Image picture = search_.picture_of(samples);
   Tried next = tried(search_.session, samples, std::move(picture));
-  next.shading = shading_->of(search_.session, search_.scene);
+  next.shading = shading_->of(search_);
   next.looking = watch.cost({}).cpu_seconds - next.preparing;
   tried_.push_back(std::move(next));
   doubled_ = std::abs(samples / tried_[tried_.size() - 2].samples - 2) < .01 ? doubled_ + 1 : 0;
@@ -212,7 +212,7 @@ Choice BudgetSearch::with_tolerance() {
   const double tolerance = tolerance_for(error_guess() * std::pow(last().samples / rough.samples, slope_));
   search_.scene.settings.tolerance =
       std::stod(fmt::format("{:.2g}", tolerance));  // no longer than it needs be
-  tried_.back().shading = shading_->of(search_.session, search_.scene);
+  tried_.back().shading = shading_->of(search_);
   return affordable(2 * kBeyond * last().samples);
 }
 
@@ -222,7 +222,7 @@ Choice BudgetSearch::with_evaluator(Choice plan) {
   const Image exact = search_.picture();
   if (search_.try_surface_cache()) {
     const double exact_shading = last().shading, exitance = cost_of(search_.session, {"exitance"});
-    tried_.back().shading = shading_->of(search_.session, search_.scene);
+    tried_.back().shading = shading_->of(search_);
     const Choice cached = affordable(2 * kBeyond * last().samples, exitance);
     interpolation_ = probe_difference(search_.picture(), exact);
     const double guess = error_guess();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "opaline/core/stopwatch.h"
 #include "quality/picture_cost.h"
 #include "quality/probe.h"
 #include "quality/settings_search.h"
@@ -25,50 +26,60 @@ double rounded(double value, double digits) {
 }
 
 struct Trade {
-  Session& session;
-  Scene scene;
-  Monitor* monitor;
-  std::uint64_t pictures = 0;
+  SettingsSearch search;
+  Scene given;
   Image probe;  ///< of the last point
 
   double prepared_seconds() const {
     double seconds = 0;
-    for (const StageCost& cost : session.costs())
+    for (const StageCost& cost : search.session.costs())
       if (cost.stage != "rays") seconds += cost.cpu_seconds;
     return seconds;
   }
 
-  std::size_t planned_samples() const {
-    std::size_t samples = 0;
-    for (const GroupPlan& group : session.plan().groups) samples += group.samples;
-    return samples;
-  }
-
+  void prepare();
   void measure(TradePoint& point);
   TradePoint lambert();
 };
 
+/// The search's scene; light between things is gathered once, as each picture would.
+void Trade::prepare() {
+  Session& session = search.session;
+  session.edit(search.scene);
+  session.prepare(search.monitor);
+  if (bounces_of(search.scene) == 0 || search.bounced != nullptr) return;
+  const Stopwatch watch;
+  search.bounced =
+      bounced_places({search.scene, session.world(), session.rays(), session.bodies(), search.monitor});
+  search.bounced_seconds = watch.cost({}).cpu_seconds;
+}
+
 void Trade::measure(TradePoint& point) {
-  Scene tried = scene;
-  if (!point.is_given) set_point(tried.settings, point);
-  session.edit(tried);
-  session.prepare(monitor);
-  RenderResult result = probe_picture(session, probe_scene(tried, kProbePixels), ++pictures, monitor);
-  point.all_samples = planned_samples();
+  search.scene = given;
+  if (!point.is_given) set_point(search.scene.settings, point);
+  prepare();
+  RenderResult result = probe_picture(search.session, probe_scene(search.scene, kProbePixels),
+                                      ++search.pictures, search.monitor, search.bounced);
+  point.all_samples = search.planned_samples();
   point.error = estimated_relative_error(result.image, result.translucent);
-  point.seconds = prepared_seconds() + ShadingCost(tried, result.image).of(session, tried);
+  point.seconds =
+      prepared_seconds() + search.bounced_seconds + ShadingCost(search.scene, result.image).of(search);
   probe = std::move(result.image);
 }
 
 TradePoint Trade::lambert() {
-  scene.settings.method = Method::lambert;
-  session.edit(scene);
-  session.prepare(monitor);
-  const Image picture = probe_picture(session, probe_scene(scene, kProbePixels), ++pictures, monitor).image;
+  search.scene = given;
+  search.scene.settings.method = Method::lambert;
+  search.bounced.reset();
+  search.bounced_seconds = 0;
+  prepare();
+  const Image picture = probe_picture(search.session, probe_scene(search.scene, kProbePixels),
+                                      ++search.pictures, search.monitor, search.bounced)
+                            .image;
   TradePoint point;
   point.method = Method::lambert;
   point.error = probe_difference(picture, probe);
-  point.seconds = ShadingCost(scene, picture).of(session, scene);
+  point.seconds = search.bounced_seconds + ShadingCost(search.scene, picture).of(search);
   return point;
 }
 
@@ -95,8 +106,8 @@ void try_trade(Session& session, Scene scene, const std::function<void(const Tra
     largest = std::max(largest, group.samples);
   }
   if (given == 0) return;
-  Trade trade{session, std::move(scene), monitor, 0, {}};
-  const Settings& settings = trade.scene.settings;
+  Trade trade{{session, scene, monitor}, scene, {}};
+  const Settings& settings = trade.given.settings;
   double error = 0;  // expected of the next
   for (const double factor : kFactors) {
     const bool is_given = factor == 1;

@@ -22,32 +22,27 @@ double smallest_mean_free_path(const DiffuseProfile& profile) {
   return smallest;
 }
 
+/// mm; 0 where a mesh is open
 double mean_thickness(const World& world, const GroupPlan& group) {
   double volume = 0;
   for (const std::uint32_t m : group.meshes) {
     if (world.reports[m].open_edges > 0) return 0;
-    volume += enclosed_volume(world.meshes[m]) * world.unit * world.unit * world.unit;
+    volume += world.measures[m].volume;
   }
-  return 2 * volume / group.area;
+  return 2 * volume * world.unit * world.unit * world.unit / group.area;
 }
 
 // The sum of the squares of the elements of the mean n n^T is the mean of (n . m)^2 over two normals n and m.
 double alignment_of(const World& world, const GroupPlan& group) {
-  std::array<double, 6> sums{};  // xx yy zz xy yz zx
+  std::array<double, 6> sums{};
   double area = 0;
   for (const std::uint32_t m : group.meshes) {
-    const Mesh& mesh = world.meshes[m];
-    for (const auto& [i, j, k] : mesh.triangles) {
-      const Vec3d n = cross(mesh.positions[j] - mesh.positions[i], mesh.positions[k] - mesh.positions[i]);
-      const double a = length(n);
-      if (!(a > 0)) continue;
-      area += a;
-      const std::array<double, 6> products{n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.y * n.z, n.z * n.x};
-      for (std::size_t p = 0; p < 6; ++p) sums[p] += products[p] / a;
-    }
+    const MeshMeasures& measures = world.measures[m];
+    area += measures.area;
+    for (std::size_t p = 0; p < sums.size(); ++p) sums[p] += measures.normal_products[p];
   }
   double squares = 0;
-  for (std::size_t p = 0; p < 6; ++p) squares += (p < 3 ? 1 : 2) * sums[p] * sums[p];
+  for (std::size_t p = 0; p < sums.size(); ++p) squares += (p < 3 ? 1 : 2) * sums[p] * sums[p];
   return area > 0 ? squares / (area * area) : 0;
 }
 
@@ -96,7 +91,7 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
       it = groups.end() - 1;
     }
     it->meshes.push_back(std::uint32_t(i));
-    it->area += surface_area(world.meshes[i]) * world.unit * world.unit;
+    it->area += world.measures[i].area * world.unit * world.unit;
   }
   for (GroupPlan& group : groups) {
     group.thickness = mean_thickness(world, group);

@@ -34,7 +34,7 @@ void for_each_gathered(const GatherInput& input, const UseOfGathered& use);
 std::vector<RgbF> gathered_irradiance(const GatherInput& input);
 
 /// The same at what a camera sees at 64 places along its picture's longer side. Where bodies' trees hold what bounced to
-/// them, so does what they send here: a second bounce, which `direct` lacks.
+/// them, so does what they send here, a second bounce: a Session's do not while it gathers.
 /// from  Ward, Rubinstein & Clear 1988
 class BouncedPlaces {
  public:

@@ -96,10 +96,15 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
     where = fmt::format("so far away that all of them are {:.2g} pixels wide", pixels);
   else if (degrees < camera.field_of_view / 2 && !scene.film.crop)
     where = "in the view: does a lamp stand in front of them?";
-  const std::string advice =
-      scene.film.crop
-          ? "a small --resolution without a crop shows where they are"
-          : "--set camera.look_at=" + point_text(middle, scene.mm_per_unit) + " looks at their middle";
+  const std::string look = "--set camera.look_at=" + point_text(middle, scene.mm_per_unit);
+  std::string advice = look + " looks at their middle";
+  if (scene.film.crop) {
+    advice = "a small --resolution without a crop shows where they are";
+  } else if (distance > radius && degrees <= 90 && pixels < 2) {
+    const double near = radius / std::sin(camera.field_of_view * std::numbers::pi / 360);
+    advice = fmt::format("{} --set camera.position={} shows them", look,
+                         point_text(middle - towards * (near / distance), scene.mm_per_unit));
+  }
   return fmt::format("nothing is in view{}: the shapes lie between {} and {} (scene units), {}; {}",
                      scene.film.crop ? " of the crop" : "", point_text(box.low, scene.mm_per_unit),
                      point_text(box.high, scene.mm_per_unit), where, advice);

@@ -14,6 +14,7 @@
 #include "opaline/assets/import_asset.h"
 #include "opaline/geometry/mesh_file.h"
 #include "opaline/lights/environment_picture.h"
+#include "opaline/scene/nearest_name.h"
 #include "scene/keyed_values.h"
 #include "scene/overrides.h"
 #include "scene/readers.h"
@@ -26,7 +27,7 @@ constexpr std::size_t largest_file = std::size_t{64} << 20;  // bytes
 std::string read_text(const std::string& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (!std::filesystem::exists(status)) throw bad_file(path, "no such scene file");
+  if (!std::filesystem::exists(status)) throw bad_file(path, "no such scene file" + did_you_mean_file(path));
   if (std::filesystem::is_directory(status)) throw bad_file(path, "is a folder", "a scene file");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw bad_file(path, std::string("cannot be read: ") + std::strerror(errno));

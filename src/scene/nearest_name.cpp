@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -81,6 +82,22 @@ std::string did_you_mean_key(std::string_view name, std::string_view section) {
   if (!exact.empty()) return suggestion(exact);
   const std::string_view near = nearest_name(name, keys);
   return near.empty() ? suggestion(path_elsewhere(name, true)) : suggestion(near);
+}
+
+std::string did_you_mean_file(const std::string& path) {
+  constexpr std::size_t most = 10000;  // files of a folder; in a larger one nothing is looked for
+  const std::filesystem::path given(path), folder = given.parent_path();
+  std::vector<std::string> names;
+  std::error_code failure;
+  std::filesystem::directory_iterator file(folder.empty() ? "." : folder, failure);
+  for (; !failure && file != std::filesystem::directory_iterator(); file.increment(failure)) {
+    if (names.size() == most) return {};
+    names.push_back(file->path().filename().string());
+  }
+  std::ranges::sort(names);  // folders list their files in no order
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const std::string near(nearest_name(given.filename().string(), views));
+  return suggestion(near.empty() ? near : (folder / near).string());
 }
 
 }  // namespace opaline

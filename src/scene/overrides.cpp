@@ -135,12 +135,32 @@ void check_new_media(const Document& document, const std::set<std::string>& name
   }
 }
 
+/// A shape that the command line makes translucent is no longer opaque as the file has it, and the other way round.
+void drop_replaced_surface(Node& shape) {
+  const auto is_given = [&](std::string_view key) {
+    const Node* member = find_member(shape, key);
+    return member != nullptr && member->override_index >= 0;
+  };
+  const auto drop = [&](std::string_view key) {
+    std::erase_if(shape.children,
+                  [&](const Node& c) { return c.override_index < 0 && same_key(c.key, key); });
+  };
+  if (is_given("medium"))
+    for (const char* key :
+         {"reflectance", "metalness", "specular_roughness", "specular_ior", "specular_weight"})
+      drop(key);
+  else if (is_given("reflectance"))
+    for (const char* key : {"medium", "group"}) drop(key);
+}
+
 }  // namespace
 
 void apply_overrides(Document& document) {
   const std::set<std::string> names = media_names(document.root);
   for (std::size_t i = 0; i < document.overrides.size(); ++i) Override(document, static_cast<int>(i)).apply();
   check_new_media(document, names);
+  for (Node& member : document.root.children)
+    if (member.key == "shapes") std::ranges::for_each(member.children, drop_replaced_surface);
 }
 
 }  // namespace opaline

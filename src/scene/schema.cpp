@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "opaline/scene/json_tree.h"
@@ -145,7 +146,7 @@ std::vector<KeyInfo> shape_rows() {
   return {
       row("shape", "name", text, "", kFiniteNumber, "\"shape0\", \"shape1\", ...",
           "what messages and `--set` call it; no two alike"),
-      row("shape", "file", text, "", kFiniteNumber, "",
+      row("shape", "file", file, "", kFiniteNumber, "",
           "mesh: OBJ, PLY, STL, OFF or an asset's GLB or glTF; relative paths start at the scene file's "
           "folder"),
       row("shape", "part", text, "", kFiniteNumber, "all of the file",
@@ -239,7 +240,7 @@ std::vector<KeyInfo> camera_rows() {
 std::vector<KeyInfo> texture_rows() {
   using enum ValueType;
   return {
-      row("texture", "texture", text, "", kFiniteNumber, "",
+      row("texture", "texture", file, "", kFiniteNumber, "",
           "EXR, HDR, PNG, JPEG or TIFF, relative to the scene file's folder; `<UDIM>` in its name stands for "
           "1001 + "
           "column + 10 row; `asset.glb#image/0` is an asset's image"),
@@ -302,6 +303,7 @@ std::string plain_values_text(const KeyInfo& info) {
     case ValueType::triple:
     case ValueType::choice:
     case ValueType::text:
+    case ValueType::file:
     case ValueType::list:
     case ValueType::object:
       return "";
@@ -327,6 +329,16 @@ const KeyInfo& key_info(std::string_view section, std::string_view key) {
       schema(), [&](const KeyInfo& info) { return info.section == section && info.key == key; });
   require(row != schema().end(), "a key of the scene's schema");
   return *row;
+}
+
+std::span<const std::string_view> file_keys() {
+  static const std::vector<std::string_view> keys = [] {
+    std::set<std::string_view> found;
+    for (const KeyInfo& info : schema())
+      if (info.type == ValueType::file) found.insert(info.key);
+    return std::vector<std::string_view>(found.begin(), found.end());
+  }();
+  return keys;
 }
 
 std::span<const std::string_view> section_keys(std::string_view section) {

@@ -90,6 +90,7 @@ std::string Value::string() const {
 }
 
 std::string Value::file_path() const {
+  require(info_->type == ValueType::file, "the key of a file that is opened is of this type: file_keys()");
   return (std::filesystem::path(document_->file).parent_path() / with_frame(string(), document_->frame))
       .string();
 }

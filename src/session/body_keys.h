@@ -30,13 +30,13 @@ bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Setti
 struct BodyKeys {
   SampleOrigin origin;
   StageKey samples_key, tint_key, tree_key, kernel_key, exitance_key;
-  StageKey lights_key;                      // of the tree's light as it comes from lights alone
+  StageKey lights_key;                      // of the tree before bounced light is added
   StageKey volume_key;                      // of Body::volume; of walks, but for their number
   StageKey diffusion_key;                   // of the cells
   std::vector<std::uint32_t> meshes;        // that the samples name
   std::vector<StageKey> light_keys;         // of the transfers
   std::vector<StageKey> walk_keys;          // of the walks' sources
-  std::optional<SurfaceCache> spare_cache;  // of no use for the picture at hand
+  std::optional<SurfaceCache> spare_cache;  // kept, though this picture does not use it
 
   std::shared_ptr<const VolumeDiffusion> diffusion;  // its cells
 

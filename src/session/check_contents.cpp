@@ -37,7 +37,7 @@ bool all_of(std::size_t size, const Condition& condition) {
 
 double area_of(const SampledSurface& surface) {
   double area = 0;
-  for (const std::uint32_t m : surface.meshes) area += surface_area(surface.world.meshes[m]);
+  for (const std::uint32_t m : surface.meshes) area += surface.world.measures[m].area;
   return area;
 }
 

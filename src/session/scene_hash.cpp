@@ -12,6 +12,7 @@
 #include "opaline/core/error.h"
 #include "opaline/geometry/mesh_file.h"
 #include "opaline/image/texture_file.h"
+#include "opaline/lights/environment_picture.h"
 
 namespace opaline {
 namespace {
@@ -55,6 +56,9 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
       if (seen.insert(mesh->path).second) add(contents_of(shape, mesh->path));
   for (const Shape& shape : scene.shapes)
     for (const Texture* texture : textures_of(scene, shape)) add(std::to_string(texture->file->hash()));
+  for (const Light& light : scene.lights)
+    if (const auto* room = std::get_if<EnvironmentLight>(&light.source))
+      add(std::to_string(room->picture->hash()));
   return hash.digest();
 }
 

@@ -269,7 +269,9 @@ Image Session::State::recoloured(const Scene& scene, HeldView& view, Monitor* mo
     lit.irradiance = entered_irradiance(body, lights);
     build_tree(lit, body);
   }
+  RenderInput input{scene, *world_, *rays_, groups, monitor, {}, &view};
   if (bounces_of(scene) > 0) {
+    input.bounced = opaline::bounced_places(input);
     for (std::size_t b = 0; b < groups.size(); ++b) groups[b].surface = bodies_[b].surface;
     const std::vector<std::vector<RgbF>> bounced =
         bounced_at_samples({scene, *world_, *rays_, plan_, monitor}, groups);
@@ -278,7 +280,7 @@ Image Session::State::recoloured(const Scene& scene, HeldView& view, Monitor* mo
       build_tree(groups[b], bodies_[b]);
     }
   }
-  RenderResult part = opaline::render({scene, *world_, *rays_, groups, monitor, {}, &view});
+  RenderResult part = opaline::render(input);
   work_.queries += part.queries;
   return std::move(part.image);
 }

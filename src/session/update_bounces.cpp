@@ -6,6 +6,41 @@
 #include "session/session_state.h"
 
 namespace opaline {
+namespace {
+
+/// While it lives, bodies have the light of lights alone, as what bounces once needs it, in place of all they have.
+class LitByLightsAlone {
+ public:
+  LitByLightsAlone(std::vector<Body>& bodies, const std::vector<Light>& lights) : bodies_(bodies) {
+    for (Body& body : bodies) {
+      all_.push_back({std::move(body.irradiance), std::move(body.octree), std::move(body.surface_cache)});
+      body.surface_cache.reset();
+      body.irradiance = entered_irradiance(body, lights);
+      body.octree = gather_flux(body.surface.samples, body.irradiance);
+      bound_far_side(body);
+    }
+  }
+  ~LitByLightsAlone() {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      bodies_[b].irradiance = std::move(all_[b].irradiance);
+      bodies_[b].octree = std::move(all_[b].octree);
+      bodies_[b].surface_cache = std::move(all_[b].surface_cache);
+    }
+  }
+  LitByLightsAlone(const LitByLightsAlone&) = delete;
+  LitByLightsAlone& operator=(const LitByLightsAlone&) = delete;
+
+ private:
+  struct AllLight {
+    std::vector<RgbF> irradiance;
+    Octree octree;
+    std::optional<SurfaceCache> surface_cache;
+  };
+  std::vector<Body>& bodies_;
+  std::vector<AllLight> all_;
+};
+
+}  // namespace
 
 void add_bounced(Body& body, std::span<const RgbF> bounced) {
   for (std::size_t i = 0; i < bounced.size(); ++i)
@@ -64,6 +99,7 @@ void Session::State::update_bounced_places(const RenderInput& input) {
   // The keys of bodies say nothing where none are prepared.
   const StageKey key = is_needed() ? builder.key() : StageKey{};
   if (bounced_ != nullptr && key != StageKey{} && key == bounced_key_) return;
+  const LitByLightsAlone lit(bodies_, recentred_lights(scene_, *world_));
   bounced_ = opaline::bounced_places(input);
   bounced_key_ = key;
 }

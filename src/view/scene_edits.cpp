@@ -8,6 +8,7 @@
 #include "core/log.h"
 #include "opaline/core/error.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline {
 namespace {
@@ -54,9 +55,12 @@ void check_pixels(const Scene& scene) {
 /// A page cannot have files opened: neither by their key, nor in an object with one, however it is spelled.
 void check_opens_nothing(const std::string& file, const std::string& edit) {
   const std::size_t end = edit.find('=');
-  const std::string path = edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
-  if (path == "file" || path.ends_with(".file") || value.find("\"file\"") != std::string::npos ||
-      value.find('\\') != std::string::npos)
+  const std::string path = '.' + edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
+  const bool opens = std::ranges::any_of(file_keys(), [&](std::string_view key) {
+    return path.ends_with('.' + std::string(key)) ||
+           value.find('"' + std::string(key) + '"') != std::string::npos;
+  });
+  if (opens || value.find('\\') != std::string::npos)
     throw bad_file(file, "a view does not change files", "those of the scene that was opened");
 }
 
@@ -94,9 +98,9 @@ Scene SceneEdits::parsed(const Edits& edits) const {
 
 void SceneEdits::set(const SetValues& message) {
   Edits edits = history_[at_];
-  for (const auto& [path, value] : message.values) {
-    std::erase_if(edits, [&](const std::string& text) { return is_within(text, path); });
-    edits.push_back(path + '=' + value);
+  for (const Assignment& change : message.values) {
+    std::erase_if(edits, [&](const std::string& text) { return is_within(text, change.path); });
+    edits.push_back(change.path + '=' + change.value);
   }
   if (edits == history_[at_]) return;
   Scene scene = parsed(edits);

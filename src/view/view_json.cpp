@@ -36,6 +36,7 @@ std::string_view name_of(ValueType type) {
     case ValueType::choice:
       return "choice";
     case ValueType::text:
+    case ValueType::file:
       return "text";
     case ValueType::list:
       return "list";
@@ -43,6 +44,13 @@ std::string_view name_of(ValueType type) {
       break;
   }
   return "object";
+}
+
+/// Ends of a slider: those of the range, or a thousandth inside where the range is without them.
+Json slider_json(const Range& range) {
+  constexpr double kWidest = 1e6;  // of what a slider is for
+  const double width = range.high - range.low, inside = width < kWidest ? 1e-3 * width : 0;
+  return {range.low + (range.without_low ? inside : 0), range.high - (range.without_high ? inside : 0)};
 }
 
 Json row_json(const KeyInfo& info) {
@@ -53,6 +61,7 @@ Json row_json(const KeyInfo& info) {
           {"type", name_of(info.type)},
           {"unit", info.unit},
           {"range", {info.range.low, info.range.high}},
+          {"slider", slider_json(info.range)},
           {"default", info.default_value},
           {"meaning", info.meaning},
           {"choices", choices}};

@@ -17,7 +17,7 @@ constexpr int kMostBounces = 16;  // outside, from one place of the body to anot
 
 double area_of(const VolumeInput& input) {
   double area = 0;
-  for (const std::uint32_t m : input.meshes) area += surface_area(input.world.meshes[m]);
+  for (const std::uint32_t m : input.meshes) area += input.world.measures[m].area;
   return area;
 }
 

@@ -27,7 +27,7 @@ Offer offer_of(const Light& light, bool unit_emission, const SurfacePoint& point
 
 /// Barycentrics in a triangle of a place in one of its count^2 equal pieces: rows of upright and turned ones.
 std::array<double, 2> place_in_piece(std::uint32_t count, std::uint32_t index, double u, double v) {
-  // Row r, counted from the first corner's opposite end, has 2 (count - r) - 1 pieces.
+  // Rows counted from the edge opposite the third corner: row r has 2 (count - r) - 1 pieces.
   std::uint32_t row = 0, before = 0;
   while (before + 2 * (count - row) - 1 <= index) before += 2 * (count - row++) - 1;
   const std::uint32_t place = index - before, column = place / 2;

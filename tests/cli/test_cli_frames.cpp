@@ -181,6 +181,26 @@ TEST(CliFrames, Resumes) {
   EXPECT_EQ(rendered("1-4"), 1u);
 }
 
+// Claim: so it is with PNG files alone, which say the same of themselves. Source: frames.h. Fails if: their text is not
+// written, or only an EXR is believed.
+TEST(CliFrames, ResumesPictures) {
+  const SceneFolder folder;
+  const auto rendered = [&](const std::vector<std::string>& more = {}) {
+    std::vector<std::string> line{"render",   folder.scene, "-o",       folder.file("a.##.png"),
+                                  "--frames", "1-2",        "--method", "lambert",
+                                  "--log",    "json"};
+    line.insert(line.end(), more.begin(), more.end());
+    std::size_t count = 0;
+    for (const nlohmann::json& event : events_of(run_program(line).out)) count += event["event"] == "done";
+    return count;
+  };
+  EXPECT_EQ(rendered(), 2u);
+  EXPECT_EQ(rendered(), 0u);
+  EXPECT_EQ(rendered({"--seed", "7"}), 2u);
+  put_bytes(folder.file("a.01.png"), bytes_of(folder.file("a.01.png")).substr(0, 300));
+  EXPECT_EQ(rendered({"--seed", "7"}), 1u);
+}
+
 // Claim: a bad frame is named, the others are rendered, and the exit code is 3. Source: the help of render.
 // Fails if:
 // the first failure ends the run, or is forgotten.

@@ -145,5 +145,29 @@ TEST(CliProgress, OneLineForAllFrames) {
   EXPECT_TRUE(contains(text, "frame 3 of 4  [############............] 50 %, "));
 }
 
+// Claim: while settings are chosen the progress tells so, with what is being tried, and no share of it: how many
+// trials there will be is not known. Source: progress.h. Fails if: a trial's own stages stand in place of the search
+// ("shading 99 %").
+TEST(CliProgress, ASearchIsNoneOfItsTrials) {
+  const SceneFolder folder;
+  const Outcome outcome = run_program({"render", folder.scene, "-o", folder.file("a.exr"), "--target-error",
+                                       "1%", "--resolution", "256x256", "--log", "json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::istringstream lines(outcome.out);
+  bool is_chosen = false;
+  std::size_t searching = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const nlohmann::json event = nlohmann::json::parse(line);
+    is_chosen = is_chosen || event.value("event", "") == "target";
+    if (event.value("event", "") != "progress" || event.value("stage", "") == "loading" || is_chosen)
+      continue;
+    EXPECT_EQ(event.value("stage", ""), "choosing") << line;
+    EXPECT_FALSE(event.contains("fraction")) << line;
+    ++searching;
+  }
+  EXPECT_GT(searching, 0u);
+  EXPECT_TRUE(is_chosen) << outcome.out;
+}
+
 }  // namespace
 }  // namespace opaline

@@ -120,5 +120,20 @@ TEST(Png, AlphaIsLeftAlone) {
   EXPECT_FLOAT_EQ(read.pixels[3], 128 / 255.0f);
 }
 
+// Claim: what describes a picture is written and read back, in any language, and the pixels stay. Source: image.h; PNG
+// specification, section 11.3.4.5. Fails if: a chunk stands before IHDR or its length counts the type (the decoder then
+// finds no picture).
+TEST(Png, HasMetadata) {
+  const ScratchFolder folder;
+  Image image = ramp(64);
+  image.metadata = {{"opaline:scene", "Büste ミロ.json"}, {"opaline:empty", ""}};
+  write_png(folder.file("a.png"), image, 0);
+  const Image read = read_image(folder.file("a.png"));
+  EXPECT_EQ(read.metadata, image.metadata);
+  image.metadata.clear();
+  write_png(folder.file("b.png"), image, 0);
+  EXPECT_EQ(read.pixels, read_image(folder.file("b.png")).pixels);
+}
+
 }  // namespace
 }  // namespace opaline

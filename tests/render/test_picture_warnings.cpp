@@ -49,8 +49,8 @@ TEST(PictureWarnings, GoodScenesHaveNone) {
 
 // Claim: where no shape is seen, the words say where the shapes are, in scene units, and how to look at them:
 // behind, beside, too small for a pixel, or outside of the crop. By hand: the ball is 100 mm along -z from
-// the camera; seen at 90 degrees from its side; 20 mm at 1e7 mm are 2e-4 pixels of 32 under 40 degrees. Fails
-// if: lengths are printed in mm, or a crop beside the ball is taken for a bad camera.
+// the camera; seen at 90 degrees from its side; 20 mm at 1e7 mm are 2e-4 pixels of 32 under 40 degrees, and
+// fill them from sqrt(3) 10 mm / sin 20 degrees. Fails if: lengths are printed in mm, or a crop beside the ball is taken for a bad camera.
 TEST(PictureWarnings, NothingInView) {
   Scene scene = lit_ball();
   scene.camera.look_at = {0, 0, 200};
@@ -62,7 +62,8 @@ TEST(PictureWarnings, NothingInView) {
   expect_warning(scene, {"90 degrees beside the middle of the view"});
   scene = lit_ball();
   scene.camera.position = {0, 0, 1e7};
-  expect_warning(scene, {"nothing is in view", "pixels wide"});
+  expect_warning(scene,
+                 {"nothing is in view", "pixels wide", "--set camera.position=[0,0,50.64] shows them"});
   scene = lit_ball();
   scene.film.crop = {{0, 0, 4, 4}};
   expect_warning(scene, {"nothing is in view of the crop"});

@@ -42,6 +42,24 @@ TEST(SceneOverrides, NewMediumWithANearName) {
   EXPECT_EQ(scene.media[*scene.shapes[0].medium].name, "marble2");
 }
 
+// Claim: on the command line a medium takes the place of an opaque surface of the file, and a reflectance that of a
+// medium and its group; what is given together still collides. Source: read_shape.cpp, which allows one of the two.
+// Fails if: the file's keys stay.
+TEST(SceneOverrides, OpaqueAndTranslucentReplaceEachOther) {
+  const std::string scene = R"({
+    "media": {"marble": {"preset": "marble"}},
+    "shapes": [{"sphere": {"radius": 1}, "reflectance": 0.2, "metalness": 1, "specular_roughness": 0.3, "eta": 2},
+               {"sphere": {"radius": 1}, "medium": "marble", "group": "a"}]})";
+  const Scene swapped = parse(scene, {"shapes.0.medium=marble", "shapes.1.reflectance=0.25"});
+  EXPECT_EQ(swapped.shapes[0].medium, 0u);
+  EXPECT_FALSE(swapped.shapes[0].gloss);
+  EXPECT_FALSE(swapped.shapes[1].medium);
+  EXPECT_TRUE(swapped.shapes[1].group.empty());
+  EXPECT_EQ(swapped.shapes[1].reflectance, Rgb(.25, .25, .25));
+  expect_fragments(error_of(scene, {"shapes.0.medium=marble", "shapes.0.reflectance=1"}),
+                   {"cannot stand beside 'medium'"});
+}
+
 // Claim: an error in an overridden value names the override; one in the file beside it still names the file;
 // an override that leads nowhere says why, and what was meant. Source: load_scene.h. Fails if parse_tree
 // drops override_index, or a mistyped medium is taken for a new one.

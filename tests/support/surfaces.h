@@ -42,6 +42,7 @@ inline World world_of_mesh(Mesh mesh) {
   World world;
   const Bounds box = bounds(mesh);
   world.diagonal = length(box.high - box.low);
+  world.measures.push_back(measures_of(mesh));
   world.meshes.push_back(std::move(mesh));
   world.reports.resize(1);
   return world;
@@ -51,6 +52,7 @@ inline World world_of_mesh(Mesh mesh) {
 inline World scaled(World world, double k) {
   for (Mesh& mesh : world.meshes)
     for (Vec3d& p : mesh.positions) p *= k;
+  for (std::size_t i = 0; i < world.meshes.size(); ++i) world.measures[i] = measures_of(world.meshes[i]);
   world.origin *= k;
   world.diagonal *= k;
   return world;

@@ -54,6 +54,9 @@ TEST(SceneEdits, OpenNoFiles) {
   for (const auto& [path, value] : std::vector<std::pair<std::string, std::string>>{
            {"shapes.0.file", R"("/etc/passwd")"},
            {"lights.0", R"({"type": "environment", "file": "/etc/passwd"})"},
+           {"shapes.0.reflectance", R"({"texture": "/etc/passwd"})"},
+           {"shapes.0.reflectance.texture", R"("/etc/passwd")"},
+           {"texture", R"("/etc/passwd")"},
            {"lights.0", R"({"type": "environment", "\u0066ile": "/etc/passwd"})"}})
     try {
       edits.set(one(path, value));

@@ -41,6 +41,16 @@ double surface_area(const Mesh& mesh);
 /// Of a closed mesh, in cubes of its own unit, >= 0; by the divergence theorem about one of its corners.
 double enclosed_volume(const Mesh& mesh);
 
+/// Integrals over a mesh's surface, in powers of the mesh's own unit.
+struct MeshMeasures {
+  double area = 0, volume = 0;  ///< surface_area, enclosed_volume
+  std::array<double, 6>
+      normal_products{};  ///< of n n^T, n the unit normal: xx yy zz xy yz zx; its trace is the area
+  double needle_area =
+      0;  ///< of triangles the square of whose longest side is more than 32 times twice their area
+};
+MeshMeasures measures_of(const Mesh& mesh);
+
 struct Bounds {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
 };

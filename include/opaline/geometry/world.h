@@ -19,7 +19,8 @@ namespace opaline {
 struct World {
   std::vector<Mesh> meshes;
   std::vector<MeshReport> reports;
-  std::vector<Bounds> boxes;  ///< one a mesh, in the scene, mm
+  std::vector<Bounds> boxes;           ///< one a mesh, in the scene, mm
+  std::vector<MeshMeasures> measures;  ///< one a mesh, of the mesh as it is here, units
   /// The middle of everything, rounded to a multiple of a step. The step is a power of two between 1/8 and
   /// 1/4 of the diagonal. So when one object moves a little, the origin usually stays, and the others keep
   /// their bits.

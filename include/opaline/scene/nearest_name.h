@@ -15,4 +15,7 @@ std::string did_you_mean(std::string_view name, std::span<const std::string_view
 /// a key of the others.
 std::string did_you_mean_key(std::string_view name, std::string_view section);
 
+/// The same for a path: the file of its folder that is called almost like it.
+std::string did_you_mean_file(const std::string& path);
+
 }  // namespace opaline

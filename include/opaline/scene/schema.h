@@ -33,6 +33,7 @@ enum class ValueType {
   flag,              ///< true or false
   choice,            ///< one of KeyInfo::choices
   text,
+  file,  ///< path of a file that reading the scene opens
   list,
   object
 };
@@ -55,6 +56,8 @@ struct KeyInfo {
 std::span<const KeyInfo> schema();
 /// The row of a key that exists.
 const KeyInfo& key_info(std::string_view section, std::string_view key);
+/// The keys, of whatever section, that name files: whoever may set one can have any file opened.
+std::span<const std::string_view> file_keys();
 /// The keys of one section; empty for an unknown section.
 std::span<const std::string_view> section_keys(std::string_view section);
 /// The row as scenes/README.md has it.

@@ -38,7 +38,7 @@ struct SurfaceHits {
 struct LeavingLight {
   std::vector<RgbF> exitance;    ///< radiant exitance M_o, but for the factor SurfaceTint::leaving
   std::vector<RgbF> irradiance;  ///< E at the hit
-  std::vector<RgbF> error;       ///< expected |error| of the exitance that neighbouring hits share
+  std::vector<RgbF> error;       ///< standard error of the exitance that neighbouring hits share
   std::vector<Rgb> noise;        ///< variance of the exitance of each hit by itself
   std::vector<RgbF> bias;        ///< that the noise gives the exitance
 };

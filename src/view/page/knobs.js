@@ -136,10 +136,11 @@ export class Knobs {
     const knob = {path, row, value: (scene) => value(scene)};
     const inputs = this.inputs(knob, (now, stroke = newStroke()) => this.set({[path]: now}, stroke));
     const range = kNumbers.concat(kColours).includes(row.type) && Math.abs(row.range[1]) < 1e29 ? `, ${row.range[0]} to ${row.range[1]}` : "";
-    const help = `${key}: ${plain(row.meaning)}${row.unit ? ` [${row.unit}]` : ""}${range}${row.default ? `; default ${plain(row.default)}` : ""}`;
+    const unit = row.unit || (["length", "point"].includes(row.type) ? "scene units" : "");
+    const help = `${key}: ${plain(row.meaning)}${unit ? ` [${unit}]` : ""}${range}${row.default ? `; default ${plain(row.default)}` : ""}`;
     knob.root = make("div", {className: "knob", title: help}, make("span", {className: "name"}, ...key.split(/(?<=_)/).flatMap((word) => [word, make("wbr")])), inputs);
     knob.root.role = "group";
-    knob.root.setAttribute("aria-label", `${path}, ${row.unit}`);
+    knob.root.setAttribute("aria-label", `${path}, ${unit}`);
     if (row.unit && row.unit.length < 14) inputs.append(make("span", {className: "unit", textContent: row.unit}));
     knob.root.addEventListener("focusin", () => this.help(help));
     knob.root.addEventListener("pointerenter", () => this.help(help));
@@ -183,7 +184,7 @@ export class Knobs {
   slider(row, now, change) {
     const isLinear = row.range[1] - row.range[0] <= kWidestLinear;
     const input = make("input", {type: "range", ariaLabel: `${row.key}, slider`, step: "any",
-      min: isLinear ? row.range[0] : -kDecade, max: isLinear ? row.range[1] : kDecade});
+      min: isLinear ? row.slider[0] : -kDecade, max: isLinear ? row.slider[1] : kDecade});
     let stroke = 0, base = 1;
     const value = () => {
       const x = isLinear ? Number(input.value) : base * 10 ** Number(input.value);
