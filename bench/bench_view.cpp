@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a person waits for at the page of `opaline view`: milliseconds of wall time from a message to the frame it
 // leads to, through the WebSocket, with two threads; beside a lambert frame of the same size and threads.
-// usage: bench_view SCENE [SCREENSHOT.png]   (the screenshot needs Debian's chromium-headless-shell)
+// usage: bench_view SCENE [SCREENSHOT.png [light | dark]]   (the screenshot needs Debian's chromium-headless-shell)
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -22,7 +22,8 @@ using namespace opaline;
 using namespace opaline::test;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kThreads = 2, kRounds = 12;
+constexpr int kThreads = 2, kRounds = 12, kFewestRounds = 3;
+constexpr double kLongRow = 20e3;                   // ms of rounds, after which a few are enough
 constexpr std::chrono::microseconds kMouse{16667};  // between two positions of a mouse
 
 double milliseconds_since(Clock::time_point start) {
@@ -52,7 +53,9 @@ void wait_for_final(ViewClient& page, std::uint32_t revision, Clock::time_point 
 
 Waits measure_edits(ViewClient& page, const std::function<Json(int round)>& values) {
   Waits waits;
+  const Clock::time_point begin = Clock::now();
   for (int round = 0; round < kRounds; ++round) {
+    if (round >= kFewestRounds && milliseconds_since(begin) > kLongRow) break;
     const std::uint32_t next = page.revision() + 1;
     const Clock::time_point start = Clock::now();
     page.set(values(round));
@@ -120,6 +123,7 @@ void print_row(const char* name, const Waits& waits, double lambert) {
                        quantile(times, .5) / lambert);
   };
   fmt::print("{:<28}{}   {}\n", name, figures(waits.first), figures(waits.final));
+  std::fflush(stdout);
 }
 
 Waits measure_cold(const std::string& file) {
@@ -137,13 +141,46 @@ Json triple(const Rgb& value, double factor) {
   return {value.x * factor, value.y * factor, value.z * factor};
 }
 
+/// What the first light becomes in a round: brighter, and elsewhere; a room turns.
+struct LightEdits {
+  std::function<Json(int round)> brighter, moved;
+};
+
+LightEdits light_edits(const LightSource& source) {
+  const std::string light = "lights.0";
+  if (const auto* lamp = std::get_if<PointLight>(&source))
+    return {[light, lamp](int i) {
+              return Json{{light + ".intensity", triple(lamp->intensity, 1 + .01 * (i + 1))}};
+            },
+            [light, lamp](int i) {
+              return Json{{light + ".position",
+                           {lamp->position.x + 2 * (i + 1), lamp->position.y, lamp->position.z}}};
+            }};
+  if (const auto* room = std::get_if<EnvironmentLight>(&source))
+    return {[light, room](int i) {
+              return Json{{light + ".strength", triple(room->strength, 1 + .01 * (i + 1))}};
+            },
+            [light, room](int i) {
+              return Json{{light + ".rotation", room->rotation + 2 * (i + 1)}};
+            }};
+  throw std::runtime_error("a scene is needed whose first light is a point or an environment");
+}
+
+/// The medium with more scattering; its boundary as it was.
+Json scattering(const Medium& medium, int round) {
+  const auto& physical = std::get<PhysicalMedium>(medium.coefficients);
+  return {{"sigma_a", triple(physical.sigma_a, 1)},
+          {"sigma_s_prime", triple(physical.sigma_s_prime, 1 + .02 * (round + 1))},
+          {"specular_ior", medium.eta},
+          {"specular_roughness", medium.specular_roughness}};
+}
+
 void measure(const std::string& file) {
   const Scene scene = load_scene(file);
-  const auto* lamp = std::get_if<PointLight>(&scene.lights.at(0).source);
-  const auto* medium = std::get_if<PhysicalMedium>(&scene.media.at(0).coefficients);
-  if (lamp == nullptr || medium == nullptr || scene.mm_per_unit != 1)
-    throw std::runtime_error(
-        "a scene in mm is needed whose first light is a point and whose first medium has coefficients");
+  const Medium& medium = scene.media.at(0);
+  if (!std::holds_alternative<PhysicalMedium>(medium.coefficients) || scene.mm_per_unit != 1)
+    throw std::runtime_error("a scene in mm is needed whose first medium has coefficients");
+  const LightEdits light = light_edits(scene.lights.at(0).source);
   const double lambert = lambert_milliseconds(scene);
   fmt::print("{} x {} pixels, {} threads, lambert frame {:.1f} ms\n{:<28}{:>27}   {:>27}\n{:<28}",
              scene.film.resolution[0], scene.film.resolution[1], kThreads, lambert, "", "first picture",
@@ -157,44 +194,24 @@ void measure(const std::string& file) {
   double frames_per_second = 0;
   const Waits orbit = measure_orbit(page, scene.camera, frames_per_second);
   print_row("orbit", orbit, lambert);
-  const std::string light = "lights.0", medium_path = "media." + scene.media[0].name;
-  print_row("light colour",
-            measure_edits(page,
-                          [&](int i) {
-                            return Json{{light + ".intensity", triple(lamp->intensity, 1 + .01 * (i + 1))}};
-                          }),
-            lambert);
-  print_row(
-      "light moved",
-      measure_edits(page,
-                    [&](int i) {
-                      return Json{{light + ".position",
-                                   {lamp->position.x + 2 * (i + 1), lamp->position.y, lamp->position.z}}};
-                    }),
-      lambert);
-  print_row("medium's index",
-            measure_edits(page,
-                          [&](int i) {
-                            return Json{{medium_path + ".specular_ior", scene.media[0].eta + .01 * (i + 1)}};
-                          }),
-            lambert);
-  print_row("medium's scattering",
-            measure_edits(page,
-                          [&](int i) {
-                            return Json{{medium_path,
-                                         {{"sigma_a", triple(medium->sigma_a, 1)},
-                                          {"sigma_s_prime", triple(medium->sigma_s_prime, 1 + .02 * (i + 1))},
-                                          {"specular_ior", scene.media[0].eta}}}};
-                          }),
-            lambert);
+  const bool is_room = std::holds_alternative<EnvironmentLight>(scene.lights[0].source);
+  print_row(is_room ? "room's strength" : "light colour", measure_edits(page, light.brighter), lambert);
+  print_row(is_room ? "room turned" : "light moved", measure_edits(page, light.moved), lambert);
+  const std::string path = "media." + medium.name;
+  const auto index = [&](int i) { return Json{{path + ".specular_ior", medium.eta + .01 * (i + 1)}}; };
+  print_row("medium's index", measure_edits(page, index), lambert);
+  const auto scattered = [&](int i) { return Json{{path, scattering(medium, i)}}; };
+  print_row("medium's scattering", measure_edits(page, scattered), lambert);
   fmt::print("orbit shows {:.0f} pictures a second of 60 positions\n", frames_per_second);
 }
 
 /// The page after a change of medium and light, the picture before on the left of the wipe.
-void take_screenshot(const std::string& scene, const std::string& path) {
+void take_screenshot(const std::string& scene, const std::string& path, const std::string& theme) {
   const RunningView view(scene);
   Browser browser;
   const Tab tab = browser.open(view.url());
+  browser.call(tab, "Emulation.setEmulatedMedia",
+               {{"features", {{{"name", "prefers-color-scheme"}, {"value", theme}}}}});
   const std::string is_final = "document.getElementById('error')?.dataset.revision == ";
   browser.comes_true(tab, is_final + "1");
   browser.run(tab, "document.getElementById('pin').click()");
@@ -203,7 +220,8 @@ void take_screenshot(const std::string& scene, const std::string& path) {
   page.set({{"media." + opened.media.at(0).name + ".preset", "skin1"},
             {"lights." + opened.lights.at(0).name + ".intensity", {95000, 60000, 30000}}});
   browser.comes_true(tab, is_final + "2");
-  browser.run(tab, "document.querySelector('#notes details').open = true");
+  browser.run(tab, "document.getElementById('trade').open = true");
+  browser.comes_true(tab, "document.querySelector('#points circle[aria-label^=lambert]')");
   browser.run(tab, "new Promise((done) => setTimeout(done, 500))");
   const std::string base64 = browser.call(tab, "Page.captureScreenshot", {{"format", "png"}}).at("data");
   std::string bytes(beast::detail::base64::decoded_size(base64.size()), '\0');
@@ -215,12 +233,12 @@ void take_screenshot(const std::string& scene, const std::string& path) {
 
 int main(int argc, char** argv) try {
   if (argc < 2) {
-    fmt::print(stderr, "usage: bench_view SCENE [SCREENSHOT.png]\n");
+    fmt::print(stderr, "usage: bench_view SCENE [SCREENSHOT.png [light | dark]]\n");
     return 2;
   }
   const tbb::global_control two(tbb::global_control::max_allowed_parallelism, kThreads);
   if (argc > 2)
-    take_screenshot(argv[1], argv[2]);
+    take_screenshot(argv[1], argv[2], argc > 3 ? argv[3] : "light");
   else
     measure(argv[1]);
   return 0;

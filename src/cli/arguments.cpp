@@ -286,7 +286,7 @@ Command command_of(const std::string& name, Parsed parsed) {
   parsed.profile.command_line = parsed.bench.command_line = parsed.words;
   if (name == "profile") return with_log(std::move(parsed.profile));
   if (name == "bench") return checked(std::move(parsed.bench), options);
-  if (name == "view") return with_overrides(std::move(parsed.view));
+  if (name == "view") return with_frames(std::move(parsed.view));
   if (name == "precompute") return with_frames(std::move(parsed.precompute));
   if (name == "info") return with_overrides(std::move(parsed.info));
   parsed.render.program = parsed.program;

@@ -93,6 +93,7 @@ struct ProfileArguments {
 struct ViewArguments {
   std::string scene;
   std::vector<std::string> overrides;
+  std::vector<int> frames;  ///< empty: those that the scene has keys for
   ViewOptions options;
   int threads = 0;  ///< 0: one for each core
   Log log;

@@ -174,6 +174,7 @@ void add_view_options(CLI::App& app, ViewArguments& view, Options& options) {
          "--token", view.options.token,
          "word in the URL without which nothing is served, of 16 to 64 characters; default: a random one")
       ->type_name("WORD");
+  add_frames_option(app, options);
   add_threads(app, view.threads, "at most this many; default: one for each core");
   app.add_flag("--quiet", view.log.quiet, "print the URL and errors only");
   add_picture_options(app, options);

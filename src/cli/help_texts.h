@@ -80,6 +80,9 @@ then the final one, with the bits of opaline render; a newer change cancels it. 
 The scene file stays as it is: "save" writes another one beside it, "render" a picture, by names of your choice that
 are not taken. Mesh files are those of the scene.
 
+A scene with frames has a slider for them: those of --frames, or from the first key of its values to the last. What frames
+share is not computed again. A final picture is then that of opaline render --frames.
+
 Who has the URL can edit, and write such files into the scene's folder. Other requests are refused, with a line on
 stderr: another token, Origin or host name, messages above 64 kB, more than 16 pages or 64 connections. What is
 sent is not encrypted: with --listen, trust the network, or use ssh -L 8080:127.0.0.1:8080 and --port 8080.
@@ -89,6 +92,7 @@ the page's edits.
 Examples:
   opaline view bunny.json
   opaline view bunny.json --set media.marble.eta=1.4 --resolution 1024x1024
+  opaline view turn.json --frames 1-24
   opaline view bunny.json --port 8080 --token my-own-long-secret
 
 Exit codes: 0 ended by Ctrl-C, 2 bad input, 3 the port cannot be had.)";

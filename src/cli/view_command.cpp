@@ -17,9 +17,10 @@ namespace {
 
 /// A file by a process of its own, so that it is what `opaline render` writes and the view goes on meanwhile.
 void render_file(const ViewArguments& arguments, const std::vector<std::string>& overrides,
-                 const std::string& path, Monitor& monitor) {
+                 std::optional<int> frame, const std::string& path, Monitor& monitor) {
   std::vector<std::string> words{"render", arguments.scene, "-o", path, "--log", "json"};
   for (const std::string& text : overrides) words.insert(words.end(), {"--set", text});
+  if (frame) words.insert(words.end(), {"--frames", std::to_string(*frame)});
   if (arguments.threads > 0) words.insert(words.end(), {"--threads", std::to_string(arguments.threads)});
   const OwnChild child = run_own_child(words, monitor);
   if (!child.failure.empty()) throw run_failed({}, child.failure);
@@ -36,16 +37,18 @@ void view_command(const ViewArguments& arguments) {
   const InterruptHandler interrupt(monitor);
   RenderArguments render;
   render.scene = arguments.scene;
-  const ViewHooks hooks{[&](const std::string& text) {
-                          if (!arguments.log.quiet) print_warning(arguments.log, "refused " + text);
-                        },
-                        [&](const std::vector<std::string>& overrides) {
-                          render.overrides = overrides;
-                          return command_of(render);
-                        },
-                        [&](const std::vector<std::string>& overrides, const std::string& path,
-                            Monitor& stopped) { render_file(arguments, overrides, path, stopped); }};
-  ViewServer server(SceneEdits(arguments.scene, arguments.overrides), arguments.options, hooks);
+  const ViewHooks hooks{
+      [&](const std::string& text) {
+        if (!arguments.log.quiet) print_warning(arguments.log, "refused " + text);
+      },
+      [&](const std::vector<std::string>& overrides, std::optional<int> frame) {
+        render.overrides = overrides;
+        return command_of(render) + (frame ? " --frames " + std::to_string(*frame) : "");
+      },
+      [&](const std::vector<std::string>& overrides, std::optional<int> frame, const std::string& path,
+          Monitor& stopped) { render_file(arguments, overrides, frame, path, stopped); }};
+  ViewServer server(SceneEdits(arguments.scene, arguments.overrides, arguments.frames), arguments.options,
+                    hooks);
   print_event(arguments.log, "view", {{"url", server.url()}});
   if (arguments.log.format == LogFormat::text) write_line(stdout, "view        " + server.url());
   server.run(monitor);

@@ -281,6 +281,32 @@ HalvesComparison compare_with_halves(const Layer& h, const Layer& d1, const Laye
   return result;
 }
 
+double error_beyond_noise(const Layer& h, const Layer& d, const Layer& variance,
+                          const std::vector<std::uint8_t>& object) {
+  require_alike(h, d, object);
+  require_alike(h, variance, object);
+  double worst = 0;
+  for (std::size_t c = 0; c < h.channels.size(); ++c) {
+    const auto is_counted = [&](std::size_t i) {
+      return object[i] != 0 && std::isfinite(h.channels[c][i]) && std::isfinite(d.channels[c][i]) &&
+             std::isfinite(variance.channels[c][i]);
+    };
+    double largest = 0, sum = 0;
+    for (std::size_t i = 0; i < object.size(); ++i)
+      if (is_counted(i)) largest = std::max(largest, double(h.channels[c][i]));
+    std::size_t pixels = 0;
+    for (std::size_t i = 0; i < object.size(); ++i) {
+      if (!is_counted(i)) continue;
+      const double value = double(h.channels[c][i]), off = value - double(d.channels[c][i]);
+      const double scale = value * value + 1e-4 * largest * largest;
+      if (scale > 0) sum += (off * off - double(variance.channels[c][i])) / scale;
+      ++pixels;
+    }
+    if (pixels > 0) worst = std::max(worst, std::sqrt(std::max(0.0, sum / double(pixels))));
+  }
+  return worst;
+}
+
 Layer mean_of(const Layer& d1, const Layer& d2) {
   Layer mean = d1;
   for (std::size_t c = 0; c < mean.channels.size(); ++c)

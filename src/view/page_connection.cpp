@@ -57,7 +57,7 @@ void PageConnection::answer(std::string text) {
 }
 
 void PageConnection::send(std::shared_ptr<const ViewPicture> picture) {
-  picture_ = std::move(picture);
+  (picture->step == PictureStep::reference ? reference_ : picture_) = std::move(picture);
   write();
 }
 
@@ -75,8 +75,9 @@ void PageConnection::write() {
     answers_.pop_front();
   } else if (text != texts_.end()) {
     out_ = std::exchange(*text, nullptr);
-  } else if (picture_ != nullptr && unshown_.size() < kMostFrames) {
-    const PackedFrame frame = events_.pack(std::exchange(picture_, nullptr), layer_);
+  } else if ((picture_ != nullptr || reference_ != nullptr) && unshown_.size() < kMostFrames) {
+    auto& next = picture_ != nullptr ? picture_ : reference_;
+    const PackedFrame frame = events_.pack(std::exchange(next, nullptr), layer_);
     unshown_.push_back(frame.number);
     out_ = frame.bytes;
     is_binary = true;

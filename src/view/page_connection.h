@@ -22,7 +22,18 @@ using HttpRequest = boost::beast::http::request<boost::beast::http::empty_body>;
 
 /// What a page is to know, in the order in which it is sent. A text that waits is replaced by a newer one of its
 /// kind, so that no page makes the server store more than one of each.
-enum class PageText : std::size_t { schema, scene, failed, plan, report, work, kCount };
+enum class PageText : std::size_t {
+  schema,
+  scene,
+  failed,
+  plan,
+  report,
+  work,
+  behind,
+  trade,
+  reference,
+  kCount
+};
 
 /// A picture as bytes, and the number in them.
 struct PackedFrame {
@@ -50,7 +61,8 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   void send(PageText kind, SharedText text);
   /// An answer; while kMostAnswers wait, nothing more is read.
   void answer(std::string text);
-  /// In place of a picture that waits. A page has at most kMostFrames that it has not yet shown.
+  /// In place of a picture that waits, or of a reference that waits. A page has at most kMostFrames that it has not yet
+  /// shown.
   void send(std::shared_ptr<const ViewPicture> picture);
   void shown(std::uint32_t frame);
   void choose_layer(std::string layer) { layer_ = std::move(layer); }
@@ -67,7 +79,7 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   boost::beast::flat_buffer in_;
   std::array<SharedText, std::size_t(PageText::kCount)> texts_;
   std::deque<SharedText> answers_;
-  std::shared_ptr<const ViewPicture> picture_;
+  std::shared_ptr<const ViewPicture> picture_, reference_;
   std::deque<std::uint32_t> unshown_;
   std::string layer_;
   SharedText out_;  ///< being written

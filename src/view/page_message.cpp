@@ -40,6 +40,7 @@ class MessageReader {
     if (!node.whole) fail(node, "is no whole number", "a whole number");
     return *node.whole;
   }
+  bool flag(std::string_view key) const { return need(key, Node::Kind::boolean, "true or false").boolean; }
   void check_keys(std::span<const std::string_view> keys) const {
     for (const Node& child : document_.root.children)
       if (std::ranges::find(keys, child.key) == keys.end())
@@ -69,6 +70,14 @@ Restore read_edits(const MessageReader& reader) {
   return message;
 }
 
+WorkBehind read_work(const MessageReader& reader) {
+  const WorkBehind message{reader.flag("trade"), reader.text("reference")};
+  if (!message.reference.empty() && message.reference != "direct" && message.reference != "volume")
+    reader.fail(reader.need("reference", Node::Kind::string, "a string"), "has no such choice",
+                "direct, volume or nothing");
+  return message;
+}
+
 struct Kind {
   std::string_view name;
   std::vector<std::string_view> keys;
@@ -86,6 +95,12 @@ const std::vector<Kind>& kinds() {
       {"save", {"do", "name"}, [](Reader r) -> PageMessage { return SaveScene{r.text("name")}; }},
       {"render", {"do", "name"}, [](Reader r) -> PageMessage { return RenderFile{r.text("name")}; }},
       {"layer", {"do", "name"}, [](Reader r) -> PageMessage { return ChooseLayer{r.text("name")}; }},
+      {"behind", {"do", "trade", "reference"}, [](Reader r) -> PageMessage { return read_work(r); }},
+      {"frame",
+       {"do", "frame"},
+       [](Reader r) -> PageMessage {
+         return GoToFrame{int(std::min<std::uint64_t>(r.whole("frame"), 1 << 30))};
+       }},
       {"shown",
        {"do", "frame"},
        [](Reader r) -> PageMessage { return FrameShown{std::uint32_t(r.whole("frame"))}; }},

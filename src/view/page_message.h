@@ -37,17 +37,28 @@ struct RenderFile {
 struct ChooseLayer {
   std::string name;
 };
+/// What is to be worked out behind the final picture, for all pages.
+struct WorkBehind {
+  bool trade = false;
+  std::string reference;  ///< "direct", "volume" or none
+};
 /// The frame of this number is on the screen.
 struct FrameShown {
   std::uint32_t frame = 0;
 };
+/// The scene as it is at this frame of a range.
+struct GoToFrame {
+  int frame = 1;
+};
 
-using PageMessage =
-    std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer, FrameShown>;
+using PageMessage = std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer,
+                                 WorkBehind, FrameShown, GoToFrame>;
 
 /// in    text: {"do": "set", "values": {"media.marble.eta": 1.4}, "stroke": 7}, {"do": "undo"}, {"do": "redo"},
 ///       {"do": "reset"}, {"do": "restore", "edits": ["media.marble.eta=1.4"]}, {"do": "save", "name": "a.json"},
-///       {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"} or {"do": "shown", "frame": 3}
+///       {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
+///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "frame", "frame": 7} or
+///       {"do": "shown", "frame": 3}
 /// error Error{bad_input}: no such message, within the limits of json_tree.h
 PageMessage parse_page_message(std::string_view text);
 

@@ -2,8 +2,10 @@
 #include "view/scene_edits.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
+#include "core/log.h"
 #include "opaline/core/error.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/schema.h"
@@ -12,6 +14,26 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kMostSteps = 1000;
+constexpr int kMostKeyedFrames = 100000;
+
+/// The first and last key of all values that change, of a scene that has been parsed; {0, -1} without such.
+std::pair<int, int> key_range(const Json& value) {
+  std::pair<int, int> range{0, -1};
+  const auto add = [&](int first, int last) {
+    if (first > last) return;
+    range = range.second < range.first
+                ? std::pair{first, last}
+                : std::pair{std::min(range.first, first), std::max(range.second, last)};
+  };
+  if (value.is_object() && value.contains("keyed"))
+    for (const auto& [frame, at] : value.at("keyed").items()) add(std::stoi(frame), std::stoi(frame));
+  else if (value.is_structured())
+    for (const Json& child : value) {
+      const auto [first, last] = key_range(child);
+      add(first, last);
+    }
+  return range;
+}
 
 std::vector<std::string> mesh_files(const Scene& scene) {
   std::vector<std::string> files;
@@ -49,17 +71,25 @@ bool is_within(const std::string& override, const std::string& path) {
 
 }  // namespace
 
-SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given)
-    : file_(file), text_(read_scene_text(file)), given_(std::move(given)) {
-  scene_ = parse_scene(text_, file_, given_);
+SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given, std::vector<int> frames)
+    : file_(file), text_(read_scene_text(file)), given_(std::move(given)), frames_(std::move(frames)) {
+  if (!frames_.empty()) frame_ = frames_.front();
+  scene_ = parse_scene(text_, file_, given_, frame_);
   check_pixels(scene_);
+  if (!frames_.empty()) return;
+  const auto [first, last] = key_range(Json::parse(merged_scene(text_, file_, given_)));
+  if (last <= first || last - first >= kMostKeyedFrames) return;
+  frames_.resize(std::size_t(last - first + 1));
+  std::iota(frames_.begin(), frames_.end(), first);
+  go_to_frame(first);
+  revision_ = 1;
 }
 
 Scene SceneEdits::parsed(const Edits& edits) const {
   for (const std::string& edit : edits) check_opens_nothing(file_, edit);
   Edits all = given_;
   all.insert(all.end(), edits.begin(), edits.end());
-  Scene scene = parse_scene(text_, file_, all);
+  Scene scene = parse_scene(text_, file_, all, frame_);
   check_pixels(scene);
   if (mesh_files(scene) != mesh_files(scene_))
     throw bad_file(file_, "a view does not change mesh files", "those of the scene that was opened");
@@ -68,9 +98,9 @@ Scene SceneEdits::parsed(const Edits& edits) const {
 
 void SceneEdits::set(const SetValues& message) {
   Edits edits = history_[at_];
-  for (const auto& [path, value] : message.values) {
-    std::erase_if(edits, [&](const std::string& text) { return is_within(text, path); });
-    edits.push_back(path + '=' + value);
+  for (const Assignment& change : message.values) {
+    std::erase_if(edits, [&](const std::string& text) { return is_within(text, change.path); });
+    edits.push_back(change.path + '=' + change.value);
   }
   if (edits == history_[at_]) return;
   Scene scene = parsed(edits);
@@ -122,6 +152,30 @@ void SceneEdits::restore(const std::vector<std::string>& edits) {
   ++revision_;
 }
 
+void SceneEdits::go_to_frame(int frame) {
+  if (std::ranges::find(frames_, frame) == frames_.end())
+    throw bad_file(file_, "frame " + std::to_string(frame) + " is not shown",
+                   frames_.empty() ? "a scene with frames (--frames)"
+                                   : "one from " + std::to_string(frames_.front()) + " to " +
+                                         std::to_string(frames_.back()) + " of --frames");
+  if (frame == frame_) return;
+  Scene scene = parse_scene(text_, file_, overrides(), frame);
+  check_pixels(scene);
+  scene_ = std::move(scene);
+  frame_ = frame;
+  stroke_ = 0;
+  ++revision_;
+}
+
+std::optional<int> SceneEdits::frame() const {
+  return frames_.empty() ? std::nullopt : std::optional(frame_);
+}
+
+std::optional<Scene> SceneEdits::reference() const {
+  if (frames_.empty()) return {};
+  return parse_scene(text_, file_, overrides(), scene_.settings.reference_frame);
+}
+
 std::vector<std::string> SceneEdits::overrides() const {
   Edits all = given_;
   all.insert(all.end(), edits().begin(), edits().end());
@@ -129,7 +183,7 @@ std::vector<std::string> SceneEdits::overrides() const {
 }
 
 std::string SceneEdits::json() const {
-  return merged_scene(text_, file_, overrides(), 1);
+  return merged_scene(text_, file_, overrides(), frame_);
 }
 
 std::string SceneEdits::file_text() const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ inline constexpr std::size_t kMostViewPixels = std::size_t(1) << 24;
 class SceneEdits {
  public:
   /// given: overrides of the command line, which no undo takes back
+  /// frames: that can be gone to, rising; empty: from the first key to the last of values that change, if there are any
   /// error as load_scene; Error{bad_input}: more than kMostViewPixels
-  SceneEdits(const std::string& file, std::vector<std::string> given);
+  SceneEdits(const std::string& file, std::vector<std::string> given, std::vector<int> frames = {});
 
   // Each changes the scene or throws and changes nothing. What changes nothing does not count as a step.
   // error as parse_scene; Error{bad_input}: more than kMostViewPixels, or other mesh files than the opened scene's
@@ -28,6 +30,17 @@ class SceneEdits {
   void reset();
   /// Does nothing where the scene has been edited before.
   void restore(const std::vector<std::string>& edits);
+
+  /// Shows another frame; that is no step of undo.
+  /// error as parse_scene; Error{bad_input}: none of frames()
+  void go_to_frame(int frame);
+
+  /// Empty: the scene has none, and is shown as it is at frame 1.
+  const std::vector<int>& frames() const { return frames_; }
+  /// The one that is shown, where there are any.
+  std::optional<int> frame() const;
+  /// The scene at settings.reference_frame, on whose surfaces samples are placed, where there are frames.
+  std::optional<Scene> reference() const;
 
   const Scene& scene() const { return scene_; }
   const std::string& file() const { return file_; }
@@ -39,7 +52,7 @@ class SceneEdits {
   const std::vector<std::string>& edits() const { return history_[at_]; }
   std::vector<std::string> overrides() const;
 
-  /// All of the scene's values as JSON, those that change as in the first frame.
+  /// All of the scene's values as JSON, those that change as in the frame that is shown.
   std::string json() const;
   /// A scene file with the edits in it.
   std::string file_text() const;
@@ -55,6 +68,8 @@ class SceneEdits {
   std::size_t at_ = 0;
   std::uint64_t stroke_ = 0;  // of the last step; 0: it is closed
   std::uint32_t revision_ = 1;
+  std::vector<int> frames_;
+  int frame_ = 1;
   Scene scene_;
 };
 

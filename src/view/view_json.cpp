@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "core/log.h"
 #include "opaline/core/units.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/scene/names.h"
 #include "opaline/scene/schema.h"
 
 namespace opaline {
@@ -110,7 +112,9 @@ std::string scene_text(const SceneEdits& edits, const std::string& command) {
                   {"edits", edits.edits()},
                   {"undo", edits.can_undo()},
                   {"redo", edits.can_redo()},
-                  {"command", command}});
+                  {"command", command},
+                  {"frames", edits.frames()},
+                  {"frame", edits.frame().value_or(1)}});
 }
 
 std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan) {
@@ -134,6 +138,40 @@ std::string report_text(const ViewReport& report) {
                   {"costs", costs},
                   {"reused", report.reused},
                   {"warnings", report.warnings}});
+}
+
+std::string behind_text(const WorkBehind& wanted) {
+  return compact({{"is", "behind"}, {"trade", wanted.trade}, {"reference", wanted.reference}});
+}
+
+std::string trade_text(const TradeState& trade) {
+  Json points = Json::array();
+  for (const TradePoint& point : trade.points) {
+    Json values = Json::object();
+    if (point.sample_spacing) values["settings.sample_spacing"] = *point.sample_spacing / trade.mm_per_unit;
+    if (point.samples) values["settings.samples"] = *point.samples;
+    if (point.tolerance > 0) values["settings.tolerance"] = point.tolerance;
+    points.push_back({{"method", opaline::name_of(point.method)},
+                      {"samples", point.all_samples},
+                      {"values", values},
+                      {"seconds", point.seconds},
+                      {"error", point.error}});
+  }
+  const Json now = trade.now ? Json(*trade.now) : Json();
+  return compact({{"is", "trade"},
+                  {"revision", trade.revision},
+                  {"points", points},
+                  {"now", now},
+                  {"whole", trade.is_whole}});
+}
+
+std::string reference_text(const ReferenceState& state) {
+  return compact({{"is", "reference"},
+                  {"revision", state.revision},
+                  {"method", opaline::name_of(state.method)},
+                  {"samples", state.samples},
+                  {"noise", std::isfinite(state.noise) ? state.noise : 0},
+                  {"difference", state.difference}});
 }
 
 std::string work_text(const Monitor& monitor) {

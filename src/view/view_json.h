@@ -6,6 +6,7 @@
 
 #include "opaline/core/monitor.h"
 #include "view/scene_edits.h"
+#include "view/view_background.h"
 #include "view/view_renderer.h"
 
 namespace opaline {
@@ -14,7 +15,7 @@ namespace opaline {
 /// knobs are made of.
 std::string schema_text();
 
-/// "scene": all values, the edits, and whether there is a way back. command: that renders the same.
+/// "scene": all values, the edits, whether there is a way back, and the frames. command: that renders the same.
 std::string scene_text(const SceneEdits& edits, const std::string& command);
 
 /// "plan": what the scene requires, in words.
@@ -22,6 +23,15 @@ std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& pl
 
 /// "report": of a final picture.
 std::string report_text(const ViewReport& report);
+
+/// "behind": what is asked to be worked out behind the final picture.
+std::string behind_text(const WorkBehind& wanted);
+
+/// "trade": the points so far; each with the values that take it, as `--set` names them.
+std::string trade_text(const TradeState& trade);
+
+/// "reference": how far it is, and what the final picture differs from it by.
+std::string reference_text(const ReferenceState& state);
 
 /// "work": which stage is under way, and how much of it is done; the stage is empty while nothing is.
 std::string work_text(const Monitor& monitor);

@@ -32,13 +32,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void check_memory(const Plan& plan) {
-  const std::size_t taken = resident_memory(), left = available_memory();
-  if (plan.bytes > taken && plan.bytes - taken > left)
-    throw run_failed({}, "out of memory: the picture needs about " + short_bytes(plan.bytes) +
-                             ", and there are " + short_bytes(left + taken));
-}
-
 /// The same view in fewer pixels, of one ray each.
 Film coarse_film(Film film, int stride) {
   for (int& side : film.resolution) side = (side + stride - 1) / stride;
@@ -60,6 +53,13 @@ double pixels_of(const Film& film) {
 
 }  // namespace
 
+void check_memory(const Plan& plan) {
+  const std::size_t taken = resident_memory(), left = available_memory();
+  if (plan.bytes > taken && plan.bytes - taken > left)
+    throw run_failed({}, "out of memory: the picture needs about " + short_bytes(plan.bytes) +
+                             ", and there are " + short_bytes(left + taken));
+}
+
 ViewRenderer::ViewRenderer(ViewEvents events)
     : events_(std::move(events)), session_(new_session()), thread_([this] { run(); }) {}
 
@@ -72,10 +72,10 @@ ViewRenderer::~ViewRenderer() {
   changed_.notify_one();
 }
 
-void ViewRenderer::show(Scene scene, std::uint32_t revision) {
+void ViewRenderer::show(Scene scene, std::uint32_t revision, std::optional<Scene> reference) {
   {
     const std::lock_guard lock(mutex_);
-    wanted_ = Wanted{std::move(scene), revision, Clock::now()};
+    wanted_ = Wanted{std::move(scene), std::move(reference), revision, Clock::now()};
     monitor_.cancelled = true;
   }
   changed_.notify_one();
@@ -99,6 +99,7 @@ void ViewRenderer::run() {
     } catch (const std::exception& failure) {
       session_ = new_session();
       prepared_.reset();
+      anchor_.reset();
       events_.failed(wanted->revision, dynamic_cast<const std::bad_alloc*>(&failure) != nullptr
                                            ? "out of memory"
                                            : failure.what());
@@ -106,7 +107,25 @@ void ViewRenderer::run() {
   }
 }
 
+/// Frames share samples, as those of `opaline render --frames` do, and with them whatever is equal between them. A new
+/// session where the samples are to be others: an anchor is for good.
+void ViewRenderer::anchor(const Wanted& wanted) {
+  Scene reference = *wanted.reference;
+  reference.camera = {};
+  reference.lights.clear();
+  if (anchor_ != reference) {
+    anchor_.reset();
+    prepared_.reset();
+    session_ = new_session();
+    session_->match_new_session(false);
+    session_->anchor(*wanted.reference);
+    anchor_ = std::move(reference);
+  }
+  session_->expect_pictures(wanted.scene.camera_frames);
+}
+
 void ViewRenderer::draw(const Wanted& wanted) {
+  if (wanted.reference) anchor(wanted);
   Change change = anything;
   if (prepared_) {
     Scene before = std::move(*prepared_);
@@ -170,8 +189,9 @@ void ViewRenderer::draw_final(const Wanted& wanted, Spent& spent, Monitor* monit
   RenderResult result = session_->render(monitor);
   spent.final = seconds_since(start);
   StageCost shading = watch.cost("shading");
-  const auto picture = publish(wanted, PictureStep::final, std::move(result.image));
-  report(wanted, picture->image, estimated_relative_error(picture->image, result.translucent),
+  const auto picture =
+      publish(wanted, PictureStep::final, std::move(result.image), std::move(result.translucent));
+  report(wanted, picture->image, estimated_relative_error(picture->image, picture->translucent),
          std::move(shading));
 }
 
@@ -185,10 +205,10 @@ void ViewRenderer::draw_direct(const Wanted& wanted) {
   report(wanted, picture->image, result.relative_error, std::move(shading));
 }
 
-std::shared_ptr<const ViewPicture> ViewRenderer::publish(const Wanted& wanted, PictureStep step,
-                                                         Image image) {
-  const auto picture = std::make_shared<const ViewPicture>(
-      ViewPicture{wanted.revision, step, seconds_since(wanted.since), std::move(image)});
+std::shared_ptr<const ViewPicture> ViewRenderer::publish(const Wanted& wanted, PictureStep step, Image image,
+                                                         std::vector<std::uint8_t> translucent) {
+  const auto picture = std::make_shared<const ViewPicture>(ViewPicture{
+      wanted.revision, step, seconds_since(wanted.since), std::move(image), std::move(translucent)});
   events_.picture(picture);
   return picture;
 }

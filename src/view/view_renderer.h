@@ -21,14 +21,15 @@
 namespace opaline {
 
 /// moving: whatever is there within a thirtieth of a second; sharper: more pixels, the same samples; final: the bits
-/// of `opaline render`.
-enum class PictureStep : std::uint32_t { moving, sharper, final };
+/// of `opaline render`. reference: of another method, for comparison (view_background.h).
+enum class PictureStep : std::uint32_t { moving, sharper, final, reference };
 
 struct ViewPicture {
   std::uint32_t revision = 0;
   PictureStep step = PictureStep::moving;
-  double seconds = 0;  ///< from the change to this picture
-  Image image;         ///< R G B A first
+  double seconds = 0;                          ///< from the change to this picture
+  Image image;                                 ///< R G B A first
+  std::vector<std::uint8_t> translucent = {};  ///< of a final picture, as in RenderResult; empty: not known
 };
 
 /// What is known once a final picture is there.
@@ -48,6 +49,9 @@ struct ViewEvents {
   std::function<void(std::uint32_t revision, const std::string& why)> failed;
 };
 
+/// error Error{run_failed}: the picture needs more memory than the machine has left
+void check_memory(const Plan& plan);
+
 class ViewRenderer {
  public:
   explicit ViewRenderer(ViewEvents events);
@@ -58,7 +62,8 @@ class ViewRenderer {
 
   /// Takes the place of a scene that waits, and cancels the pictures of the one under way; what is on its way within
   /// a frame's time is still shown, so that a knob that turns without pause shows pictures.
-  void show(Scene scene, std::uint32_t revision);
+  /// reference: of a scene with frames, the one whose surfaces all frames' samples are placed on (Session::anchor)
+  void show(Scene scene, std::uint32_t revision, std::optional<Scene> reference = {});
 
   /// For whoever shows progress.
   const Monitor& monitor() const { return monitor_; }
@@ -67,6 +72,7 @@ class ViewRenderer {
   using Clock = std::chrono::steady_clock;
   struct Wanted {
     Scene scene;
+    std::optional<Scene> reference;
     std::uint32_t revision = 0;
     Clock::time_point since;
   };
@@ -81,17 +87,20 @@ class ViewRenderer {
   void run();
   std::optional<Wanted> next();
   void draw(const Wanted& wanted);
+  void anchor(const Wanted& wanted);
   void refine(const Wanted& wanted, Spent& spent);
   void draw_final(const Wanted& wanted, Spent& spent, Monitor* monitor);
   void draw_direct(const Wanted& wanted);
   void draw_draft(const Wanted& wanted, int stride, PictureStep step, Monitor* monitor);
   int draft_stride(const Film& film) const;
-  std::shared_ptr<const ViewPicture> publish(const Wanted& wanted, PictureStep step, Image image);
+  std::shared_ptr<const ViewPicture> publish(const Wanted& wanted, PictureStep step, Image image,
+                                             std::vector<std::uint8_t> translucent = {});
   void report(const Wanted& wanted, const Image& image, double error, StageCost shading);
 
   ViewEvents events_;
   std::unique_ptr<Session> session_;
   std::optional<Scene> prepared_;
+  std::optional<Scene> anchor_;  ///< that the session is anchored at, without what samples do not depend on
   std::array<Spent, kChanges> spent_;
   double seconds_per_pixel_ = 2e-6;  // of drafts
   Monitor monitor_;

@@ -20,7 +20,10 @@
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/scene/json_tree.h"
+#include "opaline/scene/load_scene.h"
+#include "opaline/scene/names.h"
 #include "view/http_connection.h"
+#include "view/view_background.h"
 #include "view/view_frame.h"
 #include "view/view_json.h"
 
@@ -103,6 +106,8 @@ struct ViewServer::State {
   void render_file(PageConnection& page, const std::string& name);
   PackedFrame pack(const std::shared_ptr<const ViewPicture>& picture, const std::string& layer);
   ViewEvents renderer_events();
+  BackgroundEvents background_events();
+  void work_behind(const WorkBehind& wanted);
   void tell(PageText kind, std::string text);
   void tick(const Monitor& until_cancelled);
 
@@ -115,7 +120,7 @@ struct ViewServer::State {
   std::string url;
   SharedText schema;
   std::map<PageText, SharedText> texts;  ///< the newest of each kind
-  std::shared_ptr<const ViewPicture> picture;
+  std::shared_ptr<const ViewPicture> picture, reference;
   std::map<std::string, PackedFrame> packed;  ///< of `picture`, by layer
   std::uint32_t frames = 0;
   std::set<PageConnection*> pages;
@@ -125,6 +130,7 @@ struct ViewServer::State {
   bool renders_file = false;
   std::jthread file_thread;
   std::unique_ptr<ViewRenderer> renderer;
+  std::unique_ptr<ViewBackground> background;
 };
 
 ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, ViewHooks view_hooks)
@@ -151,6 +157,7 @@ ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, Vie
 
 ViewServer::State::~State() {
   file_monitor.cancelled = true;
+  background.reset();
   renderer.reset();
 }
 
@@ -194,6 +201,7 @@ PageConnection::Events ViewServer::State::page_events() {
           },
           [this](PageConnection& page, const std::string& why) {
             pages.erase(&page);
+            if (pages.empty()) work_behind({});  // for nobody
             if (!why.empty()) hooks.refused("a page: " + why);
           }};
 }
@@ -202,6 +210,7 @@ void ViewServer::State::greet(PageConnection& page) {
   page.send(PageText::schema, schema);
   for (const auto& [kind, text] : texts) page.send(kind, text);
   if (picture != nullptr) page.send(picture);
+  if (reference != nullptr) page.send(reference);
 }
 
 PackedFrame ViewServer::State::pack(const std::shared_ptr<const ViewPicture>& shown,
@@ -244,14 +253,28 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
   if (const auto* layer = std::get_if<ChooseLayer>(&message)) {
     page.choose_layer(layer->name);
     if (picture != nullptr) page.send(picture);
+    if (reference != nullptr) page.send(reference);
   }
+  if (const auto* wanted = std::get_if<WorkBehind>(&message)) work_behind(*wanted);
+  if (const auto* frame = std::get_if<GoToFrame>(&message)) edits.go_to_frame(frame->frame);
   if (const auto* shown = std::get_if<FrameShown>(&message)) page.shown(shown->frame);
   if (edits.revision() != before) after_edit();
 }
 
+void ViewServer::State::work_behind(const WorkBehind& wanted) {
+  BackgroundWork work{wanted.trade, {}};
+  if (!wanted.reference.empty())
+    work.reference = wanted.reference == name_of(Method::volume) ? Method::volume : Method::direct;
+  background->ask(work);
+  if (!work.reference) reference.reset();
+  tell(PageText::behind, behind_text(wanted));
+}
+
 void ViewServer::State::after_edit() {
-  tell(PageText::scene, scene_text(edits, hooks.command(edits.overrides())));
-  renderer->show(edits.scene(), edits.revision());
+  background->stop();
+  reference.reset();
+  tell(PageText::scene, scene_text(edits, hooks.command(edits.overrides(), edits.frame())));
+  renderer->show(edits.scene(), edits.revision(), edits.reference());
 }
 
 void ViewServer::State::save(PageConnection& page, const std::string& name) {
@@ -262,14 +285,20 @@ void ViewServer::State::save(PageConnection& page, const std::string& name) {
 }
 
 void ViewServer::State::render_file(PageConnection& page, const std::string& name) {
-  const std::string path = path_beside(edits.file(), name, {".exr", ".png"}, written);
+  const std::optional<int> frame = edits.frame();
+  std::string numbered = name;
+  if (frame && name.find("##") == std::string::npos)
+    numbered.insert(name.size() - std::filesystem::path(name).extension().string().size(), ".####");
+  const std::string path =
+      path_beside(edits.file(), frame ? with_frame(numbered, *frame) : name, {".exr", ".png"}, written);
+  const std::string pattern = frame ? (std::filesystem::path(path).parent_path() / numbered).string() : path;
   if (renders_file) throw bad_file(path, "another file is being rendered", "one after the other");
   renders_file = true;
   page.answer(told_text(true, "rendering " + path));
-  file_thread = std::jthread([this, path, overrides = edits.overrides()] {
+  file_thread = std::jthread([this, path, pattern, frame, overrides = edits.overrides()] {
     std::string failure;
     try {
-      hooks.render_file(overrides, path, file_monitor);
+      hooks.render_file(overrides, frame, pattern, file_monitor);
     } catch (const std::exception& error) {
       failure = error.what();
     }
@@ -296,7 +325,28 @@ ViewEvents ViewServer::State::renderer_events() {
             });
           },
           [this](const ViewReport& report) {
-            asio::post(io, [this, text = report_text(report)] { tell(PageText::report, text); });
+            asio::post(io, [this, text = report_text(report), revision = report.revision] {
+              tell(PageText::report, text);
+              if (revision == edits.revision() && picture->revision == revision)
+                background->start(edits.scene(), picture);
+            });
+          },
+          [this](std::uint32_t revision, const std::string& why) {
+            asio::post(io, [this, text = failed_text(revision, why)] { tell(PageText::failed, text); });
+          }};
+}
+
+BackgroundEvents ViewServer::State::background_events() {
+  return {[this](const TradeState& trade) {
+            asio::post(io, [this, text = trade_text(trade)] { tell(PageText::trade, text); });
+          },
+          [this](std::shared_ptr<const ViewPicture> news, const ReferenceState& state) {
+            asio::post(io, [this, news = std::move(news), state] {
+              if (state.revision != edits.revision()) return;
+              reference = news;
+              tell(PageText::reference, reference_text(state));
+              for (PageConnection* page : pages) page->send(reference);
+            });
           },
           [this](std::uint32_t revision, const std::string& why) {
             asio::post(io, [this, text = failed_text(revision, why)] { tell(PageText::failed, text); });
@@ -323,6 +373,7 @@ std::string ViewServer::url() const {
 void ViewServer::run(const Monitor& until_cancelled) {
   State& state = *state_;
   state.renderer = std::make_unique<ViewRenderer>(state.renderer_events());
+  state.background = std::make_unique<ViewBackground>(state.background_events());
   state.after_edit();
   state.accept();
   state.tick(until_cancelled);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,11 @@ struct ViewHooks {
   /// A request or page that is refused, and why; one line. On the thread of `run`.
   std::function<void(const std::string& text)> refused;
   /// The command that renders the scene with these overrides.
-  std::function<std::string(const std::vector<std::string>& overrides)> command;
-  /// Renders it to a file; on a thread of its own.
+  std::function<std::string(const std::vector<std::string>& overrides, std::optional<int> frame)> command;
+  /// Renders it to a file; on a thread of its own. frame: then the path has ## for its number
   /// error Error, whose text the pages are told
-  std::function<void(const std::vector<std::string>& overrides, const std::string& path, Monitor& monitor)>
+  std::function<void(const std::vector<std::string>& overrides, std::optional<int> frame,
+                     const std::string& path, Monitor& monitor)>
       render_file;
 };
 

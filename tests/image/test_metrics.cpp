@@ -330,5 +330,21 @@ TEST(ErrorPicture, ShowsTheErrors) {
   EXPECT_EQ(values.pixels[6], 0);
 }
 
+// Claim: error_beyond_noise is the error, not the noise of the reference: a picture that is 5 % too bright is .05 / 1.05
+// off a reference with 20 % noise a pixel, and a right one less than .035. Source: the expectation of (h - d)^2 is
+// error^2 + v. Tolerance: four standard errors; over 40,000 pixels the noise's square is known to .2^2 sqrt(2 / 40,000) =
+// 2.8e-4. Fails if: the variance is not taken out (.2), or d stands in the divisor (.1 for the right picture).
+TEST(Metrics, ErrorBeyondTheNoiseOfAReference) {
+  constexpr double kNoise = .2;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const Layer reference = make_layer(200, 200, [&](int, int, int) { return 1 + kNoise * normal(random); });
+  const Layer variance = grey(200, 200, kNoise * kNoise);
+  const std::vector<std::uint8_t> all = everywhere(reference);
+  EXPECT_NEAR(error_beyond_noise(grey(200, 200, 1.05), reference, variance, all), .05 / 1.05, .013);
+  EXPECT_LT(error_beyond_noise(grey(200, 200, 1), reference, variance, all), .035);
+  EXPECT_NEAR(error_beyond_noise(grey(200, 200, 1.5), reference, variance, all), .5 / 1.5, .003);
+}
+
 }  // namespace
 }  // namespace opaline

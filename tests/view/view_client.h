@@ -61,8 +61,8 @@ struct ViewFolder : ScratchFolder {
 /// Serves a scene on a thread, as `opaline view` does.
 class RunningView {
  public:
-  explicit RunningView(const std::string& scene, std::uint16_t port = 0)
-      : server_(SceneEdits(scene, {}), {"127.0.0.1", port, kToken}, hooks()),
+  explicit RunningView(const std::string& scene, std::uint16_t port = 0, std::vector<int> frames = {})
+      : server_(SceneEdits(scene, {}, std::move(frames)), {"127.0.0.1", port, kToken}, hooks()),
         thread_([this] { server_.run(stop_); }) {}
   ~RunningView() { stop_.cancelled = true; }
   RunningView(const RunningView&) = delete;
@@ -95,10 +95,10 @@ class RunningView {
               const std::lock_guard lock(mutex_);
               log_ += text + '\n';
             },
-            [](const std::vector<std::string>& overrides) {
+            [](const std::vector<std::string>& overrides, std::optional<int>) {
               return "render with " + std::to_string(overrides.size());
             },
-            [](const std::vector<std::string>&, const std::string& path, Monitor&) {
+            [](const std::vector<std::string>&, std::optional<int>, const std::string& path, Monitor&) {
               put_bytes(path, "a picture");
             }};
   }
@@ -193,10 +193,12 @@ class ViewClient {
       texts[text.at("is")] = text;
       newest = text.at("is");
     } else {
-      frame = frame_of(bytes);
+      const Frame news = frame_of(bytes);
+      const bool is_reference = news.step == PictureStep::reference;
+      (is_reference ? reference : frame) = news;
       ++frames;
-      newest = "frame";
-      if (answers_frames) send({{"do", "shown"}, {"frame", frame.number}});
+      newest = is_reference ? "reference frame" : "frame";
+      if (answers_frames) send({{"do", "shown"}, {"frame", news.number}});
     }
     return true;
   }
@@ -224,7 +226,7 @@ class ViewClient {
 
   std::map<std::string, Json> texts;
   std::string newest;
-  Frame frame;
+  Frame frame, reference;
   std::size_t frames = 0;
   bool answers_frames = true;
   unsigned close_code = 0;

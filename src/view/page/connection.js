@@ -34,6 +34,7 @@ export class Connection {
     const message = JSON.parse(data);
     if (message.is === "scene") {
       if (this.isNew) {
+        if (message.revision === 1 && this.frame !== undefined && this.frame !== message.frame) this.toFrame = this.frame;
         this.isNew = false;
         this.wait = kFirstWait;
         this.handlers.found();
@@ -43,7 +44,10 @@ export class Connection {
           return;
         }
       }
+      if (this.toFrame !== undefined) this.send({do: "frame", frame: this.toFrame});
+      this.toFrame = undefined;
       this.edits = message.edits;
+      this.frame = message.frame;
     }
     this.handlers.text(message);
   }

@@ -5,6 +5,7 @@ import {Connection, kPause, newStroke, pausedStroke} from "./connection.js";
 import {Knobs} from "./knobs.js";
 import {Overlay} from "./overlay.js";
 import {draw, parseFrame, valuesAt} from "./picture.js";
+import {Trade} from "./trade.js";
 
 const one = (id) => document.getElementById(id);
 const kTurn = 4, kKeyTurn = .1, kKeyPan = .05, kKeyDolly = 1.1;  // radians a height; a key
@@ -14,6 +15,7 @@ const film = {aspect: 1, shownHeight: 1, place: (seen) => seen};
 const state = {scene: null, camera: null, film, wipe: 0, revision: 0, edits: [], command: ""};
 const display = {exposure: 0, transform: "soft", channel: ""};
 let frame = null, pinned = null, waiting = null, isDragging = false, layers = [];
+let reference = null, waitingReference = null, behind = {trade: false, reference: ""};
 
 // ---- the picture --------------------------------------------------------------------------------------------
 
@@ -34,9 +36,15 @@ function fit() {
   overlay.update();
 }
 
+// A reference is of one scene: to a changed one it says nothing.
+const leftPicture = () => pinned || (behind.reference && frame && reference?.revision === frame.revision ? reference : null);
+
 function redraw() {
+  const left = leftPicture();
   if (frame) draw(frame, one("picture"), display);
-  if (pinned) draw(pinned, one("pinned"), display);
+  if (left) draw(left, one("pinned"), display);
+  one("pinned").hidden = !left;
+  state.wipe = left ? Number(one("wipe").value) : 0;
   one("pinned").style.clipPath = `inset(0 ${100 - state.wipe}% 0 0)`;
   inspect();
   overlay.update();
@@ -52,6 +60,13 @@ function showFrame() {
   one("step").dataset.revision = frame.revision;
   one("timing").textContent = `${(1000 * frame.seconds).toFixed(0)} ms, ${frame.width} × ${frame.height}`;
   if (frame.step === "final") one("live").textContent = "The picture is final.";
+}
+
+function showReference() {
+  reference = waitingReference;
+  waitingReference = null;
+  connection.send({do: "shown", frame: reference.number});
+  redraw();
 }
 
 // What the method's pictures have.
@@ -159,13 +174,26 @@ function chooseChannel() {
   redraw();
 }
 
-function pin() {
-  pinned = pinned ? null : frame;
-  one("pinned").hidden = !pinned;
+// What is on the left of the wipe: a picture that is kept, or a reference.
+function compare(picture, method) {
+  pinned = picture;
   one("pin").setAttribute("aria-pressed", String(Boolean(pinned)));
-  one("wipe").disabled = !pinned;
-  one("wipe").value = state.wipe = pinned ? 50 : 0;
+  one("wipe").disabled = !pinned && !method;
+  one("wipe").value = pinned || method ? 50 : 0;
+  if (method !== behind.reference) askBehind({reference: method});
   redraw();
+}
+
+function askBehind(change) {
+  behind = {...behind, ...change};
+  one("reference").value = behind.reference;
+  one("compared").hidden = !behind.reference;
+  connection.send({do: "behind", ...behind});
+}
+
+function takePoint(point) {
+  const isNew = (state.scene.settings?.method || "hierarchical") !== point.method;
+  connection.set({...(isNew ? {"settings.method": point.method} : {}), ...point.values}, newStroke());
 }
 
 // ---- what the server tells ------------------------------------------------------------------------------------
@@ -186,8 +214,18 @@ function takeScene(message) {
   one("redo").disabled = !message.redo;
   one("reset").disabled = !message.edits.length;
   one("failed").hidden = true;
+  takeFrames(message);
   knobs.update(message.scene, message.edits);
   fit();
+}
+
+// Where a person holds the slider, it stays.
+function takeFrames({frames, frame: now}) {
+  one("frames").hidden = frames.length < 2;
+  state.frames = frames;
+  one("playhead").max = Math.max(0, frames.length - 1);
+  if (!one("playhead").matches(":active")) one("playhead").value = Math.max(0, frames.indexOf(now));
+  one("shown-frame").textContent = now;
 }
 
 function sizeWarnings(groups) {
@@ -239,24 +277,49 @@ const takes = {
     one("failed").textContent = message.text;
     one("failed").hidden = false;
   },
+  // Another page may have asked for something else.
+  behind: ({trade, reference: method}) => {
+    behind = {trade, reference: method};
+    one("reference").value = method;
+    one("compared").hidden = !method;
+    one("compared").textContent = `${method}: at work`;
+    if (!pinned) one("wipe").disabled = !method;
+    redraw();
+  },
+  trade: (message) => trade.show(message),
+  reference: (message) => {
+    const percent = (x) => `${(100 * x).toPrecision(2)} %`, each = message.method === "direct" ? "samples a pixel" : "walks a sample";
+    one("compared").dataset.revision = message.revision;
+    one("compared").textContent = `${message.method}: ${message.samples} ${each}, noise ${message.noise ? percent(message.noise) : "not known yet"}; ` +
+      `the final picture differs by ${percent(message.difference)} (rms of the translucent pixels' diffuse light, this noise taken out)`;
+  },
   told: (message) => tell(message.text, message.good),
 };
 
 const connection = new Connection({
   text: (message) => takes[message.is]?.(message),
   frame: (buffer) => {
-    if (!waiting) requestAnimationFrame(showFrame);
-    waiting = parseFrame(buffer);
+    const news = parseFrame(buffer);
+    if (news.step === "reference") {
+      if (!waitingReference) requestAnimationFrame(showReference);
+      waitingReference = news;
+    } else {
+      if (!waiting) requestAnimationFrame(showFrame);
+      waiting = news;
+    }
   },
   lost: () => { one("lost").hidden = false; },
   found: () => {
     one("lost").hidden = true;
     if (display.channel) chooseChannel();
+    if (behind.trade || behind.reference) askBehind({});
   },
 });
 const set = (values, stroke) => connection.set(values, stroke);
 const knobs = new Knobs(one("panel"), set, (text) => { one("help").textContent = text; one("told").textContent = ""; });
 const overlay = new Overlay(one("overlay"), state, set, (name, index) => knobs.pathOf(name, index));
+
+const trade = new Trade(one("points"), takePoint);
 
 function setExposure(stops) {
   one("exposure").value = display.exposure = stops;
@@ -267,11 +330,14 @@ for (const word of ["undo", "redo", "reset"]) one(word).onclick = () => connecti
 one("copy").onclick = copyCommand;
 one("save").onclick = () => connection.send({do: "save", name: one("name").value + ".json"});
 one("render").onclick = () => connection.send({do: "render", name: one("name").value + ".exr"});
-one("pin").onclick = pin;
+one("pin").onclick = () => compare(pinned ? null : frame, "");
+one("reference").onchange = () => compare(null, one("reference").value);
+one("trade").ontoggle = () => askBehind({trade: one("trade").open});
 one("exposure").oninput = () => { setExposure(Number(one("exposure").value)); redraw(); };
 one("transform").onchange = () => { display.transform = one("transform").value; redraw(); };
 one("channel").onchange = chooseChannel;
-one("wipe").oninput = () => { state.wipe = Number(one("wipe").value); redraw(); };
+one("wipe").oninput = redraw;
+one("playhead").oninput = () => connection.send({do: "frame", frame: state.frames[Number(one("playhead").value)]});
 for (const id of ["x", "y"]) one(id).oninput = inspect;
 const canvas = one("picture");
 canvas.addEventListener("pointerdown", dragCamera);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Frames on a canvas: exposure, view transform and channels are this page's own, and so at once.
 
-export const kSteps = ["moving", "sharper", "final"];
+export const kSteps = ["moving", "sharper", "final", "reference"];
 const kMark = 0x314c504f;
 
 function floatOfHalf(bits) {

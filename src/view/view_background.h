@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is worked out behind a final picture while nobody changes anything: the trade of error against time, and a
+// reference that goes on refining.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "opaline/image/metrics.h"
+#include "opaline/quality/trade.h"
+#include "opaline/render/direct.h"
+#include "view/view_renderer.h"
+
+namespace opaline {
+
+/// What is asked for; nothing at first, and then nothing is done.
+struct BackgroundWork {
+  bool trade = false;
+  std::optional<Method> reference;  ///< direct or volume
+  friend bool operator==(const BackgroundWork&, const BackgroundWork&) = default;
+};
+
+/// How far the reference is.
+struct ReferenceState {
+  std::uint32_t revision = 0;
+  Method method = Method::direct;
+  std::size_t samples = 0;  ///< direct: entry samples a pixel; volume: walks a sample
+  double noise = 0;         ///< relative, rms: direct: of its pixels; volume: of its cells
+  double difference =
+      0;  ///< error_beyond_noise of the final picture's diffuse light, over translucent pixels, or all where the method tells none
+};
+
+/// Of a scene: what is known of its trade.
+struct TradeState {
+  std::uint32_t revision = 0;
+  double mm_per_unit = 1;
+  std::vector<TradePoint> points;
+  std::optional<std::size_t> now;  ///< the point that the scene's settings are
+  bool is_whole = false;
+};
+
+/// Called on the background's thread.
+struct BackgroundEvents {
+  std::function<void(const TradeState& trade)> trade;
+  std::function<void(std::shared_ptr<const ViewPicture> picture, const ReferenceState& state)> reference;
+  std::function<void(std::uint32_t revision, const std::string& why)> failed;
+};
+
+/// Has a session and a thread to itself, so that the pictures a person waits for neither depend on it nor wait for its
+/// end. The session is there only while something is asked for.
+class ViewBackground {
+ public:
+  explicit ViewBackground(BackgroundEvents events);
+  /// Cancels what is under way and waits for its end.
+  ~ViewBackground();
+  ViewBackground(const ViewBackground&) = delete;
+  ViewBackground& operator=(const ViewBackground&) = delete;
+
+  /// Changes what is asked for, and starts anew.
+  void ask(const BackgroundWork& work);
+
+  /// The final picture of a scene is there; work on it begins a moment later.
+  void start(Scene scene, std::shared_ptr<const ViewPicture> final_picture);
+
+  /// The scene has changed: what is under way is of no more use.
+  void stop();
+
+ private:
+  struct Job {
+    Scene scene;
+    std::shared_ptr<const ViewPicture> shown;
+  };
+
+  void run();
+  void work(const Job& job, const BackgroundWork& wanted);
+  void find_trade(const Job& job);
+  bool keeps_trade(const Job& job) const;
+  void tell_trade(const Job& job, bool is_whole);
+  void refine_direct(const Job& job);
+  void refine_volume(const Job& job);
+  void publish(const Job& job, RenderResult result, const Layer& variance, ReferenceState state);
+
+  BackgroundEvents events_;
+  // Of the thread alone.
+  std::unique_ptr<Session> session_;
+  std::optional<Scene> trade_scene_;  ///< that the points are of, whole
+  std::vector<TradePoint> points_;
+  DirectState direct_;  ///< of the scene of this revision: other wishes do not start it anew
+  std::uint32_t direct_revision_ = 0;
+  Monitor monitor_;
+  std::mutex mutex_;  // of the next three
+  BackgroundWork asked_;
+  std::optional<Job> job_;
+  bool stopped_ = false, changed_ = false;
+  std::condition_variable news_;
+  std::jthread thread_;  // last: it uses the others
+};
+
+}  // namespace opaline
