@@ -33,6 +33,11 @@ function axisOf(values, from, to) {
 export const nameOf = (point) => point.method === "lambert" ? "lambert"
   : `${point.samples.toLocaleString("en")} samples, tolerance ${point.values["settings.tolerance"]}`;
 
+// A setting that costs more than another one and is further off is no choice: near light is dear where samples are few.
+// Times are noisy: what is within a twentieth is taken for as good.
+const isNoChoice = (point, points) =>
+  points.some((other) => 1.05 * other.seconds < point.seconds && 1.05 * other.error < point.error);
+
 export class Trade {
   // root: takes the chart; take(point): a person chose it
   constructor(root, take) {
@@ -60,10 +65,14 @@ export class Trade {
         svg("text", {x: kLeft - 4, y: y.at(tick) + 4, "text-anchor": "end"}, errorText(tick)));
     }
     chart.append(svg("text", {x: kWidth - kRight, y: kHeight - 3, "text-anchor": "end"}, "CPU of a picture"),
-      svg("text", {x: kLeft + 3, y: kTop + 9}, "error"));
-    const summed = message.points.filter((p) => p.method !== "lambert");
+      svg("text", {x: kLeft - 4, y: kTop - 3, "text-anchor": "end"}, "error"));
+    const summed = message.points.filter((p) => p.method !== "lambert" && !isNoChoice(p, message.points));
     chart.append(svg("polyline", {class: "curve", points: summed.map((p) => `${x.at(p.seconds)},${y.at(p.error)}`).join(" ")}));
-    message.points.forEach((point, index) => chart.append(this.mark(point, index, x.at(point.seconds), y.at(point.error), index === message.now)));
+    message.points.forEach((point, index) => {
+      const mark = this.mark(point, index, x.at(point.seconds), y.at(point.error), index === message.now);
+      mark.classList.toggle("poor", isNoChoice(point, message.points));
+      chart.append(mark);
+    });
     this.root.append(chart);
     this.root.querySelector(`[data-index="${focused}"]`)?.focus();
   }
