@@ -28,8 +28,6 @@ struct Edit {
   const char* name;
   std::function<void(Scene&)> apply;
   std::size_t pictures = 1;  // expected of the same surfaces in the same light
-  int times = 1;             // in a row, of which the last is timed
-  bool ready = false;        // a picture by each light made before
 };
 
 // Where the time of an edit goes: loading and planning, the stages of Session::costs, the picture.
@@ -62,8 +60,6 @@ void print_edits(const Scene& base) {
       {"camera", [](Scene& s) { s.camera.position.x += 3; }},
       {"camera, of 24 pictures", [](Scene& s) { s.camera.position.x += 3; }, 24},
       {"light colour", [](Scene& s) { tint(s.lights.at(0)); }},
-      {"light colour, each light ready", [](Scene& s) { tint(s.lights.at(0)); }, 1, 1, true},
-      {"light colour, third in a row", [](Scene& s) { tint(s.lights.at(0)); }, 1, 3},
       {"medium's scattering",
        [](Scene& s) {
          if (auto* medium = std::get_if<PhysicalMedium>(&s.media.at(0).coefficients))
@@ -82,7 +78,7 @@ void print_edits(const Scene& base) {
   lambert.settings.method = Method::lambert;
   std::vector<std::vector<double>> seconds(edits.size()), ratios(edits.size());
   std::vector<std::array<std::vector<double>, kParts.size()>> parts(edits.size());
-  std::vector<double> floor, cold, ready, surface;
+  std::vector<double> floor, cold, surface;
   for (int round = 0; round < 5; ++round) {
     Session plain;
     plain.edit(lambert);
@@ -90,18 +86,14 @@ void print_edits(const Scene& base) {
     for (std::size_t e = 0; e < edits.size(); ++e) {
       Session session;
       session.expect_pictures(edits[e].pictures);
-      session.hold_view(true, true);
+      session.hold_view(true);
       const PartSeconds first = edit_and_render(session, base);
       floor.push_back(user_seconds([&] { plain.render(); }));  // beside each edit: the clock changes
       if (e == 0) cold.push_back(sum(first));
       if (edits[e].pictures > 1) surface.push_back(first[kExitance]);
-      if (edits[e].ready) ready.push_back(user_seconds([&] { session.ready_light_mix(); }) / floor.back());
       Scene scene = base;
-      PartSeconds now{};
-      for (int i = 0; i < edits[e].times; ++i) {
-        edits[e].apply(scene);
-        now = edit_and_render(session, scene);
-      }
+      edits[e].apply(scene);
+      const PartSeconds now = edit_and_render(session, scene);
       seconds[e].push_back(sum(now));
       ratios[e].push_back(seconds[e].back() / floor.back());
       for (std::size_t i = 0; i < kParts.size(); ++i) parts[e][i].push_back(now[i] / floor.back());
@@ -114,9 +106,7 @@ void print_edits(const Scene& base) {
     fmt::print("\n{:<36}{:>6.4f} s{:>10.2f}", edits[e].name, median(seconds[e]), median(ratios[e]));
     for (const std::vector<double>& part : parts[e]) fmt::print("{:>11.2f}", median(part));
   }
-  fmt::print(
-      "\na picture by each light, made before: {:.2f} x lambert; the surface, for many pictures: {:.3f} s\n",
-      median(ready), median(surface));
+  fmt::print("\nthe surface, for many pictures: {:.3f} s\n", median(surface));
 }
 
 /// The scene's first shape as files, one a frame, in which it sways: bent sideways by up to 5 % of its

@@ -61,15 +61,14 @@ double IrradianceLattice::spacing(std::uint32_t level) const {
 }
 
 std::size_t IrradianceLattice::Hash::operator()(const Key& key) const {
-  std::uint64_t hash = hash_bits(key.level, key.per_light);
+  std::uint64_t hash = hash_bits(key.level, 0);
   for (const std::int64_t k : key.corner) hash = hash_bits(hash, std::uint64_t(k));
   return hash;
 }
 
 std::vector<IrradianceLattice::Key> IrradianceLattice::keys_near(std::span<const SurfacePoint> points,
                                                                  std::span<const std::uint32_t> chosen,
-                                                                 double reach, std::uint32_t level,
-                                                                 bool per_light) const {
+                                                                 double reach, std::uint32_t level) const {
   const double side = spacing(level) * double(kLines);
   const auto range = [&](double low, double high) {
     return std::pair(std::int64_t(std::floor((low - reach) / side)),
@@ -100,7 +99,7 @@ std::vector<IrradianceLattice::Key> IrradianceLattice::keys_near(std::span<const
           if (std::ranges::any_of(among, [&](std::uint32_t i) {
                 return is_near(Vec3d(points[i].position), {x, y, z});
               }))
-            keys.push_back({{x, y, z}, level, per_light});
+            keys.push_back({{x, y, z}, level});
   };
   const Vec3d size = high - low;
   if (max_component(size) < 4 * reach) {
@@ -148,11 +147,7 @@ IrradianceLattice::Cell IrradianceLattice::make_cell(const Key& key,
   here.keys = crossings.keys;
   here.light_samples = std::max(1, lighting.light_samples / kFewerRays);
   here.variance = {};
-  const std::vector<PointTransfers> transfers = transfers_at(here);
-  cell.entered.push_back(combine_lights(transfers, here));
-  if (key.per_light)
-    for (const PointTransfers& light : transfers)
-      cell.entered.emplace_back(light.weights.begin(), light.weights.end());
+  cell.entered = combine_lights(transfers_at(here), here);
   return cell;
 }
 

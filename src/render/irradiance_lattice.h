@@ -24,14 +24,13 @@ class IrradianceLattice {
   struct Key {
     std::array<std::int64_t, 3> corner;  ///< in cells
     std::uint32_t level;                 ///< each halves the spacing's square
-    bool per_light;
     friend bool operator==(const Key&, const Key&) = default;
   };
   struct Cell {
     Vec3f low, high;  ///< corners of the box around the points
     std::vector<SurfacePoint> points;
-    std::vector<float> areas;                ///< that each point stands for, mm^2
-    std::vector<std::vector<RgbF>> entered;  ///< by all lights; then, if asked for, by each in white
+    std::vector<float> areas;   ///< that each point stands for, mm^2
+    std::vector<RgbF> entered;  ///< by all lights
   };
 
   /// in    spacing: of the lines of level 0, mm
@@ -40,7 +39,7 @@ class IrradianceLattice {
   double spacing(std::uint32_t level) const;
   /// Of the cells that are within reach, mm, of any of some points.
   std::vector<Key> keys_near(std::span<const SurfacePoint> points, std::span<const std::uint32_t> chosen,
-                             double reach, std::uint32_t level, bool per_light) const;
+                             double reach, std::uint32_t level) const;
   /// in    lighting: its points are not looked at; the same at each call but for them
   const Cell& cell(const Key& key, const PointIrradianceInput& lighting);
 

@@ -17,13 +17,8 @@ constexpr float kGrazing = 0.2f;
 }  // namespace
 
 NearFieldMeans::NearFieldMeans(const NearKernel& kernel, std::span<const SurfacePoint> points,
-                               std::span<const std::uint32_t> chosen, std::span<const int> drawn,
-                               std::size_t kinds)
-    : kernel_(kernel),
-      count_(chosen.size()),
-      end_((count_ + kAtOnce - 1) / kAtOnce * kAtOnce),
-      sums_(kinds),
-      close_entered_(kinds) {
+                               std::span<const std::uint32_t> chosen, std::span<const int> drawn)
+    : kernel_(kernel), count_(chosen.size()), end_((count_ + kAtOnce - 1) / kAtOnce * kAtOnce) {
   for (std::size_t m = 0; m < count_; ++m) {
     const auto& [position, normal, geometric, offset] = points[chosen[m]];
     x_[m] = position.x, y_[m] = position.y, z_[m] = position.z;
@@ -58,8 +53,7 @@ void NearFieldMeans::find_densities(const SurfacePoint& place) {
   for (std::size_t m = 0; m < end_; ++m) here_[m] = kernel_.densities[std::size_t(ring_[m])];
 }
 
-void NearFieldMeans::add_drawn(std::span<const SurfacePoint> places,
-                               std::span<const std::span<const RgbF>> entered) {
+void NearFieldMeans::add_drawn(std::span<const SurfacePoint> places, std::span<const RgbF> entered) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     find_densities(places[i]);
     float expected = 0;  // places per mm^2 here
@@ -67,14 +61,12 @@ void NearFieldMeans::add_drawn(std::span<const SurfacePoint> places,
       expected += kernel_.densities[std::size_t(drawn_ring_[m])][3] * found_[m];
     if (!(expected > 0)) continue;
     const Densities inverse = Densities{} + 1 / expected;
+    const RgbF& e = entered[i];
+    const Densities irradiance{e.x, e.y, e.z, 0};
     for (std::size_t m = 0; m < count_; ++m) {
       here_[m] *= inverse;
       weights_[m] += here_[m];
-    }
-    for (std::size_t l = 0; l < entered.size(); ++l) {
-      const RgbF& e = entered[l][i];
-      const Densities irradiance{e.x, e.y, e.z, 0};
-      for (std::size_t m = 0; m < count_; ++m) sums_[l][m] += here_[m] * irradiance;
+      sums_[m] += here_[m] * irradiance;
     }
   }
 }
@@ -83,7 +75,7 @@ void NearFieldMeans::add_lattice(std::span<const IrradianceLattice::Cell* const>
   for (std::size_t first = 0; first < count_; first += kGroup) {
     for (std::vector<float>& coordinates : close_coordinates_) coordinates.clear();
     close_areas_.clear();
-    for (std::vector<Densities>& entered : close_entered_) entered.clear();
+    close_entered_.clear();
     for (const IrradianceLattice::Cell* cell : cells) take_close(*cell, boxes_[first / kGroup]);
     close_rings_.resize(close_areas_.size());
     for (std::size_t m = first; m < std::min(first + kGroup, count_); ++m) add_close(m);
@@ -101,7 +93,7 @@ void NearFieldMeans::take_close(const IrradianceLattice::Cell& cell, const Box& 
   std::size_t n = close_areas_.size();
   for (std::vector<float>& coordinates : close_coordinates_) coordinates.resize(n + cell.points.size());
   close_areas_.resize(n + cell.points.size());
-  for (std::vector<Densities>& entered : close_entered_) entered.resize(n + cell.points.size());
+  close_entered_.resize(n + cell.points.size());
   for (std::size_t i = 0; i < cell.points.size(); ++i) {
     const auto& [position, normal, geometric, offset] = cell.points[i];
     if (gap(position, position) > square) continue;
@@ -110,15 +102,13 @@ void NearFieldMeans::take_close(const IrradianceLattice::Cell& cell, const Box& 
       close_coordinates_[axis + 3][n] = geometric[axis];
     }
     close_areas_[n] = Densities{} + cell.areas[i];
-    for (std::size_t l = 0; l < close_entered_.size(); ++l) {
-      const RgbF& e = cell.entered[l][i];
-      close_entered_[l][n] = Densities{e.x, e.y, e.z, 0};
-    }
+    const RgbF& e = cell.entered[i];
+    close_entered_[n] = Densities{e.x, e.y, e.z, 0};
     ++n;
   }
   for (std::vector<float>& coordinates : close_coordinates_) coordinates.resize(n);
   close_areas_.resize(n);
-  for (std::vector<Densities>& entered : close_entered_) entered.resize(n);
+  close_entered_.resize(n);
 }
 
 // Adds the places close to its group to what one point sees.
@@ -138,24 +128,20 @@ void NearFieldMeans::add_close(std::size_t point) {
     ring[i] = int(nx * gx[i] + ny * gy[i] + nz * gz[i] > 0 ? within : kOutside);
   }
   const Densities* const table = kernel_.densities.data();
-  Densities weights{};
-  for (std::size_t l = 0; l < close_entered_.size(); ++l) {
-    weights = Densities{};
-    Densities sum{};
-    for (std::size_t i = 0; i < n; ++i) {
-      const Densities weight = table[ring[i]] * close_areas_[i];
-      weights += weight;
-      sum += weight * close_entered_[l][i];
-    }
-    sums_[l][point] += sum;
+  Densities weights{}, sum{};
+  for (std::size_t i = 0; i < n; ++i) {
+    const Densities weight = table[ring[i]] * close_areas_[i];
+    weights += weight;
+    sum += weight * close_entered_[i];
   }
+  sums_[point] += sum;
   weights_[point] += weights;
 }
 
-RgbF NearFieldMeans::mean(std::size_t kind, std::size_t point) const {
+RgbF NearFieldMeans::mean(std::size_t point) const {
   RgbF mean(std::numeric_limits<float>::quiet_NaN());
   for (std::size_t c = 0; c < 3; ++c)
-    if (weights_[point][c] > 0) mean[c] = sums_[kind][point][c] / weights_[point][c];
+    if (weights_[point][c] > 0) mean[c] = sums_[point][c] / weights_[point][c];
   return mean;
 }
 

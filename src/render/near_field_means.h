@@ -12,26 +12,26 @@
 
 namespace opaline {
 
-/// The mean irradiance around each point of a set, per kind of light.
+/// The mean irradiance around each point of a set.
 class NearFieldMeans {
  public:
   static constexpr std::size_t kMostPoints = 64;
   static constexpr std::size_t kGroup = 16;  ///< points that look for places together
 
   /// in    chosen: at most kMostPoints of the points, best such that every kGroup of them lie together;
-  ///       drawn: how many places each of them drew from its own kernel; kinds: of light
+  ///       drawn: how many places each of them drew from its own kernel
   NearFieldMeans(const NearKernel& kernel, std::span<const SurfacePoint> points,
-                 std::span<const std::uint32_t> chosen, std::span<const int> drawn, std::size_t kinds);
+                 std::span<const std::uint32_t> chosen, std::span<const int> drawn);
 
   /// Adds places that the points drew: each counts as drawn from all of their kernels together.
   /// from  balance heuristic: Veach & Guibas 1995, sec. 3
-  /// in    entered: irradiance at the places, per kind of light
-  void add_drawn(std::span<const SurfacePoint> places, std::span<const std::span<const RgbF>> entered);
+  /// in    entered: irradiance at the places
+  void add_drawn(std::span<const SurfacePoint> places, std::span<const RgbF> entered);
   /// Adds the places of cells; none beyond the kernel's reach need be among them. Call it once.
   void add_lattice(std::span<const IrradianceLattice::Cell* const> cells);
 
   /// Of a point of the set; NaN where no place is near.
-  RgbF mean(std::size_t kind, std::size_t point) const;
+  RgbF mean(std::size_t point) const;
 
  private:
   // Points past the last have no normal: they see no place.
@@ -53,12 +53,10 @@ class NearFieldMeans {
   std::array<int, kMostPoints> ring_{}, drawn_ring_{};  // of the place last looked at
   Numbers found_{};  // the places that each point drew, times its cosine with the place last looked at
   std::array<Densities, kMostPoints> here_{};  // of the place last looked at
-  std::array<Densities, kMostPoints> weights_{};
-  std::vector<std::array<Densities, kMostPoints>> sums_;
+  std::array<Densities, kMostPoints> weights_{}, sums_{};
   // Places close to a group, coordinate by coordinate; what each stands for, and its irradiance.
   std::array<std::vector<float>, 6> close_coordinates_;
-  std::vector<Densities> close_areas_;
-  std::vector<std::vector<Densities>> close_entered_;
+  std::vector<Densities> close_areas_, close_entered_;
   std::vector<int> close_rings_;
 };
 

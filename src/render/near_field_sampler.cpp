@@ -64,8 +64,6 @@ struct NearFieldSampler::Found {
   std::span<const RgbF> own;
   std::span<Exitance> exitance;
   std::span<Rgb> noise;
-  HeldView::NearField* held;
-  std::size_t kinds() const { return held != nullptr ? lighting.lights.size() + 1 : 1; }
 };
 
 // Places of all marked points together, on the surface once found.
@@ -84,46 +82,36 @@ NearFieldSampler::NearFieldSampler(const Body& group)
 
 std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& lighting,
                                                     std::span<const RgbF> own, std::span<Exitance> exitance,
-                                                    std::span<Rgb> noise, HeldView::NearField* held) const {
+                                                    std::span<Rgb> noise) const {
   const double apart = typical_distance(lighting.points);
   const double widths = apart / double(near_.narrowest);
   const float worth = widths < kFineGrained ? kWorthShared : widths < kClose ? kWorthClose : kWorthApart;
   std::vector<std::uint32_t> marked;
   for (std::uint32_t i = 0; i < exitance.size(); ++i)
     if (at_stake(own[i], exitance[i]) > worth) marked.push_back(i);
-  std::vector<std::uint32_t> open = marked;  // whose near fields are to be found
-  if (held != nullptr && held->kernel == near_.key) {
-    const auto known =
-        std::stable_partition(open.begin(), open.end(), [&](std::uint32_t i) { return !held->is_found[i]; });
-    add_held(*held, lighting, own, {known, open.end()}, exitance, noise);
-    open.erase(known, open.end());
-  } else if (held != nullptr) {
-    const std::size_t n = exitance.size();
-    *held = {near_.key, std::vector<bool>(n), std::vector<RgbF>(n * lighting.lights.size())};
-  }
-  if (open.empty()) return marked;
-  const Found found{lighting, own, exitance, noise, held};
-  const std::optional<std::uint32_t> level = finest_level(apart, open.size());
-  const std::vector<std::size_t> ends = split(lighting.points, open);
+  if (marked.empty()) return marked;
+  std::vector<std::uint32_t> sorted = marked;
+  const Found found{lighting, own, exitance, noise};
+  const std::optional<std::uint32_t> level = finest_level(apart, sorted.size());
+  const std::vector<std::size_t> ends = split(lighting.points, sorted);
   if (level)
-    look_up(found, open, ends, *level);
+    look_up(found, sorted, ends, *level);
   else
-    draw_all(found, open, ends);
+    draw_all(found, sorted, ends);
   return marked;
 }
 
 // The places of a lattice that all share.
-void NearFieldSampler::look_up(const Found& found, std::span<std::uint32_t> open,
+void NearFieldSampler::look_up(const Found& found, std::span<std::uint32_t> sorted,
                                std::span<const std::size_t> ends, std::uint32_t finest) const {
   const std::span<const SurfacePoint> points = found.lighting.points;
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
-    const std::span<std::uint32_t> chosen = open.subspan(first, ends[set] - first);
+    const std::span<std::uint32_t> chosen = sorted.subspan(first, ends[set] - first);
     sort_into_groups(points, chosen);
     const std::uint32_t level = level_of(found, chosen, finest);
-    NearFieldMeans means(near_, points, chosen, {}, found.kinds());
+    NearFieldMeans means(near_, points, chosen, {});
     std::vector<const IrradianceLattice::Cell*> cells;
-    for (const IrradianceLattice::Key& key :
-         lattice_->keys_near(points, chosen, double(near_.reach), level, found.held != nullptr))
+    for (const IrradianceLattice::Key& key : lattice_->keys_near(points, chosen, double(near_.reach), level))
       cells.push_back(&lattice_->cell(key, found.lighting));
     means.add_lattice(cells);
     RgbF variance;
@@ -136,7 +124,7 @@ void NearFieldSampler::look_up(const Found& found, std::span<std::uint32_t> open
 }
 
 // Places that points draw themselves and share with the others of their set.
-void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_t> open,
+void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_t> sorted,
                                 std::span<const std::size_t> ends) const {
   const PointIrradianceInput& lighting = found.lighting;
   Places places;
@@ -145,9 +133,9 @@ void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_
     for (std::size_t m = first; m < ends[set]; ++m) {
       // Of what lies beyond an edge in a part p of the near field, about p is at stake, and the deviation of
       // a place is as the root of p.
-      const std::uint32_t i = open[m];
+      const std::uint32_t i = sorted[m];
       const float wanted = std::sqrt(at_stake(found.own[i], found.exitance[i]) / kUsual) *
-                           places_of(i, open.subspan(first, ends[set] - first), lighting.points);
+                           places_of(i, sorted.subspan(first, ends[set] - first), lighting.points);
       const double rounding = unit_double(hash_bits(3002, lighting.keys[i]));
       drawn.push_back(std::max(1, int(wanted + rounding)));
       draw(lighting, i, drawn[m], places);
@@ -160,21 +148,13 @@ void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_
   around.keys = places.keys;
   around.light_samples = std::max(1, lighting.light_samples / kFewerRays);
   around.variance = {};
-  // All lights together, and, to be held, each in white.
-  const std::vector<PointTransfers> transfers = transfers_at(around);
-  std::vector<std::vector<RgbF>> entered{combine_lights(transfers, around)};
-  if (found.held != nullptr)
-    for (const PointTransfers& light : transfers)
-      entered.emplace_back(light.weights.begin(), light.weights.end());
+  const std::vector<RgbF> entered = combine_lights(transfers_at(around), around);
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
     const auto [begin, end] = std::equal_range(places.sets.begin(), places.sets.end(), std::uint32_t(set));
     const std::size_t skip = std::size_t(begin - places.sets.begin()), count = std::size_t(end - begin);
-    const std::span<const std::uint32_t> points = open.subspan(first, ends[set] - first);
-    std::vector<std::span<const RgbF>> set_entered;
-    for (const std::vector<RgbF>& values : entered)
-      set_entered.push_back(std::span(values).subspan(skip, count));
-    NearFieldMeans means(near_, lighting.points, points, std::span(drawn).subspan(first), entered.size());
-    means.add_drawn(std::span(places.points).subspan(skip, count), set_entered);
+    const std::span<const std::uint32_t> points = sorted.subspan(first, ends[set] - first);
+    NearFieldMeans means(near_, lighting.points, points, std::span(drawn).subspan(first));
+    means.add_drawn(std::span(places.points).subspan(skip, count), std::span(entered).subspan(skip, count));
     replace_all(found, points, means, RgbF(1.0f / kTogether));
   }
 }
@@ -184,12 +164,8 @@ void NearFieldSampler::replace_all(const Found& found, std::span<const std::uint
                                    const NearFieldMeans& means, const RgbF& variance) const {
   for (std::size_t m = 0; m < points.size(); ++m) {
     const std::uint32_t i = points[m];
-    replace_mixed(found.own[i], means.mean(0, m) + bounced_at(found.lighting, i), variance, found.exitance[i],
+    replace_mixed(found.own[i], means.mean(m) + bounced_at(found.lighting, i), variance, found.exitance[i],
                   found.noise[i]);
-    if (found.held == nullptr) continue;
-    found.held->is_found[i] = true;
-    for (std::size_t l = 0; l < found.lighting.lights.size(); ++l)
-      found.held->transfers[l * found.exitance.size() + i] = means.mean(l + 1, m);
   }
 }
 
@@ -213,18 +189,6 @@ std::uint32_t NearFieldSampler::level_of(const Found& found, std::span<const std
   for (const std::uint32_t i : set) most = std::max(most, at_stake(found.own[i], found.exitance[i]));
   const float coarser = std::max(0.0f, 4.0f / 3 * std::log2(kFinestAt / most));
   return finest - std::min(finest, std::uint32_t(coarser));
-}
-
-// Where the near fields of points were found before.
-void NearFieldSampler::add_held(const HeldView::NearField& held, const PointIrradianceInput& lighting,
-                                std::span<const RgbF> own, std::span<const std::uint32_t> points,
-                                std::span<Exitance> exitance, std::span<Rgb> noise) const {
-  for (const std::uint32_t i : points) {
-    RgbF mean = bounced_at(lighting, i);
-    for (std::size_t l = 0; l < lighting.lights.size(); ++l)
-      mean += RgbF(emission(lighting.lights[l])) * held.transfers[l * exitance.size() + i];
-    replace_mixed(own[i], mean, RgbF(1.0f / kTogether), exitance[i], noise[i]);
-  }
 }
 
 // Puts the near field's mean irradiance, NaN where it is not known, where `evaluate` took a mixture. noise:

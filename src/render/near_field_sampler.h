@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "opaline/render/held_view.h"
 #include "opaline/render/precompute.h"
 #include "render/irradiance_lattice.h"
 #include "render/near_field_means.h"
@@ -33,12 +32,10 @@ class NearFieldSampler {
 
   /// Corrects the exitance of the points beside shadow edges.
   /// in    lighting: of the points; own: their irradiance
-  /// held: found earlier at the same points beside lights in the same places, and added to; or null
   /// out   exitance: as evaluated with it, one a point; noise: its variance, one a point, replaced at those
   ///       beside shadow edges; returns which points these were
   std::vector<std::uint32_t> refine(const PointIrradianceInput& lighting, std::span<const RgbF> own,
-                                    std::span<Exitance> exitance, std::span<Rgb> noise,
-                                    HeldView::NearField* held = nullptr) const;
+                                    std::span<Exitance> exitance, std::span<Rgb> noise) const;
 
  private:
   struct Places;
@@ -58,9 +55,6 @@ class NearFieldSampler {
                   std::span<const SurfacePoint> points) const;
   void draw(const PointIrradianceInput& lighting, std::uint32_t number, int count, Places& places) const;
   void find(const RayScene& rays, Places& places) const;
-  void add_held(const HeldView::NearField& held, const PointIrradianceInput& lighting,
-                std::span<const RgbF> own, std::span<const std::uint32_t> points,
-                std::span<Exitance> exitance, std::span<Rgb> noise) const;
   void replace_all(const Found& found, std::span<const std::uint32_t> points, const NearFieldMeans& means,
                    const RgbF& variance) const;
   void replace_mixed(const RgbF& own, const RgbF& mean, const RgbF& variance, Exitance& e, Rgb& noise) const;

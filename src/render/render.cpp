@@ -41,8 +41,7 @@ HeldView* view_of(const RenderInput& input, std::size_t tiles) {
       sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) + 2 * sizeof(float) * input.scene.lights.size();
   if (input.view == nullptr || !fits(input.scene.film, least)) return nullptr;
   input.view->tiles.resize(tiles);
-  const std::size_t near_field = input.view->keeps_near_field ? sizeof(RgbF) * input.scene.lights.size() : 0;
-  input.view->has_room = fits(input.scene.film, least + sizeof(SurfacePoint) + near_field);
+  input.view->has_room = fits(input.scene.film, least + sizeof(SurfacePoint));
   return input.view;
 }
 

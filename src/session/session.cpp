@@ -19,12 +19,8 @@ void Session::edit(Scene scene) {
 void Session::expect_pictures(std::size_t pictures) {
   state_->pictures_ = pictures;
 }
-void Session::hold_view(bool hold, bool mix_lights) {
+void Session::hold_view(bool hold) {
   state_->holds_view_ = hold;
-  state_->mixes_lights_ = hold && mix_lights;
-}
-void Session::ready_light_mix(Monitor* monitor) {
-  state_->ready_light_mix(monitor);
 }
 void Session::match_new_session(bool matches) {
   state_->matches_new_ = matches;

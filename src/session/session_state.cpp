@@ -218,17 +218,6 @@ void Session::State::prepare(Monitor* monitor) {
 RenderResult Session::State::render(Monitor* monitor, const AfterTile& after_tile) {
   prepare(monitor);
   HeldView* const view = held_view();
-  if (!can_mix()) {
-    mix_.clear();
-  } else {
-    const auto render_part = [&](const Scene& scene) { return recoloured(scene, *view, monitor); };
-    if (std::optional<Image> mixed = mix_.mixed(scene_, render_part)) {
-      if (after_tile) after_tile(*mixed, rendered_part(scene_.film));
-      RenderResult result;
-      result.image = std::move(*mixed);
-      return result;
-    }
-  }
   RenderInput input{scene_, *world_, *rays_, bodies_, monitor, after_tile, view};
   if (bounces_of(scene_) > 0) update_bounced_places(input);
   input.bounced = bounced_;
@@ -237,59 +226,10 @@ RenderResult Session::State::render(Monitor* monitor, const AfterTile& after_til
   return result;
 }
 
-void Session::State::ready_light_mix(Monitor* monitor) {
-  prepare(monitor);
-  HeldView* const view = held_view();
-  if (can_mix())
-    mix_.get_ready(scene_, [&](const Scene& scene) { return recoloured(scene, *view, monitor); });
-}
-
-/// After prepare.
-bool Session::State::can_mix() const {
-  return mixes_lights_ && !has_cells(scene_.settings.method) &&
-         std::ranges::none_of(bodies_, [](const Body& g) { return g.surface_cache.has_value(); });
-}
-
-/// The picture of a scene that differs by its lights' colours.
-Image Session::State::recoloured(const Scene& scene, HeldView& view, Monitor* monitor) {
-  const std::vector<Light> lights = recentred_lights(scene, *world_);
-  std::vector<Body> groups;
-  const auto build_tree = [&](Body& lit, const Body& body) {
-    lit.octree = gather_flux(body.surface.samples, lit.irradiance);
-    bound_far_side(lit);
-    work_.nodes_built += lit.octree.nodes.size();
-  };
-  for (const Body& body : bodies_) {
-    Body& lit = groups.emplace_back();
-    lit.plan = body.plan;
-    lit.profile = body.profile;
-    lit.kernel = body.kernel;
-    lit.cloud = body.cloud;
-    lit.entering = body.entering;
-    lit.irradiance = entered_irradiance(body, lights);
-    build_tree(lit, body);
-  }
-  RenderInput input{scene, *world_, *rays_, groups, monitor, {}, &view};
-  if (bounces_of(scene) > 0) {
-    input.bounced = opaline::bounced_places(input);
-    for (std::size_t b = 0; b < groups.size(); ++b) groups[b].surface = bodies_[b].surface;
-    const std::vector<std::vector<RgbF>> bounced =
-        bounced_at_samples({scene, *world_, *rays_, plan_, monitor}, groups);
-    for (std::size_t b = 0; b < groups.size(); ++b) {
-      add_bounced(groups[b], bounced[b]);
-      build_tree(groups[b], bodies_[b]);
-    }
-  }
-  RenderResult part = opaline::render(input);
-  work_.queries += part.queries;
-  return std::move(part.image);
-}
-
 /// What is held of earlier pictures and still holds; null: nothing is to be held.
 HeldView* Session::State::held_view() {
   if (!holds_view_) {
     view_ = {};
-    mix_.clear();
     return nullptr;
   }
   const PrecomputeInput input{scene_, *world_, *rays_, plan_};
@@ -300,7 +240,6 @@ HeldView* Session::State::held_view() {
   const bool sees_the_same = key == view_key_ && surfaces_key == view_surfaces_key_;
   if (key != view_key_) view_ = {};
   if (!sees_the_same) view_.forget_surfaces();
-  if (!sees_the_same || light_keys != view_light_keys_) mix_.clear();
   if (light_keys != view_light_keys_) {
     std::vector<std::optional<std::size_t>> before;
     for (const StageKey& light : light_keys) {
@@ -310,7 +249,6 @@ HeldView* Session::State::held_view() {
     }
     view_.set_lights(before);
   }
-  view_.keeps_near_field = mixes_lights_;
   view_key_ = key;
   view_surfaces_key_ = surfaces_key;
   view_light_keys_ = std::move(light_keys);

@@ -4,7 +4,6 @@
 
 #include "opaline/session/session.h"
 #include "session/body_keys.h"
-#include "session/light_mix.h"
 
 namespace opaline {
 
@@ -21,7 +20,6 @@ struct Session::State {
   // What Session's functions of the same names do.
   void anchor(Scene scene, Monitor* monitor);
   void edit(Scene scene);
-  void ready_light_mix(Monitor* monitor);
   void prepare_rays();
   Image first_light(Monitor* monitor);
   void prepare(Monitor* monitor);
@@ -55,8 +53,6 @@ struct Session::State {
                         const std::vector<Light>& lights);
   HeldView* held_view();
   void update_bounced_places(const RenderInput& input);
-  bool can_mix() const;
-  Image recoloured(const Scene& scene, HeldView& view, Monitor* monitor);
   void decide(const Body& body, const std::string& text);
 
   StageCache* cache_;
@@ -72,11 +68,10 @@ struct Session::State {
   std::vector<Body> bodies_;
   std::vector<BodyKeys> keys_;  // one a body
   std::size_t pictures_ = 1;
-  bool holds_view_ = false, mixes_lights_ = false;
+  bool holds_view_ = false;
   HeldView view_;
   std::shared_ptr<const BouncedPlaces> bounced_;  // of the last picture in which light bounced
   StageKey bounced_key_;
-  LightMix mix_;
   StageKey view_key_, view_surfaces_key_;
   std::vector<StageKey> view_light_keys_;
   std::vector<GroupPlan> reference_;  ///< of the anchor; empty: none
@@ -86,9 +81,6 @@ struct Session::State {
   std::vector<std::string> decisions_;
   std::vector<StageCost> costs_;
 };
-
-/// What other surfaces send to a body's samples, to what enters there from lights.
-void add_bounced(Body& body, std::span<const RgbF> bounced);
 
 /// The normals of a tree's nodes, where the kernel asks for them.
 void bound_far_side(Body& body);

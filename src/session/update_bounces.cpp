@@ -8,6 +8,12 @@
 namespace opaline {
 namespace {
 
+/// What other surfaces send to a body's samples, to what enters there from lights.
+void add_bounced(Body& body, std::span<const RgbF> bounced) {
+  for (std::size_t i = 0; i < bounced.size(); ++i)
+    body.irradiance[i] += body.entering.empty() ? bounced[i] : bounced[i] * body.entering[i];
+}
+
 /// While it lives, bodies have the light of lights alone, as what bounces once needs it, in place of all they have.
 class LitByLightsAlone {
  public:
@@ -41,11 +47,6 @@ class LitByLightsAlone {
 };
 
 }  // namespace
-
-void add_bounced(Body& body, std::span<const RgbF> bounced) {
-  for (std::size_t i = 0; i < bounced.size(); ++i)
-    body.irradiance[i] += body.entering.empty() ? bounced[i] : bounced[i] * body.entering[i];
-}
 
 // Trees with the light that bounces in place of those without it. What bounces depends on all bodies.
 void Session::State::update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights) {

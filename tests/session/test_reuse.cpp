@@ -122,21 +122,8 @@ TEST(Reuse, LightColour) {
       {"sun", [](Scene& s) { std::get<DirectionalLight>(s.lights[2].source).irradiance = {}; }, 0, true});
 }
 
-// Relative differences of the diffuse light, in ascending order.
-std::vector<double> sorted_errors(const Image& image, const Image& reference) {
-  std::vector<double> errors;
-  for (std::size_t i = 0; i < reference.pixels.size(); ++i)
-    if (reference.channels[i % reference.channels.size()].starts_with("diffuse."))
-      errors.push_back(std::abs(double(image.pixels[i]) - double(reference.pixels[i])) /
-                       (double(reference.pixels[i]) + 1e-3));
-  std::ranges::sort(errors);
-  return errors;
-}
-
-// Claim: where lights may be mixed, pictures in other colours take the near field beside shadow edges from
-// the first, light by light: they differ from the cold one as two do that have other places there. Source:
-// held_view.h. Tolerance: measured .0106 at most in 999 of 1000, .043 in all. Fails if: one light's part is
-// scaled by another's colour, or a light that was black at first stays so.
+// Claim: with the view held, a picture in other colours is that of a new session beside shadow edges, too, where a light
+// was black before as well. Source: held_view.h. Fails if: a near field is kept in the light that it was found in.
 TEST(Reuse, NearFieldInOtherColours) {
   const struct {
     const char* name;
@@ -156,62 +143,10 @@ TEST(Reuse, NearFieldInOtherColours) {
     auto& intensity = std::get<PointLight>(scene.lights[0].source).intensity;
     intensity = before;
     Session session;
-    session.hold_view(true, true);
+    session.hold_view(true);
     EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
     intensity = after;
-    const std::vector<double> errors = sorted_errors(picture_of(session, scene), cold_picture(scene));
-    EXPECT_LE(errors[errors.size() * 99 / 100], scene.settings.tolerance);
-    EXPECT_LE(errors[errors.size() * 999 / 1000], .015);
-    EXPECT_LE(errors.back(), .06);
-  }
-}
-
-void expect_mixed_colours(Scene scene) {
-  Session session;
-  session.hold_view(true, true);
-  picture_of(session, scene);
-  const auto recolour = [&](const Rgb& point, const Rgb& quad) {
-    std::get<PointLight>(scene.lights[0].source).intensity = point;
-    std::get<QuadLight>(scene.lights[1].source).radiance = quad;
-    return picture_of(session, scene);
-  };
-  recolour({2e4, 0, 1e4}, {50, 50, 50});
-  recolour({1e4, 0, 1e4}, {50, 50, 50});
-  EXPECT_GT(session.work().queries, 0u);
-  const Image mixed = recolour({3e4, 2e4, 0}, {50, 50, 50});
-  EXPECT_EQ(session.work().queries, 0u);
-  const Image cold = cold_picture(scene);
-  for (std::size_t i = 0; i < cold.pixels.size(); ++i) {
-    const std::string& channel = cold.channels[i % cold.channels.size()];
-    if (channel == "A" || channel == "Z" || channel.starts_with("N.") || channel.starts_with("albedo.")) {
-      EXPECT_EQ(mixed.pixels[i], cold.pixels[i]) << channel;
-    }
-  }
-  const std::vector<double> errors = sorted_errors(mixed, cold);
-  EXPECT_LE(errors[errors.size() * 99 / 100], scene.settings.tolerance);
-  EXPECT_LE(errors.back(), .02);
-  recolour({3e4, 2e4, 0}, {9, 50, 50});
-  EXPECT_GT(session.work().queries, 0u);
-  scene.film.crop = {{4, 5, 20, 30}};
-  picture_of(session, scene);
-  session.ready_light_mix();
-  recolour({1e4, 2e4, 0}, {50, 50, 50});
-  EXPECT_EQ(session.work().queries, 0u) << "made ready";
-  scene.media[0].profile = ProfileKind::normalized_diffusion;
-  EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
-}
-
-// Claim: with the view held, the third edit of colours in a row is a sum of pictures: no point is looked up;
-// its diffuse light is the cold picture's to within the tolerance, in 99 of 100 pixels, and 2 %, which is
-// what shadow rays beside edges are worth (near_field_sampler.h); what is not light has the same bits; a
-// light that had no green gets it, and what bounces goes along. An edit of something else ends it. Source: light_mix.h. Fails if: a part
-// is added twice, or scaled by the wrong channel, or kept where the medium changed.
-TEST(Reuse, LightColoursAgainAndAgain) {
-  for (const int bounces : {0, 1}) {
-    SCOPED_TRACE(bounces);
-    Scene scene = two_balls();
-    scene.settings.bounces = bounces;
-    expect_mixed_colours(scene);
+    EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
   }
 }
 

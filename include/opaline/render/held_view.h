@@ -15,24 +15,16 @@
 namespace opaline {
 
 /// Kept from one picture to the next by Session::hold_view: 20 bytes a camera ray, and where the ray met a
-/// surface 4, 4 a light (8 where the light's error is estimated, too), and 40 where there is room for them;
-/// 12 a light more where the near field is kept.
+/// surface 4, 4 a light (8 where the light's error is estimated, too), and 40 where there is room for them.
 struct HeldView {
   struct CameraHit {
     std::uint32_t mesh, triangle;  ///< Hit::kMiss: none
     float u, v, far;
   };
-  /// What each light brings per unit emission to the near field of points beside shadow edges.
-  struct NearField {
-    std::uint64_t kernel = 0;     ///< of the near field
-    std::vector<bool> is_found;   ///< one a point
-    std::vector<RgbF> transfers;  ///< light by light, one a point; NaN: no place of it was found
-  };
   /// Where the camera rays of a batch met one kind of surface.
   struct Surface {
     std::vector<PointTransfers> lights;  ///< one a light, without weights where it is to be traced
     QueryPackets packets;
-    NearField near_field;  ///< empty unless it is kept
   };
   /// One camera ray of each pixel of a tile.
   struct Batch {
@@ -42,8 +34,7 @@ struct HeldView {
     std::vector<Surface> surfaces;     ///< by kind; empty: not known
   };
   std::vector<std::vector<Batch>> tiles;  ///< one batch a sample of the pixels
-  bool has_room = false;                  ///< for points, and for the near field where it is to be kept
-  bool keeps_near_field = false;  ///< the noise of pictures in other colours is then that of the first
+  bool has_room = false;                  ///< for points
 
   /// Lets go of all that depends on which surfaces are of which kind.
   void forget_surfaces() {
@@ -61,7 +52,6 @@ struct HeldView {
             if (before[l] && *before[l] < surface.lights.size())
               lights[l] = std::move(surface.lights[*before[l]]);
           surface.lights = std::move(lights);
-          surface.near_field = {};
         }
   }
 };

@@ -51,10 +51,6 @@ struct WalkStore {
 ///   camera, film                        camera rays and what they see; a surface cache is looked up again.
 ///                                       Other edits trace these rays again, too, unless the view is held
 ///   a light's colour or power           sums over lights, trees; no ray from a sample.
-///                                       Where lights may be mixed (hold_view): the second such edit in a row
-///                                       renders one picture for each light that changes and one for all the
-///                                       others together; that edit and each later one is their weighted sum.
-///                                       After ready_light_mix the first such edit is a sum already
 ///   a medium                            evaluation; its samples stay while they are dense enough and at most
 ///                                       twice as dense (in spacing) as it asks for
 ///   eta                                 the light that enters, trees, evaluation
@@ -71,8 +67,7 @@ struct WalkStore {
 /// Random walks (Method::volume) are kept by light, where lights are few: neither the camera nor colours walk again,
 /// and other edits walk for the lights they concern.
 ///
-/// A picture has the same bits as that of a new session, with three exceptions: mixed pictures (equal within the
-/// tolerance), random walks that were made for a smaller error (walks are not taken back), and scenes whose samples
+/// A picture has the same bits as that of a new session, with two exceptions: random walks that were made for a smaller error (walks are not taken back), and scenes whose samples
 /// were carried along or stayed denser than needed. Such samples were
 /// placed on the last surface that was sampled anew. The picture depends on that surface and on the scene as
 /// it is now, not on the edits in between.
@@ -101,18 +96,10 @@ class Session {
 
   /// Whether to keep what the camera sees, and how the lights reach it, for later pictures. After an edit of
   /// colours or media neither is then traced again, but what boundaries mirror is. Costs memory (HeldView). Off by default.
-  /// mix_lights: a picture that differs from earlier ones only by its lights' colours may then be a sum of
-  /// pictures (LightMix). Beside shadow edges it traces no rays where an earlier picture did. So its last
-  /// bits, and its noise at those edges, depend on the pictures before it.
-  void hold_view(bool hold, bool mix_lights = false);
-
-  /// A picture by each light, so that the next edit of colours is a sum already: for while nobody waits. Does
-  /// nothing unless lights may be mixed.
-  /// error as prepare
-  void ready_light_mix(Monitor* monitor = nullptr);
+  void hold_view(bool hold);
 
   /// Whether each picture has the bits of a new session's. Samples are then placed anew wherever a new session
-  /// would have others, neither carried along nor left denser than needed; lights must not be mixed. Default: false.
+  /// would have others, neither carried along nor left denser than needed. Default: false.
   void match_new_session(bool matches);
 
   /// If no further edits follow, the session drops the data that only edits reuse. Default: true. No picture

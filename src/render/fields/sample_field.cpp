@@ -48,7 +48,7 @@ LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput light
       group_.surface_cache ? looked_up(hits, light.irradiance)
                            : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
   // Beside a tint's edges the samples' irradiance differs from that of the point without a shadow's edge near.
-  if (looks_near && group_.entering.empty()) refine_near_field(lighting, exitance, light, held);
+  if (looks_near && group_.entering.empty()) refine_near_field(lighting, exitance, light);
   for (std::vector<RgbF>* values : {&light.exitance, &light.error, &light.irradiance})
     values->reserve(exitance.size());
   for (const Exitance& e : exitance) {
@@ -83,16 +83,15 @@ std::vector<Exitance> SampleField::looked_up(const SurfaceHits& hits,
 
 // The irradiance at the hit is noisy, and beside a shadow edge not that of its near field.
 void SampleField::refine_near_field(const PointIrradianceInput& lighting, std::vector<Exitance>& exitance,
-                                    LeavingLight& light, HeldView::Surface* held) const {
+                                    LeavingLight& light) const {
   const auto& share = group_.kernel.own_irradiance;
   for (std::size_t i = 0; i < light.noise.size(); ++i) {
     const Rgb own(own_part(share, exitance[i], RgbF(1)));
     light.noise[i] = light.noise[i] * own * own;
   }
   const std::vector<Rgb> noise = light.noise;
-  const bool keeps = held != nullptr && input_.view->keeps_near_field && input_.view->has_room;
-  const std::vector<std::uint32_t> refined = near_field_->refine(
-      lighting, light.irradiance, exitance, light.noise, keeps ? &held->near_field : nullptr);
+  const std::vector<std::uint32_t> refined =
+      near_field_->refine(lighting, light.irradiance, exitance, light.noise);
   if (is_noisy_ && !refined.empty())
     light.bias = selection_bias({share, light.irradiance, exitance, noise, refined});
 }

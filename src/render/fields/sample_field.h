@@ -26,7 +26,7 @@ class SampleField : public Field {
                                QueryPackets* packets) const;
   std::vector<Exitance> looked_up(const SurfaceHits& hits, std::span<const RgbF> irradiance) const;
   void refine_near_field(const PointIrradianceInput& lighting, std::vector<Exitance>& exitance,
-                         LeavingLight& light, HeldView::Surface* held) const;
+                         LeavingLight& light) const;
 
   const RenderInput& input_;
   const Body& group_;
