@@ -50,7 +50,7 @@ class NearFieldMeansOnABall : public testing::Test {
       : prepared_(single_shape(SphereShape{{}, 10}, marble(), 2000)), kernel_(prepared_.bodies[0]) {}
 
   void expect_mean(const NearFieldMeans& means, float relative) const {
-    const RgbF mean = means.mean(0, 0), expected = expected_mean(kernel_, radius_);
+    const RgbF mean = means.mean(0), expected = expected_mean(kernel_, radius_);
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_GT(expected[c], 0.1f);
       EXPECT_NEAR(mean[c], expected[c], relative * expected[c]) << c;
@@ -69,16 +69,15 @@ class NearFieldMeansOnABall : public testing::Test {
 // times the cosine, at most 1: 8 to 9 % too little).
 TEST_F(NearFieldMeansOnABall, OfALattice) {
   IrradianceLattice::Cell cell;
-  cell.entered.resize(1);
   for (std::size_t i = 0; i < kPlaces; ++i) {
     const auto [u, v] = r2_point(i, {0.5, 0.5});
     cell.points.push_back(on_ball(radius_, u, 2 * std::numbers::pi * v));  // even over the upper half
     cell.areas.push_back(1);
-    cell.entered[0].push_back(light_at(cell.points.back(), radius_));
+    cell.entered.push_back(light_at(cell.points.back(), radius_));
   }
   cell.low = Vec3f(-radius_);
   cell.high = Vec3f(radius_);
-  NearFieldMeans means(kernel_, top_, chosen_, {}, 1);
+  NearFieldMeans means(kernel_, top_, chosen_, {});
   const IrradianceLattice::Cell* const cells[]{&cell};
   means.add_lattice(cells);
   expect_mean(means, 0.01f);
@@ -98,9 +97,8 @@ TEST_F(NearFieldMeansOnABall, OfDrawnPlaces) {
     entered.push_back(light_at(places.back(), radius_));
   }
   const std::vector<int> drawn{int(kPlaces)};
-  NearFieldMeans means(kernel_, top_, chosen_, drawn, 1);
-  const std::span<const RgbF> all[]{entered};
-  means.add_drawn(places, all);
+  NearFieldMeans means(kernel_, top_, chosen_, drawn);
+  means.add_drawn(places, entered);
   expect_mean(means, 0.03f);
 }
 
