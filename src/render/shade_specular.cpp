@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "irradiance/sample_key.h"
-#include "irradiance/shadow_batch.h"
 #include "opaline/core/random.h"
 #include "render/shade.h"
 

@@ -288,7 +288,7 @@ void Session::State::arrange_bodies() {
   keys_ = std::move(keys);
 }
 
-void Session::State::decide(const Body& body, const std::string& text) {
+void Session::State::note_decision(const Body& body, const std::string& text) {
   decisions_.push_back(body.plan.name + ": " + text);
 }
 

@@ -53,7 +53,7 @@ struct Session::State {
                         const std::vector<Light>& lights);
   HeldView* held_view();
   void update_bounced_places(const RenderInput& input);
-  void decide(const Body& body, const std::string& text);
+  void note_decision(const Body& body, const std::string& text);
 
   StageCache* cache_;
   Scene scene_;

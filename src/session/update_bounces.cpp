@@ -74,7 +74,7 @@ void Session::State::update_bounces(const PrecomputeInput& input, const std::vec
     bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
     add_bounced(bodies_[b], bounced[b]);
     hold_tree(bodies_[b], keys_[b], key_of(keys_[b]));
-    decide(bodies_[b], "light of other surfaces gathered");
+    note_decision(bodies_[b], "light of other surfaces gathered");
   }
 }
 

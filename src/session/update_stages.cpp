@@ -74,7 +74,7 @@ void Session::State::keep_samples(Body& body, BodyKeys& known) {
     known.origin.world = world_;
     known.origin.meshes = known.meshes;
   }
-  decide(body, fmt::format("{} samples kept", body.surface.samples.size()));
+  note_decision(body, fmt::format("{} samples kept", body.surface.samples.size()));
 }
 
 void Session::State::place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
@@ -108,8 +108,8 @@ void Session::State::place_anew(Body& body, BodyKeys& known, const PrecomputeInp
                     settings.samples.has_value(),
                     settings.sample_spacing};
   known.samples_key = key;
-  decide(body,
-         fmt::format("{} samples {}", body.surface.samples.size(), found ? "from the cache" : "placed anew"));
+  note_decision(body, fmt::format("{} samples {}", body.surface.samples.size(),
+                                  found ? "from the cache" : "placed anew"));
 }
 
 void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input,
@@ -122,7 +122,7 @@ void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeIn
   if (found) {
     body.surface = std::move(*found);
     ++work_.found;
-    decide(body, fmt::format("{} samples from the cache", body.surface.samples.size()));
+    note_decision(body, fmt::format("{} samples from the cache", body.surface.samples.size()));
   } else {
     CarriedSamples carried =
         carry_samples({*known.origin.world, known.origin.meshes, *world_, body.plan.meshes,
@@ -133,9 +133,10 @@ void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeIn
     work_.samples_removed += carried.removed;
     work_.samples_divided += carried.divided ? body.surface.samples.size() : 0;
     if (cache_ != nullptr) cache_->keep_samples(key, body.surface, body.plan.meshes);
-    decide(body, carried.rigid ? fmt::format("{} samples went along", body.surface.samples.size())
-                               : fmt::format("{} samples went along, {} added, {} removed",
-                                             body.surface.samples.size(), carried.added, carried.removed));
+    note_decision(body, carried.rigid
+                            ? fmt::format("{} samples went along", body.surface.samples.size())
+                            : fmt::format("{} samples went along, {} added, {} removed",
+                                          body.surface.samples.size(), carried.added, carried.removed));
   }
   known.meshes = body.plan.meshes;
   known.samples_key = key;
@@ -153,15 +154,15 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
     std::optional<LightTransfer> found;
     if (old != known.light_keys.end()) {
       transfers[l] = body.transfers[std::size_t(old - known.light_keys.begin())];
-      decide(body, fmt::format("light of {} kept", lights[l].name));
+      note_decision(body, fmt::format("light of {} kept", lights[l].name));
     } else if (cache_ != nullptr && (found = cache_->find_light(keys[l], body.surface.samples.size()))) {
       transfers[l] = std::move(*found);
       ++work_.found;
-      decide(body, fmt::format("light of {} from the cache", lights[l].name));
+      note_decision(body, fmt::format("light of {} from the cache", lights[l].name));
     } else {
       missing.push_back(lights[l]);
       places.push_back(l);
-      decide(body, fmt::format("light of {} traced", lights[l].name));
+      note_decision(body, fmt::format("light of {} traced", lights[l].name));
     }
   }
   if (!missing.empty()) {
@@ -223,7 +224,7 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
                                                       body.volume->error);
     known.volume_key = key.key();
   }
-  decide(body, passes > before ? "walked at random" : "random walks kept");
+  note_decision(body, passes > before ? "walked at random" : "random walks kept");
 }
 
 void Session::State::update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
@@ -238,21 +239,21 @@ void Session::State::update_diffusion(Body& body, BodyKeys& known, const Precomp
   const StageKey key = builder.add(cells_key)
                            .add(octree_key(known.samples_key, known.light_keys, lights, known.tint_key))
                            .key();
-  if (key == known.volume_key) return decide(body, "diffusion kept");
+  if (key == known.volume_key) return note_decision(body, "diffusion kept");
   known.volume_key = {};
   std::optional<VolumeExitance> found;
   if (cache_ != nullptr) found = cache_->find_volume(key, body.surface.samples.size());
   if (found) {
     body.volume = std::move(found);
     ++work_.found;
-    decide(body, "diffusion from the cache");
+    note_decision(body, "diffusion from the cache");
   } else {
     const bool at_hand = known.diffusion != nullptr && known.diffusion_key == cells_key;
     if (!at_hand) known.diffusion = std::make_shared<const VolumeDiffusion>(diffusion_of(input, body));
     known.diffusion_key = cells_key;
     body.volume = known.diffusion->exitance(lights, body.transfers, body.entering, input.monitor);
     if (cache_ != nullptr) cache_->keep_volume(key, *body.volume);
-    decide(body, at_hand ? "diffusion solved in the cells at hand" : "diffusion solved");
+    note_decision(body, at_hand ? "diffusion solved in the cells at hand" : "diffusion solved");
     if (!edits_) known.diffusion = nullptr;
   }
   body.volume_fit = std::make_shared<const CellFit>(body.surface.samples, *world_, body.volume->exitance,
@@ -276,14 +277,14 @@ void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<
   const StageKey key = octree_key(known.samples_key, known.light_keys, lights, known.tint_key);
   const bool may_hold_bounces = bounces_of(scene_) > 0 && known.tree_key != StageKey{};
   if (key == known.lights_key && (key == known.tree_key || may_hold_bounces))
-    return decide(body, "tree kept");
+    return note_decision(body, "tree kept");
   known.lights_key = {};
   body.irradiance = entered_irradiance(body, lights);
   known.tree_key = {};
   const std::uint64_t before = work_.nodes_built;
   hold_tree(body, known, key);
   known.lights_key = key;
-  decide(body, work_.nodes_built == before ? "tree from the cache" : "tree built");
+  note_decision(body, work_.nodes_built == before ? "tree from the cache" : "tree built");
 }
 
 /// The tree of the body's irradiance, which has that key.
@@ -351,8 +352,9 @@ void Session::State::update_exitance(Body& body, BodyKeys& known, const Precompu
     known.spare_cache = make_group_cache(input, body, most_places);
     if (!known.spare_cache) {
       if (scene_.settings.evaluator == EvaluatorKind::surface_cache)
-        decide(body, fmt::format("more than {} places of the surface: evaluated at the picture's points",
-                                 most_places));
+        note_decision(body,
+                      fmt::format("more than {} places of the surface: evaluated at the picture's points",
+                                  most_places));
       return;
     }
     work_.places_evaluated += known.spare_cache->places();
@@ -362,8 +364,9 @@ void Session::State::update_exitance(Body& body, BodyKeys& known, const Precompu
   if (!may_use(*known.spare_cache, input, body, most_places)) return;
   body.surface_cache = std::move(known.spare_cache);
   known.spare_cache.reset();
-  decide(body, at_hand ? "exitance of the surface kept"
-                       : fmt::format("exitance of the surface {}", found ? "from the cache" : "evaluated"));
+  note_decision(body,
+                at_hand ? "exitance of the surface kept"
+                        : fmt::format("exitance of the surface {}", found ? "from the cache" : "evaluated"));
 }
 
 }  // namespace opaline

@@ -45,7 +45,7 @@ std::uint64_t key_of(const Vec3d& place) {
 }  // namespace
 
 EvenPoints::EvenPoints(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
-                       double apart)
+                       double largest_piece)
     : rays_(rays) {
   struct Placed {
     std::uint64_t key;
@@ -65,7 +65,7 @@ EvenPoints::EvenPoints(const RayScene& rays, const World& world, std::span<const
       const auto& [i, j, k] = mesh.triangles[t];
       const Vec3d &a = mesh.positions[i], ab = mesh.positions[j] - a, ac = mesh.positions[k] - a;
       const double area = .5 * length(cross(ab, ac));
-      const auto count = std::uint32_t(std::clamp(std::ceil(std::sqrt(area / apart)), 1.0, 4096.0));
+      const auto count = std::uint32_t(std::clamp(std::ceil(std::sqrt(area / largest_piece)), 1.0, 4096.0));
       for (std::uint32_t p = 0; p < count * count; ++p) {
         const auto [u, v] = place_in_piece(count, p, 1 / 3.0, 1 / 3.0);
         placed.push_back({key_of((a + ab * u + ac * v - box.low) * scale),

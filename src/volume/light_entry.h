@@ -23,8 +23,10 @@ struct EvenPoint {
 /// shares of the area are regularly spread in space, too.
 class EvenPoints {
  public:
-  /// apart: no piece of a triangle that the curve goes through at once is larger than this area
-  EvenPoints(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes, double apart);
+  /// largest_piece: area that pieces of triangles, through each of which the curve goes at once, stay below; but for
+  /// triangles of more than 4096^2 such pieces
+  EvenPoints(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
+             double largest_piece);
 
   double area() const { return ends_.empty() ? 0 : ends_.back(); }
 

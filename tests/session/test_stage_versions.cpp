@@ -9,8 +9,8 @@ namespace {
 
 using namespace test;
 
-// Claim: the stages whose results are kept compute what they computed when their version in
-// src/cache/stage_keys.cpp was last raised. Source: this box, in which no function of a mathematical library
+// Claim: samples, light and trees, which the cache keeps, are what they were when their versions in
+// src/session/stage_keys.cpp were last raised. Source: this box, in which no function of a mathematical library
 // takes part. If it fails and the change was meant: raise the versions of that stage and put the new value
 // here. Fails if: any constant of a stage is changed.
 TEST(StageVersions, ComputeWhatTheyDid) {

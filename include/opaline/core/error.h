@@ -10,7 +10,7 @@ namespace opaline {
 /// What went wrong decides the program's exit code: bad_input 2, run_failed 3 (I/O, memory), interrupted 130.
 enum class ErrorKind { bad_input = 2, run_failed = 3, interrupted = 130 };
 
-/// Thrown by parsing and I/O, caught in `main` alone. `what()` is one line:
+/// Thrown by parsing and I/O; caught where a place can be added or the run goes on, else in `main`. `what()` is one line:
 /// "file:line:column: what (expected ..., got ...)", leaving out the parts that are empty or zero.
 class Error : public std::exception {
  public:

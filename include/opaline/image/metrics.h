@@ -33,7 +33,7 @@ std::vector<std::uint8_t> object_pixels(const Image& image);
 struct NonFinite {
   std::size_t nan = 0, infinite = 0;  ///< values, over all channels and the whole picture
 };
-/// How many values of a layer are infinite or not a number, and the first of them.
+/// How many values of a layer are infinite or not a number.
 NonFinite count_non_finite(const Layer& layer);
 
 /// (a - b) / max(|b|, floor), a plane a channel. NaN where nothing is compared: no object there, or a or b is
@@ -59,7 +59,7 @@ struct ErrorStatistics {
   double largest = 0;      ///< of |e|
   double signed_mean = 0;  ///< of e
 };
-/// Mean, root mean square and percentiles of one error a pixel, in any order.
+/// Of one error a pixel, in any order.
 ErrorStatistics error_statistics(std::span<const double> errors);
 
 /// The same over all channels as one set of values.
@@ -85,9 +85,9 @@ struct HalvesComparison {
 
 /// Error of h against what two references with independent noise, d1 and d2, have for their mean d: the mean
 /// of (h - d1)(h - d2) / (d^2 + (.01 m)^2) over the object's pixels, m the largest d of the channel there.
-/// The product's expectation is the squared error without the noise. Of the noise n (half_noise) the quotient
-/// keeps a share of the order of n^2 of what it measures, and 1.5 n^4 (n of Gaussian shape): at n = 5 % an
-/// error of .3 %.
+/// The product's expectation is the squared error without the noise. Noise n (half_noise) biases the
+/// quotient by a relative part of the order of n^2, and by 1.5 n^4 (n of Gaussian shape): at n = 5 % the latter alone
+/// reads as an error of .3 %.
 /// in    three layers of the same size and number of channels, linear; object: a flag a pixel
 /// out   where all d are 0, m and mean(d) are those of |h|: large, not infinite
 HalvesComparison compare_with_halves(const Layer& h, const Layer& d1, const Layer& d2,

@@ -30,8 +30,8 @@ struct LightTransfer {
   /// the mean over its Voronoi cell (an area light then has twice the rays, and relative_error does not know
   /// of them).
   std::vector<float> weights;
-  /// RMS over the samples of the estimated standard error, over the mean; 0 for point and
-  /// directional lights, and for a single light sample, which cannot tell.
+  /// RMS over the samples of the estimated standard error, over the mean; 0 for delta lights (is_delta), and for a
+  /// single light sample, which cannot tell.
   double relative_error = 0;
   /// Relative change of this light's total (area x weight, summed over the samples) that came from replacing
   /// weights beside shadow edges by means over cells. With few rays a sample, neighbours also differ by

@@ -27,7 +27,7 @@ Rgb emission(const Light& light);
 /// The light in another colour.
 Light with_emission(const Light& light, const Rgb& emission);
 
-/// True where one sample is exact (point and directional lights).
+/// True where one sample is exact: point and spot lights, and directional ones without an angle.
 bool is_delta(const Light& light);
 
 /// True for the channels of one picture: their samples have the same directions.
