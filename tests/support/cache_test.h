@@ -32,6 +32,7 @@ inline const World& some_world() {
     for (std::uint32_t i = 0; i < kTriangles + 2; ++i)
       row.positions.push_back({.5 * i, double(i % 2), .01 * i});
     for (std::uint32_t i = 0; i < kTriangles; ++i) row.triangles.push_back({i, i + 1 + i % 2, i + 2 - i % 2});
+    made.measures.assign(kWorldMeshes, measures_of(row));
     made.meshes.assign(kWorldMeshes, row);
     made.diagonal = .5 * kTriangles;
     return made;
