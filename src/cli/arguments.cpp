@@ -260,8 +260,8 @@ RenderArguments checked(RenderArguments render, const Options& options) {
   check_layers_have_a_file(render, options.layers);
   if (!options.target_error.empty()) render.target_error = share_of(options.target_error);
   render.time_budget = options.time_budget;
-  render.entry_samples = options.entry_samples.has_value();
-  render.until_error = !options.until_error.empty();
+  render.gives_entry_samples = options.entry_samples.has_value();
+  render.gives_until_error = !options.until_error.empty();
   check_quality(render);
   return render;
 }

@@ -37,7 +37,7 @@ struct RenderArguments {
   std::optional<double> target_error;  ///< settings are chosen for it; relative, > 0
   std::optional<double> time_budget;   ///< settings are chosen for it; CPU of the whole process, s, > 0
   bool verify = false;                 ///< measure the error of the picture
-  bool entry_samples = false, until_error = false;  ///< whether these options were given, not --set
+  bool gives_entry_samples = false, gives_until_error = false;  ///< the options, not --set
   Log log;
 };
 

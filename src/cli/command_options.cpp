@@ -16,11 +16,9 @@
 namespace opaline {
 namespace {
 
-void add_frames_option(CLI::App& app, Options& options) {
-  app.add_option(
-         "--frames", options.frames,
-         "frames of a range, e.g. 1-24, 1-24x2 or 1,5,7-9; ## in the names of outputs and meshes is their "
-         "number; frames that are there already, whole and of this scene, are left alone")
+void add_frames_option(CLI::App& app, Options& options, const char* meaning) {
+  app.add_option("--frames", options.frames,
+                 fmt::format("frames of a range, e.g. 1-24, 1-24x2 or 1,5,7-9; {}", meaning))
       ->check(CLI::Validator(
           [](std::string& text) {
             return parse_frames(text) ? std::string()
@@ -137,7 +135,10 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
                  "show the same in the viewer tev, tile by tile (default port 14158)")
       ->check(server_address_check())
       ->type_name("HOST:PORT");
-  add_frames_option(app, options);
+  add_frames_option(
+      app, options,
+      "## in the names of outputs and meshes is their number; frames that are there already, whole "
+      "and of this scene, are left alone");
   add_size(app, "--cache-size", render.cache_bytes,
            "the least recently used beyond it go, e.g. 20GB (default 8GB)");
   add_threads(app, render.threads, "at most this many; default: one for each core");
@@ -174,7 +175,9 @@ void add_view_options(CLI::App& app, ViewArguments& view, Options& options) {
          "--token", view.options.token,
          "word in the URL without which nothing is served, of 16 to 64 characters; default: a random one")
       ->type_name("WORD");
-  add_frames_option(app, options);
+  add_frames_option(
+      app, options,
+      "## in the names of meshes is their number; default: from the scene's first key to its last");
   add_threads(app, view.threads, "at most this many; default: one for each core");
   app.add_flag("--quiet", view.log.quiet, "print the URL and errors only");
   add_picture_options(app, options);
@@ -185,7 +188,7 @@ void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Opti
   add_common_options(app, precompute.scene, options);
   app.add_option("--cache", precompute.cache, "the folder to fill")->required()->type_name("FOLDER");
   add_size(app, "--cache-size", precompute.cache_bytes, "the least recently used beyond it go (default 8GB)");
-  add_frames_option(app, options);
+  add_frames_option(app, options, "## in the names of meshes is their number");
   add_threads(app, precompute.threads, "at most this many; default: one for each core");
   app.add_flag("--quiet", precompute.log.quiet, "print warnings and errors only");
 }

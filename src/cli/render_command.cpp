@@ -192,9 +192,9 @@ void check_method_options(const RenderArguments& arguments, Method method) {
     return Error(ErrorKind::bad_input, {}, 0, 0, std::string(option) + " has no effect with this method",
                  std::string("--method ") + methods, std::string(name_of(method)));
   };
-  if (arguments.entry_samples) throw no_use("--entry-samples", "direct");
+  if (arguments.gives_entry_samples) throw no_use("--entry-samples", "direct");
   if (method == Method::volume) return;
-  if (arguments.until_error) throw no_use("--until-error", "direct or volume");
+  if (arguments.gives_until_error) throw no_use("--until-error", "direct or volume");
   if (!arguments.resume.empty())
     throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct or volume");
 }

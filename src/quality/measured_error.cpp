@@ -20,8 +20,9 @@ constexpr double kNoise = 0.7;
 
 /// As many pixels as it takes to see the points wanted.
 Scene sparse_scene(const Session& session, Monitor* monitor) {
-  const Image counted =
-      probe_picture(session, probe_scene(session.scene(), kCountingPixels), 0, monitor).image;
+  const Image counted = probe_picture(session, probe_scene(session.scene(), kCountingPixels), 0, monitor,
+                                      session.bounced_places())
+                            .image;
   const std::vector<std::uint8_t> lit = translucent_pixels(counted);
   const double share = double(std::ranges::count(lit, 1)) / double(lit.size());
   return probe_scene(session.scene(), share > 0 ? std::min(kMostPixels, kPoints / share) : 1);
@@ -66,7 +67,7 @@ MeasuredError worst_channel(const Image& picture, const Image& reference, const 
 
 MeasuredError measure_error(const Session& session, double expected, Monitor* monitor) {
   Scene scene = sparse_scene(session, monitor);
-  const Image picture = probe_picture(session, scene, 0, monitor).image;
+  const Image picture = probe_picture(session, scene, 0, monitor, session.bounced_places()).image;
   scene.settings.method = Method::direct;
   scene.settings.until_error.reset();
   DirectState state;

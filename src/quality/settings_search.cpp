@@ -33,6 +33,10 @@ void SettingsSearch::begin(double tolerance) {
 
 void SettingsSearch::place(double samples) {
   scene.settings.sample_spacing = std::sqrt(area / samples);
+  prepare();
+}
+
+void SettingsSearch::prepare() {
   session.edit(scene);
   session.prepare(monitor);
   if (bounces_of(scene) == 0 || bounced != nullptr) return;

@@ -26,7 +26,10 @@ struct SettingsSearch {
   /// area and the most samples of all groups.
   void begin(double tolerance);
 
-  /// Samples of all groups together, prepared.
+  /// Takes the scene as it is now, and prepares it.
+  void prepare();
+
+  /// The same with so many samples of all groups together.
   void place(double samples);
 
   /// A probe of the scene as it is now; no two share a random number of a shadow ray.

@@ -37,27 +37,14 @@ struct Trade {
     return seconds;
   }
 
-  void prepare();
   void measure(TradePoint& point);
   TradePoint lambert();
 };
 
-/// The search's scene; light between things is gathered once, as each picture would.
-void Trade::prepare() {
-  Session& session = search.session;
-  session.edit(search.scene);
-  session.prepare(search.monitor);
-  if (bounces_of(search.scene) == 0 || search.bounced != nullptr) return;
-  const Stopwatch watch;
-  search.bounced =
-      bounced_places({search.scene, session.world(), session.rays(), session.bodies(), search.monitor});
-  search.bounced_seconds = watch.cost({}).cpu_seconds;
-}
-
 void Trade::measure(TradePoint& point) {
   search.scene = given;
   if (!point.is_given) set_point(search.scene.settings, point);
-  prepare();
+  search.prepare();
   RenderResult result = probe_picture(search.session, probe_scene(search.scene, kProbePixels),
                                       ++search.pictures, search.monitor, search.bounced);
   point.all_samples = search.planned_samples();
@@ -72,7 +59,7 @@ TradePoint Trade::lambert() {
   search.scene.settings.method = Method::lambert;
   search.bounced.reset();
   search.bounced_seconds = 0;
-  prepare();
+  search.prepare();
   const Image picture = probe_picture(search.session, probe_scene(search.scene, kProbePixels),
                                       ++search.pictures, search.monitor, search.bounced)
                             .image;

@@ -147,7 +147,7 @@ IrradianceLattice::Cell IrradianceLattice::make_cell(const Key& key,
   here.keys = crossings.keys;
   here.light_samples = std::max(1, lighting.light_samples / kFewerRays);
   here.variance = {};
-  cell.entered = combine_lights(transfers_at(here), here);
+  cell.entered = irradiance_at(here);
   return cell;
 }
 

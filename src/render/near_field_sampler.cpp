@@ -148,7 +148,7 @@ void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_
   around.keys = places.keys;
   around.light_samples = std::max(1, lighting.light_samples / kFewerRays);
   around.variance = {};
-  const std::vector<RgbF> entered = combine_lights(transfers_at(around), around);
+  const std::vector<RgbF> entered = irradiance_at(around);
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
     const auto [begin, end] = std::equal_range(places.sets.begin(), places.sets.end(), std::uint32_t(set));
     const std::size_t skip = std::size_t(begin - places.sets.begin()), count = std::size_t(end - begin);

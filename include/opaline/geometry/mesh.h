@@ -44,10 +44,10 @@ double enclosed_volume(const Mesh& mesh);
 /// Integrals over a mesh's surface, in powers of the mesh's own unit.
 struct MeshMeasures {
   double area = 0, volume = 0;  ///< surface_area, enclosed_volume
-  std::array<double, 6>
-      normal_products{};  ///< of n n^T, n the unit normal: xx yy zz xy yz zx; its trace is the area
-  double needle_area =
-      0;  ///< of triangles the square of whose longest side is more than 32 times twice their area
+  /// Of n n^T, n the unit normal: xx yy zz xy yz zx. The first three add up to the area.
+  std::array<double, 6> normal_products{};
+  /// Of needles: triangles the square of whose longest side is more than 32 times twice their area.
+  double needle_area = 0;
 };
 MeshMeasures measures_of(const Mesh& mesh);
 

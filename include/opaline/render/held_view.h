@@ -34,7 +34,7 @@ struct HeldView {
     std::vector<Surface> surfaces;     ///< by kind; empty: not known
   };
   std::vector<std::vector<Batch>> tiles;  ///< one batch a sample of the pixels
-  bool has_room = false;                  ///< for points
+  bool has_room = false;                  ///< for the points
 
   /// Lets go of all that depends on which surfaces are of which kind.
   void forget_surfaces() {

@@ -67,10 +67,10 @@ struct WalkStore {
 /// Random walks (Method::volume) are kept by light, where lights are few: neither the camera nor colours walk again,
 /// and other edits walk for the lights they concern.
 ///
-/// A picture has the same bits as that of a new session, with two exceptions: random walks that were made for a smaller error (walks are not taken back), and scenes whose samples
-/// were carried along or stayed denser than needed. Such samples were
-/// placed on the last surface that was sampled anew. The picture depends on that surface and on the scene as
-/// it is now, not on the edits in between.
+/// A picture has the same bits as that of a new session, with two exceptions: random walks that were made for a
+/// smaller error (walks are not taken back), and scenes whose samples were carried along or stayed denser than needed.
+/// Such samples were placed on the last surface that was sampled anew. The picture depends on that surface and on the
+/// scene as it is now, not on the edits in between.
 class Session {
  public:
   /// cache: where to look for what is not at hand, and to keep it; null: nowhere. Outlives the session.
