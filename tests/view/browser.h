@@ -26,6 +26,7 @@ class Browser {
     pid_ = ::fork();
     if (pid_ < 0) throw std::runtime_error("no child process");
     if (pid_ == 0) {
+      ::setpgid(0, 0);  // Debian's starter waits for the browser: both are to end
       const int log = ::open(folder_.file("log").c_str(), O_WRONLY | O_CREAT, 0600);
       ::dup2(log, STDOUT_FILENO);
       ::dup2(log, STDERR_FILENO);
@@ -34,10 +35,11 @@ class Browser {
                "--remote-debugging-port=0", data.c_str(), "about:blank", nullptr);
       ::_exit(127);
     }
+    ::setpgid(pid_, pid_);
     connect();
   }
   ~Browser() {
-    ::kill(pid_, SIGKILL);
+    ::kill(-pid_, SIGKILL);
     ::waitpid(pid_, nullptr, 0);
   }
   Browser(const Browser&) = delete;

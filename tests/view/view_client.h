@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "../core/scratch_folder.h"
+#include "frame_decoder.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 #include "view/view_frame.h"
@@ -61,8 +62,9 @@ struct ViewFolder : ScratchFolder {
 /// Serves a scene on a thread, as `opaline view` does.
 class RunningView {
  public:
-  explicit RunningView(const std::string& scene, std::uint16_t port = 0, std::vector<int> frames = {})
-      : server_(SceneEdits(scene, {}, std::move(frames)), {"127.0.0.1", port, kToken}, hooks()),
+  explicit RunningView(const std::string& scene, std::uint16_t port = 0, std::vector<int> frames = {},
+                       const std::string& address = "127.0.0.1")
+      : server_(SceneEdits(scene, {}, std::move(frames)), {address, port, kToken}, hooks()),
         thread_([this] { server_.run(stop_); }) {}
   ~RunningView() { stop_.cancelled = true; }
   RunningView(const RunningView&) = delete;
@@ -110,41 +112,21 @@ class RunningView {
   std::jthread thread_;
 };
 
-struct Frame {
-  std::uint32_t number = 0, revision = 0, width = 0, height = 0, layer_channels = 0;
-  PictureStep step = PictureStep::moving;
-  std::vector<std::uint16_t> colours;  ///< bits of halves, R G B A a pixel
-  std::vector<float> layer;
-};
-
-inline Frame frame_of(const std::string& bytes) {
-  std::uint32_t words[8];
-  Frame frame;
-  EXPECT_GE(bytes.size(), sizeof words);
-  std::memcpy(words, bytes.data(), sizeof words);
-  EXPECT_EQ(words[0], kFrameMark);
-  frame = {words[1], words[2], words[4], words[5], words[6], PictureStep(words[3]), {}, {}};
-  const std::size_t pixels = std::size_t(frame.width) * frame.height;
-  frame.colours.resize(pixels * 4);
-  frame.layer.resize(pixels * frame.layer_channels);
-  EXPECT_EQ(bytes.size(), sizeof words + frame.colours.size() * 2 + frame.layer.size() * 4);
-  std::memcpy(frame.colours.data(), bytes.data() + sizeof words, frame.colours.size() * 2);
-  std::memcpy(frame.layer.data(), bytes.data() + sizeof words + frame.colours.size() * 2,
-              frame.layer.size() * 4);
-  return frame;
-}
-
 /// A page: keeps the newest text of each kind and the newest frame.
 class ViewClient {
  public:
-  explicit ViewClient(const RunningView& view, const std::string& origin = "")
+  /// receive_buffer: bytes that wait unread before the server notices; 0: as the machine has it
+  explicit ViewClient(const RunningView& view, const std::string& origin = "", int receive_buffer = 0)
       : ViewClient(view.endpoint(), view.host(), "/" + std::string(kToken) + "/socket",
-                   origin.empty() ? "http://" + view.host() : origin) {}
+                   origin.empty() ? "http://" + view.host() : origin, receive_buffer) {}
 
   ViewClient(const Tcp::endpoint& endpoint, const std::string& host, const std::string& path,
-             const std::string& origin)
+             const std::string& origin, int receive_buffer = 0)
       : socket_(io_) {
     socket_.read_message_max(0);
+    Tcp::socket& line = beast::get_lowest_layer(socket_).socket();
+    line.open(endpoint.protocol());
+    if (receive_buffer > 0) line.set_option(asio::socket_base::receive_buffer_size(receive_buffer));
     beast::get_lowest_layer(socket_).connect(endpoint);
     socket_.set_option(beast::websocket::stream_base::decorator(
         [origin](beast::websocket::request_type& request) { request.set(http::field::origin, origin); }));
@@ -193,12 +175,16 @@ class ViewClient {
       texts[text.at("is")] = text;
       newest = text.at("is");
     } else {
-      const Frame news = frame_of(bytes);
-      const bool is_reference = news.step == PictureStep::reference;
-      (is_reference ? reference : frame) = news;
+      newest = "part of a frame";
+      frame_bytes += bytes.size();
+      const std::optional<Frame> news = decoder_.take(bytes);
+      if (!news) return true;
+      const bool is_reference = news->step == PictureStep::reference;
+      (is_reference ? reference : frame) = *news;
       ++frames;
+      jpegs += news->is_jpeg ? 1 : 0;
       newest = is_reference ? "reference frame" : "frame";
-      if (answers_frames) send({{"do", "shown"}, {"frame", news.number}});
+      if (answers_frames) send({{"do", "shown"}, {"frame", news->number}});
     }
     return true;
   }
@@ -227,7 +213,7 @@ class ViewClient {
   std::map<std::string, Json> texts;
   std::string newest;
   Frame frame, reference;
-  std::size_t frames = 0;
+  std::size_t frames = 0, jpegs = 0, frame_bytes = 0;
   bool answers_frames = true;
   unsigned close_code = 0;
 
@@ -238,6 +224,7 @@ class ViewClient {
   beast::websocket::stream<beast::tcp_stream> socket_;
   beast::flat_buffer in_;
   std::optional<beast::error_code> result_;
+  FrameDecoder decoder_;
   bool is_reading_ = false;
 };
 

@@ -64,8 +64,9 @@ struct LongViewPage : ::testing::Test {
   /// Expects what the canvas shows to be the picture, as the view has it.
   void expect_shown(const std::vector<std::uint16_t>& picture, ViewTransform view_of = ViewTransform::soft) {
     const Json shown = browser.run(tab,
-                                   "[...document.getElementById('picture').getContext('2d')"
-                                   ".getImageData(0, 0, 48, 32).data]");
+                                   "(() => { const picture = document.getElementById('picture'); return "
+                                   "[...picture.getContext('2d').getImageData(0, 0, picture.width, "
+                                   "picture.height).data]; })()");
     ASSERT_EQ(shown.size(), picture.size());
     double worst = 0;
     for (std::size_t i = 0; i < picture.size(); i += 4) {

@@ -2,9 +2,10 @@
 // The page: what the server tells goes to the picture, the knobs and the lines below; what a person does goes back.
 import {cameraOf, cameraValues, dolly, orbit, pan, turnedLight} from "./camera.js";
 import {Connection, kPause, newStroke, pausedStroke} from "./connection.js";
+import {FrameReader} from "./frames.js";
 import {Knobs} from "./knobs.js";
 import {Overlay} from "./overlay.js";
-import {draw, parseFrame, valuesAt} from "./picture.js";
+import {draw, valuesAt} from "./picture.js";
 import {Trade} from "./trade.js";
 
 const one = (id) => document.getElementById(id);
@@ -296,18 +297,18 @@ const takes = {
   told: (message) => tell(message.text, message.good),
 };
 
+const reader = new FrameReader((news) => {
+  if (news.step === "reference") {
+    if (!waitingReference) requestAnimationFrame(showReference);
+    waitingReference = news;
+  } else {
+    if (!waiting) requestAnimationFrame(showFrame);
+    waiting = news;
+  }
+});
 const connection = new Connection({
   text: (message) => takes[message.is]?.(message),
-  frame: (buffer) => {
-    const news = parseFrame(buffer);
-    if (news.step === "reference") {
-      if (!waitingReference) requestAnimationFrame(showReference);
-      waitingReference = news;
-    } else {
-      if (!waiting) requestAnimationFrame(showFrame);
-      waiting = news;
-    }
-  },
+  frame: (buffer) => reader.receive(buffer),
   lost: () => { one("lost").hidden = false; },
   found: () => {
     one("lost").hidden = true;
