@@ -95,7 +95,8 @@ struct ViewArguments {
   std::vector<std::string> overrides;
   std::vector<int> frames;  ///< empty: those that the scene has keys for
   ViewOptions options;
-  int threads = 0;  ///< 0: one for each core
+  bool opens_browser = true;  ///< where there is a desktop
+  int threads = 0;            ///< 0: one for each core
   Log log;
 };
 

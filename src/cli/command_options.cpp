@@ -179,6 +179,7 @@ void add_view_options(CLI::App& app, ViewArguments& view, Options& options) {
       app, options,
       "## in the names of meshes is their number; default: from the scene's first key to its last");
   add_threads(app, view.threads, "at most this many; default: one for each core");
+  app.add_flag("!--no-open", view.opens_browser, "do not open the URL in the desktop's browser");
   app.add_flag("--quiet", view.log.quiet, "print the URL and errors only");
   add_picture_options(app, options);
   app.footer(kViewNotes);

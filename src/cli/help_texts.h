@@ -73,8 +73,8 @@ Examples:
 Exit codes: 0 done, 2 the asset is broken, 3 the scene file cannot be written.)";
 
 inline constexpr const char* kViewNotes =
-    R"(Prints a URL; open it in a browser on this machine, in as many windows as you like: all see and edit the same.
-Nothing is installed or loaded from elsewhere. Every change shows a coarse picture at once, then a sharper one, and
+    R"(Prints a URL, and opens it in the browser where there is a desktop (xdg-open). Open it on this machine in as many windows
+as you like: all see and edit the same. Nothing is installed or loaded from elsewhere. Every change shows a coarse picture at once, then a sharper one, and
 then the final one, with the bits of opaline render; a newer change cancels it. Ctrl-C ends the view.
 
 The scene file stays as it is: "save" writes another one beside it, "render" a picture, by names of your choice that

@@ -20,10 +20,6 @@ void check_quality(const RenderArguments& arguments);
 /// classic evaluator
 KnownErrors choose_settings(StageRunner& stages, const RenderArguments& arguments, Session& session);
 
-/// With --time-budget: overrides that stand for what was chosen.
-/// in    entry_samples: of a direct picture
-std::vector<std::string> chosen_overrides(const Session& session, std::size_t entry_samples);
-
 /// --target-error for all frames of a range: chosen by the reference frame, whichever frames are asked for,
 /// and written down as overrides in its place. Nothing is changed where that frame shows nothing translucent.
 /// error as choose_settings; Error{bad_input}: several groups beside settings.samples

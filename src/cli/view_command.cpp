@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <optional>
+#include <thread>
 
 #include "benchmark/child_process.h"
 #include "cli/commands.h"
@@ -24,6 +30,21 @@ void render_file(const ViewArguments& arguments, const std::vector<std::string>&
   if (arguments.threads > 0) words.insert(words.end(), {"--threads", std::to_string(arguments.threads)});
   const OwnChild child = run_own_child(words, monitor);
   if (!child.failure.empty()) throw run_failed({}, child.failure);
+}
+
+/// In its browser, where there is a desktop. Nothing is said where that fails: the URL is printed.
+void open_on_desktop(std::string url) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  posix_spawn_file_actions_t silent;
+  ::posix_spawn_file_actions_init(&silent);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    ::posix_spawn_file_actions_addopen(&silent, stream, "/dev/null", O_RDWR, 0);
+  std::string word = "xdg-open";
+  char* const words[] = {word.data(), url.data(), nullptr};
+  pid_t opener = 0;
+  if (::posix_spawnp(&opener, word.c_str(), &silent, nullptr, words, environ) == 0)
+    std::thread([opener] { ::waitpid(opener, nullptr, 0); }).detach();
+  ::posix_spawn_file_actions_destroy(&silent);
 }
 
 }  // namespace
@@ -51,6 +72,7 @@ void view_command(const ViewArguments& arguments) {
                     hooks);
   print_event(arguments.log, "view", {{"url", server.url()}});
   if (arguments.log.format == LogFormat::text) write_line(stdout, "view        " + server.url());
+  if (arguments.opens_browser) open_on_desktop(server.url());
   server.run(monitor);
 }
 

@@ -78,6 +78,13 @@ WorkBehind read_work(const MessageReader& reader) {
   return message;
 }
 
+ChooseSettings read_choice(const MessageReader& reader) {
+  const Node& node = reader.need("error", Node::Kind::number, "a number");
+  if (!(node.number > 0 && node.number < 1))
+    reader.fail(node, "is out of range", "a share above 0 and below 1");
+  return {node.number};
+}
+
 struct Kind {
   std::string_view name;
   std::vector<std::string_view> keys;
@@ -96,6 +103,7 @@ const std::vector<Kind>& kinds() {
       {"render", {"do", "name"}, [](Reader r) -> PageMessage { return RenderFile{r.text("name")}; }},
       {"layer", {"do", "name"}, [](Reader r) -> PageMessage { return ChooseLayer{r.text("name")}; }},
       {"behind", {"do", "trade", "reference"}, [](Reader r) -> PageMessage { return read_work(r); }},
+      {"choose", {"do", "error"}, [](Reader r) -> PageMessage { return read_choice(r); }},
       {"frame",
        {"do", "frame"},
        [](Reader r) -> PageMessage {

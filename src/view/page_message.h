@@ -42,6 +42,10 @@ struct WorkBehind {
   bool trade = false;
   std::string reference;  ///< "direct", "volume" or none
 };
+/// Settings for an error, relative, > 0 and < 1.
+struct ChooseSettings {
+  double error = 0;
+};
 /// The frame of this number is on the screen.
 struct FrameShown {
   std::uint32_t frame = 0;
@@ -52,13 +56,13 @@ struct GoToFrame {
 };
 
 using PageMessage = std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer,
-                                 WorkBehind, FrameShown, GoToFrame>;
+                                 WorkBehind, ChooseSettings, FrameShown, GoToFrame>;
 
 /// in    text: {"do": "set", "values": {"media.marble.eta": 1.4}, "stroke": 7}, {"do": "undo"}, {"do": "redo"},
 ///       {"do": "reset"}, {"do": "restore", "edits": ["media.marble.eta=1.4"]}, {"do": "save", "name": "a.json"},
 ///       {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
-///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "frame", "frame": 7} or
-///       {"do": "shown", "frame": 3}
+///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "choose", "error": 0.01},
+///       {"do": "frame", "frame": 7} or {"do": "shown", "frame": 3}
 /// error Error{bad_input}: no such message, within the limits of json_tree.h
 PageMessage parse_page_message(std::string_view text);
 

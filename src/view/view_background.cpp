@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "view/view_background.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -121,9 +123,23 @@ void ViewBackground::run() {
 void ViewBackground::work(const Job& job, const BackgroundWork& wanted) {
   if (wanted == BackgroundWork{}) return;
   if (session_ == nullptr) session_ = std::make_unique<Session>();
+  if (wanted.target_error) return choose(job, *wanted.target_error);  // the rest when its picture is there
   if (wanted.trade) find_trade(job);
   if (wanted.reference == Method::direct) refine_direct(job);
   if (wanted.reference == Method::volume) refine_volume(job);
+}
+
+void ViewBackground::choose(const Job& job, double target_error) {
+  const Settings& settings = job.scene.settings;
+  if (settings.method != Method::hierarchical || settings.evaluator == EvaluatorKind::classic)
+    throw Error(ErrorKind::bad_input, {}, 0, 0,
+                "settings for an error are how light under the surface is summed",
+                "the method hierarchical, and an evaluator other than classic");
+  ChosenSettings chosen{job.shown->revision, reach_error(*session_, job.scene, target_error, &monitor_), {}};
+  chosen.overrides = chosen_overrides(*session_);
+  chosen.overrides.push_back(
+      fmt::format("settings.light_samples={}", session_->scene().settings.light_samples));
+  events_.chosen(chosen);
 }
 
 // ---- the trade ----------------------------------------------------------------------------------------------

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is worked out behind a final picture while nobody changes anything: the trade of error against time, and a
-// reference that goes on refining.
+// What is worked out behind a final picture while nobody changes anything: settings for an error, the trade of error
+// against time, and a reference that goes on refining.
 #pragma once
 
 #include <condition_variable>
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "opaline/image/metrics.h"
+#include "opaline/quality/target_error.h"
 #include "opaline/quality/trade.h"
 #include "opaline/render/direct.h"
 #include "view/view_renderer.h"
@@ -23,7 +24,8 @@ namespace opaline {
 /// What is asked for; nothing at first, and then nothing is done.
 struct BackgroundWork {
   bool trade = false;
-  std::optional<Method> reference;  ///< direct or volume
+  std::optional<Method> reference;     ///< direct or volume
+  std::optional<double> target_error;  ///< settings are chosen for it; relative
   friend bool operator==(const BackgroundWork&, const BackgroundWork&) = default;
 };
 
@@ -46,10 +48,18 @@ struct TradeState {
   bool is_whole = false;
 };
 
+/// Settings for an error.
+struct ChosenSettings {
+  std::uint32_t revision = 0;  ///< of the scene that they are for
+  TargetError outcome;
+  std::vector<std::string> overrides;  ///< as `--set` takes them
+};
+
 /// Called on the background's thread.
 struct BackgroundEvents {
   std::function<void(const TradeState& trade)> trade;
   std::function<void(std::shared_ptr<const ViewPicture> picture, const ReferenceState& state)> reference;
+  std::function<void(const ChosenSettings& chosen)> chosen;
   std::function<void(std::uint32_t revision, const std::string& why)> failed;
 };
 
@@ -80,6 +90,7 @@ class ViewBackground {
 
   void run();
   void work(const Job& job, const BackgroundWork& wanted);
+  void choose(const Job& job, double target_error);
   void find_trade(const Job& job);
   bool keeps_trade(const Job& job) const;
   void tell_trade(const Job& job, bool is_whole);

@@ -40,4 +40,7 @@ std::string work_text(const Monitor& monitor);
 std::string failed_text(std::uint32_t revision, const std::string& why);
 std::string told_text(bool good, const std::string& text);
 
+/// "told": what was chosen for an error.
+std::string told_choice(double target, const TargetError& chosen);
+
 }  // namespace opaline

@@ -108,6 +108,7 @@ struct ViewServer::State {
   ViewEvents renderer_events();
   BackgroundEvents background_events();
   void work_behind(const WorkBehind& wanted);
+  void take(const ChosenSettings& chosen);
   void tell(PageText kind, std::string text);
   void tick(const Monitor& until_cancelled);
 
@@ -131,6 +132,7 @@ struct ViewServer::State {
   std::jthread file_thread;
   std::unique_ptr<ViewRenderer> renderer;
   std::unique_ptr<ViewBackground> background;
+  BackgroundWork asked;  ///< of it
 };
 
 ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, ViewHooks view_hooks)
@@ -257,18 +259,39 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
     if (reference != nullptr) page.send(reference);
   }
   if (const auto* wanted = std::get_if<WorkBehind>(&message)) work_behind(*wanted);
+  if (const auto* choice = std::get_if<ChooseSettings>(&message)) {
+    asked.target_error = choice->error;
+    background->ask(asked);
+    page.answer(told_text(true, fmt::format("choosing settings for {:.3g} %", 100 * choice->error)));
+  }
   if (const auto* frame = std::get_if<GoToFrame>(&message)) edits.go_to_frame(frame->frame);
   if (const auto* shown = std::get_if<FrameShown>(&message)) page.shown(shown->frame);
   if (edits.revision() != before) after_edit();
 }
 
 void ViewServer::State::work_behind(const WorkBehind& wanted) {
-  BackgroundWork work{wanted.trade, {}};
+  asked = {wanted.trade, {}, {}};
   if (!wanted.reference.empty())
-    work.reference = wanted.reference == name_of(Method::volume) ? Method::volume : Method::direct;
-  background->ask(work);
-  if (!work.reference) reference.reset();
+    asked.reference = wanted.reference == name_of(Method::volume) ? Method::volume : Method::direct;
+  background->ask(asked);
+  if (!asked.reference) reference.reset();
   tell(PageText::behind, behind_text(wanted));
+}
+
+/// What was chosen is an edit as any other, unless the scene is another by now: then it is chosen again.
+void ViewServer::State::take(const ChosenSettings& chosen) {
+  if (chosen.revision != edits.revision() || !asked.target_error) return;
+  const double target = *std::exchange(asked.target_error, {});
+  background->ask(asked);
+  SetValues values;
+  for (const std::string& text : chosen.overrides) {
+    const std::size_t end_of_path = text.find('=');
+    values.values.push_back({text.substr(0, end_of_path), text.substr(end_of_path + 1)});
+  }
+  if (chosen.outcome.sees_translucent) edits.set(values);
+  const std::string answer = told_choice(target, chosen.outcome);
+  for (PageConnection* page : pages) page->answer(answer);
+  if (edits.revision() != chosen.revision) after_edit();
 }
 
 void ViewServer::State::after_edit() {
@@ -349,8 +372,13 @@ BackgroundEvents ViewServer::State::background_events() {
               for (PageConnection* page : pages) page->send(reference);
             });
           },
+          [this](const ChosenSettings& chosen) { asio::post(io, [this, chosen] { take(chosen); }); },
           [this](std::uint32_t revision, const std::string& why) {
-            asio::post(io, [this, text = failed_text(revision, why)] { tell(PageText::failed, text); });
+            asio::post(io, [this, text = failed_text(revision, why)] {
+              asked.target_error.reset();
+              background->ask(asked);
+              tell(PageText::failed, text);
+            });
           }};
 }
 

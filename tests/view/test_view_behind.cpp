@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is worked out behind the final picture: the trade, whose points can be taken, and references on the wipe.
+#include "opaline/quality/target_error.h"
 #include "view_page.h"
 
 namespace opaline {
@@ -111,6 +112,40 @@ TEST_F(LongViewBehind, AReferenceRefines) {
   ViewClient page(*view);
   page.read_final();
   EXPECT_EQ(page.texts.at("behind").at("reference"), "");
+}
+
+// Claim: settings for an error are an edit, those that `opaline render --target-error` chooses, one step of undo; what
+// cannot be chosen for is said, and chosen for no more. Source: reach_error. Tolerance: none. Fails if: values are lost on
+// the way, or it is chosen again for the scene that has them.
+TEST(ViewBehind, SettingsAreChosenForAnError) {
+  const ViewFolder folder;
+  const RunningView view(folder.scene);
+  ViewClient page(view);
+  ASSERT_TRUE(page.read_final());
+  page.send({{"do", "choose"}, {"error", .02}});
+  EXPECT_EQ(page.read_answer(), "choosing settings for 2 %");
+  EXPECT_TRUE(page.read_answer().starts_with("2 %: ")) << page.texts["told"];
+  EXPECT_TRUE(page.texts["told"].at("good"));
+  ASSERT_TRUE(page.read_final(2));
+  Session session;
+  session.edit(load_scene(folder.scene));
+  reach_error(session, session.scene(), .02);
+  std::vector<std::string> chosen = chosen_overrides(session);
+  chosen.push_back("settings.light_samples=" + std::to_string(session.scene().settings.light_samples));
+  std::vector<std::string> edits = page.texts.at("scene").at("edits");
+  std::ranges::sort(chosen);
+  std::ranges::sort(edits);
+  EXPECT_EQ(edits, chosen);
+  EXPECT_EQ(page.frame.colours, rendered(folder.scene, edits));
+  page.send({{"do", "undo"}});
+  ASSERT_TRUE(page.read_final(3));
+  page.set({{"settings.method", "lambert"}});
+  ASSERT_TRUE(page.read_final(4));
+  page.send({{"do", "choose"}, {"error", .02}});
+  ASSERT_TRUE(page.read_until([&] { return page.texts.contains("failed"); }));
+  page.set({{"settings.method", "hierarchical"}});
+  ASSERT_TRUE(page.read_final(5));
+  EXPECT_FALSE(page.read_within(std::chrono::milliseconds(1500)) && page.revision() > 5);
 }
 
 // Claim: a reference belongs to one scene. After a change no frame of the earlier one's comes, the next begins with few

@@ -56,6 +56,39 @@ TEST(ViewProgram, ServesUntilCtrlC) {
   EXPECT_EQ(folder.entries(), 3u);
 }
 
+// Claim: the URL is opened where there is a desktop, unless --no-open says not to, and nowhere else. Source: the help of
+// view. Fails if: no desktop is asked for, or the flag is not looked at.
+TEST(ViewProgram, OpensItsUrlOnADesktop) {
+  const ViewFolder folder;
+  const std::string opener = folder.file("xdg-open"), opened = folder.file("opened");
+  put_bytes(opener, "#!/bin/sh\necho $1 >> " + opened + "\n");
+  std::filesystem::permissions(opener, std::filesystem::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  const auto urls_opened = [&](const char* desktop, const std::vector<std::string>& more) {
+    ::setenv("PATH", (folder.path.string() + ":" + path).c_str(), 1);
+    ::setenv("DISPLAY", desktop, 1);
+    if (*desktop == '\0') ::unsetenv("DISPLAY");
+    std::vector<std::string> words{"view", folder.scene, "--token", kToken};
+    words.insert(words.end(), more.begin(), more.end());
+    Child view(words);
+    ::setenv("PATH", path.c_str(), 1);
+    ::unsetenv("DISPLAY");
+    EXPECT_TRUE(view.prints(std::string(kToken) + "/\n"));
+    if (*desktop != '\0' && more.empty())
+      for (int i = 0; i < 500 && !std::filesystem::exists(opened); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    view.send(SIGINT);
+    EXPECT_EQ(view.wait(20).exit_code, 0);
+    std::string url = std::filesystem::exists(opened) ? bytes_of(opened) : "";
+    std::filesystem::remove(opened);
+    return url;
+  };
+  const std::string url = urls_opened(":7", {});
+  EXPECT_TRUE(url.starts_with("http://127.0.0.1:") && url.ends_with(std::string(kToken) + "/\n")) << url;
+  EXPECT_EQ(urls_opened(":7", {"--no-open"}), "");
+  EXPECT_EQ(urls_opened("", {}), "");
+}
+
 // Claim: what cannot be is said in one line, with the exit codes of all commands.
 TEST(ViewProgram, BadArguments) {
   const ViewFolder folder;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "opaline/session/session.h"
 
@@ -28,6 +30,10 @@ struct TargetError {
 /// out   measured errors are at most the target in about 95 % of scenes (bench_target_error)
 /// error as Session::edit and Session::prepare
 TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);
+
+/// The settings that were chosen, by reach_error or for a time, as `--set` takes them; without light_samples.
+/// in    session: whose scene has them; entry_samples: of a direct picture
+std::vector<std::string> chosen_overrides(const Session& session, std::size_t entry_samples = 0);
 
 /// No target is answered with fewer, of all groups together, unless settings.max_samples asks for that.
 inline constexpr double kFewestTargetSamples = 2500;

@@ -333,6 +333,10 @@ one("save").onclick = () => connection.send({do: "save", name: one("name").value
 one("render").onclick = () => connection.send({do: "render", name: one("name").value + ".exr"});
 one("pin").onclick = () => compare(pinned ? null : frame, "");
 one("reference").onchange = () => compare(null, one("reference").value);
+one("choose").onsubmit = (event) => {
+  event.preventDefault();
+  connection.send({do: "choose", error: Number(one("target").value) / 100});
+};
 one("trade").ontoggle = () => askBehind({trade: one("trade").open});
 one("exposure").oninput = () => { setExposure(Number(one("exposure").value)); redraw(); };
 one("transform").onchange = () => { display.transform = one("transform").value; redraw(); };
