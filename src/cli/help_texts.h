@@ -73,9 +73,10 @@ Examples:
 Exit codes: 0 done, 2 the asset is broken, 3 the scene file cannot be written.)";
 
 inline constexpr const char* kViewNotes =
-    R"(Prints a URL, and opens it in the browser where there is a desktop (xdg-open). Open it on this machine in as many windows
-as you like: all see and edit the same. Nothing is installed or loaded from elsewhere. Every change shows a coarse picture at once, then a sharper one, and
-then the final one, with the bits of opaline render; a newer change cancels it. Ctrl-C ends the view.
+    R"(Prints a URL, and opens it in the browser of the desktop where there is one (by xdg-open). Open it on this machine
+in as many windows as you like: all see and edit the same. Nothing is installed or loaded from elsewhere. Every change
+shows a coarse picture at once, then a sharper one, and then the final one, with the bits of opaline render; a newer
+change cancels it. Ctrl-C ends the view.
 
 The scene file stays as it is: "save" writes another one beside it, "render" a picture, by names of your choice that
 are not taken. Mesh files are those of the scene.
@@ -86,6 +87,7 @@ share is not computed again. A final picture is then that of opaline render --fr
 Who has the URL can edit, and write such files into the scene's folder. Other requests are refused, with a line on
 stderr: another token, Origin or host name, messages above 64 kB, more than 16 pages or 64 connections. What is
 sent is not encrypted: with --listen, trust the network, or use ssh -L 8080:127.0.0.1:8080 and --port 8080.
+Over a slow line pictures come as JPEGs first, and then exactly.
 A page that lost its server tries again; with --port and --token the next server is at the same URL, and takes over
 the page's edits.
 

@@ -12,13 +12,13 @@
 namespace opaline {
 namespace {
 
-// Estimates are rarely less than this factor too low.
-constexpr double kSafety = 1.6;
+// Estimates are rarely less than this factor too low: a picture's own; one that a second picture agrees with.
+constexpr double kSafety = 1.6, kSecondSafety = 1.35;
 // So many samples are off by about this, whatever they stand on; with their number that falls by this power.
 constexpr double kUsualSamples = 17000, kUsualError = 0.006, kSlope = 0.8;
 // Where they are too few they grow by this factor at least, and so much beyond what the slope says: one step
 // is cheaper than two.
-constexpr double kLeastGrowth = 1.5, kBeyond = 1.15, kMostGrowth = 4;
+constexpr double kLeastGrowth = 1.7, kBeyond = 1.25, kMostGrowth = 4;
 // Shadow rays grow where their noise alone is more than this share of the target.
 constexpr double kMostNoise = 0.5;
 constexpr int kMostLightSamples = 65536;
@@ -51,9 +51,10 @@ bool add_light_samples(SettingsSearch& search, double noise, double target) {
 
 /// Adds samples and shadow rays until the picture's estimate is within the target.
 void approach(SettingsSearch& search, Image picture, double samples, double target) {
-  for (int step = 0; step < kMostSteps && kSafety * search.estimated > target; ++step) {
+  double safety = kSafety;
+  for (int step = 0; step < kMostSteps && safety * search.estimated > target; ++step) {
     const double estimated = search.estimated, noise = std::min(noise_of(search, picture), estimated),
-                 excess = kSafety * std::sqrt(estimated * estimated - noise * noise) / target;
+                 excess = safety * std::sqrt(estimated * estimated - noise * noise) / target;
     const bool more_rays = add_light_samples(search, noise, target),
                more_samples = samples < search.most_samples && (excess > 1 || !more_rays);
     if (!more_rays && !more_samples) return;
@@ -63,9 +64,10 @@ void approach(SettingsSearch& search, Image picture, double samples, double targ
                                                                    kLeastGrowth, kMostGrowth));
     const Image last = std::exchange(picture, search.picture_of(samples));
     // A second opinion: the last picture was about as much off as the two differ.
-    if (samples > before)
-      search.estimated =
-          std::sqrt(search.estimated * probe_difference(last, picture) * std::pow(before / samples, kSlope));
+    if (samples == before) continue;
+    safety = kSecondSafety;
+    search.estimated =
+        std::sqrt(search.estimated * probe_difference(last, picture) * std::pow(before / samples, kSlope));
   }
 }
 
