@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "builtin_shapes.h"
+#include "geometry/builtin_shapes.h"
 
 #include <cmath>
 #include <map>

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "geometry/source_mesh.h"
 #include "opaline/scene/scene.h"
-#include "source_mesh.h"
 
 namespace opaline {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "builtin_shapes.h"
+#include "geometry/builtin_shapes.h"
 
 namespace opaline {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "check_mesh.h"
+#include "geometry/check_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "geometry/orient.h"
+#include "geometry/repair_mesh.h"
+#include "geometry/topology.h"
+#include "geometry/vertex_normals.h"
 #include "opaline/core/error.h"
-#include "orient.h"
-#include "repair_mesh.h"
-#include "topology.h"
-#include "vertex_normals.h"
 
 namespace opaline {
 namespace {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "builtin_shapes.h"
-#include "check_mesh.h"
+#include "geometry/builtin_shapes.h"
+#include "geometry/check_mesh.h"
+#include "geometry/read_mesh.h"
 #include "geometry/shape_label.h"
 #include "opaline/core/error.h"
-#include "read_mesh.h"
 
 namespace opaline {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "orient.h"
+#include "geometry/orient.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
+#include "geometry/topology.h"
 #include "opaline/geometry/mesh.h"
-#include "topology.h"
 
 namespace opaline {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "source_mesh.h"
-#include "topology.h"
+#include "geometry/source_mesh.h"
+#include "geometry/topology.h"
 
 namespace opaline {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "read_mesh.h"
+#include "geometry/read_mesh.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <vector>
 
-#include "formats/mesh_format.h"
+#include "geometry/formats/mesh_format.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
 #include "opaline/geometry/mesh_file.h"

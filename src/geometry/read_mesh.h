@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "source_mesh.h"
+#include "geometry/source_mesh.h"
 
 namespace opaline {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "source_mesh.h"
+#include "geometry/source_mesh.h"
 
 namespace opaline {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "source_mesh.h"
+#include "geometry/source_mesh.h"
 
 namespace opaline {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vertex_normals.h"
+#include "geometry/vertex_normals.h"
 
 #include <cmath>
 #include <numeric>
 
-#include "topology.h"
+#include "geometry/topology.h"
 
 namespace opaline {
 namespace {

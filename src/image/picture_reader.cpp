@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A module of its own (picture_reader.h): all that stands on OpenImageIO.
-#include "picture_reader.h"
+#include "image/picture_reader.h"
 
 #include <OpenImageIO/color.h>
 #include <OpenImageIO/imageio.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "png_chunks.h"
+#include "image/png_chunks.h"
 
 #include <array>
 #include <cstdint>

@@ -6,10 +6,10 @@
 #include <iterator>
 #include <numeric>
 
-#include "irradiance/sample_key.h"
 #include "irradiance/shadow_batch.h"
 #include "irradiance/shadow_edges.h"
 #include "opaline/core/parallel.h"
+#include "opaline/irradiance/sample_key.h"
 #include "opaline/lights/light.h"
 
 namespace opaline {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "irradiance/sample_key.h"
 #include "opaline/core/random.h"
+#include "opaline/irradiance/sample_key.h"
 #include "render/shade.h"
 
 namespace opaline {

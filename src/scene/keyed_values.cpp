@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "keyed_values.h"
+#include "scene/keyed_values.h"
 
 #include <algorithm>
 #include <charconv>

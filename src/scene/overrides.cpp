@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "overrides.h"
+#include "scene/overrides.h"
 
 #include <algorithm>
 #include <array>

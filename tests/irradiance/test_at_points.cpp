@@ -2,7 +2,7 @@
 // Irradiance at points that are not samples.
 #include <gtest/gtest.h>
 
-#include "irradiance/sample_key.h"
+#include "opaline/irradiance/sample_key.h"
 #include "support/lighting.h"
 
 namespace opaline {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "file_checks.h"
+#include "geometry/formats/file_checks.h"
 
 #include <cmath>
 #include <cstdio>

@@ -2,8 +2,8 @@
 // GLB and glTF 2.0: a primitive of a mesh, without the nodes it stands at.
 #include <utility>
 
-#include "file_checks.h"
-#include "mesh_format.h"
+#include "geometry/formats/file_checks.h"
+#include "geometry/formats/mesh_format.h"
 #include "opaline/assets/gltf_part.h"
 
 namespace opaline {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh_format.h"
+#include "geometry/formats/mesh_format.h"
 
 #include <algorithm>
 #include <cctype>

@@ -6,10 +6,10 @@
 #include <unordered_set>
 #include <utility>
 
-#include "file_checks.h"
-#include "mesh_format.h"
+#include "geometry/formats/file_checks.h"
+#include "geometry/formats/mesh_format.h"
+#include "geometry/formats/text_cursor.h"
 #include "opaline/assets/obj_material.h"
-#include "text_cursor.h"
 
 namespace opaline {
 namespace {

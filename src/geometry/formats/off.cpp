@@ -3,9 +3,9 @@
 // face on its line are passed over.
 #include <algorithm>
 
-#include "file_checks.h"
-#include "mesh_format.h"
-#include "text_cursor.h"
+#include "geometry/formats/file_checks.h"
+#include "geometry/formats/mesh_format.h"
+#include "geometry/formats/text_cursor.h"
 
 namespace opaline {
 namespace {

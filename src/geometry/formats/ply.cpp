@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include "file_checks.h"
-#include "mesh_format.h"
-#include "ply_header.h"
-#include "text_cursor.h"
+#include "geometry/formats/file_checks.h"
+#include "geometry/formats/mesh_format.h"
+#include "geometry/formats/ply_header.h"
+#include "geometry/formats/text_cursor.h"
 
 namespace opaline {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "ply_header.h"
+#include "geometry/formats/ply_header.h"
 
 #include <array>
 #include <string_view>
 
-#include "file_checks.h"
-#include "text_cursor.h"
+#include "geometry/formats/file_checks.h"
+#include "geometry/formats/text_cursor.h"
 
 namespace opaline {
 namespace {

@@ -7,10 +7,10 @@
 #include <cctype>
 #include <utility>
 
-#include "file_checks.h"
+#include "geometry/formats/file_checks.h"
+#include "geometry/formats/mesh_format.h"
+#include "geometry/formats/text_cursor.h"
 #include "geometry/topology.h"
-#include "mesh_format.h"
-#include "text_cursor.h"
 
 namespace opaline {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "irradiance/sample_key.h"
 #include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/irradiance/sample_key.h"
 #include "opaline/lights/light.h"
 #include "render/fields/direct_field.h"
 #include "render/fields/local_field.h"
