@@ -90,10 +90,14 @@ TEST(StageVersions, ComputeWhatTheyDidButForRounding) {
     places += double(sample.area) * double(dot(sample.centroid, Vec3f{1, 2, 3}));
   EXPECT_GT(session.work().samples_carried, 0u);
   EXPECT_NEAR(places / 19112.02055, 1, 1e-5) << "raise kCarriedVersion";
+}
 
-  scene.media[0].profile = ProfileKind::tabulated;
+// Claim: the same of the profile that is tabulated by random walks.
+TEST(LongStageVersions, ProfileComputesWhatItDid) {
+  Medium medium = marble();
+  medium.profile = ProfileKind::tabulated;
   double within = 0;
-  for (const ChannelProfile& channel : make_diffuse_profile(scene.media[0]).channels)
+  for (const ChannelProfile& channel : make_diffuse_profile(medium).channels)
     for (const double r : {.1, 1.0, 5.0}) within += diffuse_reflectance_within(channel, r);
   EXPECT_NEAR(within / 3.25386519, 1, 1e-5) << "raise kWalkedProfileVersion";
 }
