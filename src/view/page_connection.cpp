@@ -14,7 +14,9 @@ namespace websocket = beast::websocket;
 constexpr std::size_t kLongestMessage = 1 << 16;  // bytes
 constexpr std::size_t kMostAnswers = 16, kMostFrames = 2;
 constexpr std::chrono::seconds kSilence{60};  // then the page is gone; half of it without a word is a ping
-constexpr int kOnTheWay = 1 << 17;     // bytes that the machine takes before the line does; Linux doubles it
+constexpr int kOnTheWay = 1 << 17;  // bytes that the machine takes before the line does; Linux doubles it
+constexpr std::size_t kMeasurable = 4 * kOnTheWay;
+constexpr double kForgotten = .8;      // of a rate, by each picture that is too short to tell a newer one
 constexpr double kLongestFrame = .15;  // s that a whole frame may take
 
 }  // namespace
@@ -25,10 +27,11 @@ void LineRate::begin() {
 }
 
 void LineRate::end() {
-  constexpr std::size_t taken = 2 * kOnTheWay;
-  if (bytes_ <= 2 * taken) return;
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
-  seconds_per_byte_ = seconds.count() / double(bytes_ - taken);
+  if (bytes_ > kMeasurable)
+    seconds_per_byte_ = seconds.count() / double(bytes_ - 2 * kOnTheWay);
+  else
+    seconds_per_byte_ *= kForgotten;
 }
 
 PageConnection::PageConnection(beast::tcp_stream&& stream, Events events, std::shared_ptr<void> slot)
@@ -124,7 +127,7 @@ bool PageConnection::take_frame() {
   }
   unshown_.push_back(frame.number);
   out_ = frame.bytes;
-  if (!is_slow) {
+  if (!is_slow && out_->size() > kMeasurable) {
     rate_.begin();
     rate_.add(out_->size());
     measures_ = true;

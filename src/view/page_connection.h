@@ -43,7 +43,8 @@ struct PackedFrame {
   SharedText bytes;
 };
 
-/// How fast a line is, by what took longer than the machine keeps on the way.
+/// How fast a line is, by what took longer than the machine keeps on the way; forgotten bit by bit where nothing does, so
+/// that a slow moment is not for ever.
 class LineRate {
  public:
   void begin();

@@ -288,8 +288,12 @@ void ViewServer::State::take(const ChosenSettings& chosen) {
     const std::size_t end_of_path = text.find('=');
     values.values.push_back({text.substr(0, end_of_path), text.substr(end_of_path + 1)});
   }
-  if (chosen.outcome.sees_translucent) edits.set(values);
-  const std::string answer = told_choice(target, chosen.outcome);
+  std::string answer = told_choice(target, chosen.outcome);
+  try {
+    if (chosen.outcome.sees_translucent) edits.set(values);
+  } catch (const Error& failure) {
+    answer = told_text(false, failure.what());
+  }
   for (PageConnection* page : pages) page->answer(answer);
   if (edits.revision() != chosen.revision) after_edit();
 }
