@@ -16,9 +16,9 @@ build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev 
 # shellcheck disable=SC2034
 test_packages=(libgtest-dev parallel clang-format)
 # The report's page is tested in a browser, 98 MB to fetch and 300 MB on the disk: the slow tier alone needs it.
-# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk.
+# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. python3-venv: for Mitsuba.
 # shellcheck disable=SC2034
-long_test_packages=(chromium-headless-shell assimp-testmodels)
+long_test_packages=(chromium-headless-shell assimp-testmodels python3-venv)
 
 say() { printf 'opaline: %s\n' "$*"; }
 
@@ -82,6 +82,19 @@ fetch() (
 fetch_bunny() {
   fetch glmark2-data "6.6 MB" ./usr/share/glmark2/models/bunny.obj \
     bff773d28c62e80187b2dfa8c6c8cc771a4c7707ddcdcf2e515913d322d1f548
+}
+
+# An independent path tracer, for the slow tests that compare with it; they are skipped where it cannot be had.
+fetch_mitsuba() {
+  local folder=$root/build-mitsuba
+  [[ ! -e $folder/done ]] || return 0
+  say "fetching Mitsuba from PyPI (70 MB)"
+  if python3 -m venv "$folder" && "$folder/bin/python3" -m pip install --quiet mitsuba==3.6.4 numpy; then
+    touch "$folder/done"
+  else
+    say "Mitsuba cannot be had from PyPI: the tests against it are skipped" >&2
+    rm -rf "$folder"
+  fi
 }
 
 rooms=./usr/share/blender/datafiles/studiolights/world
