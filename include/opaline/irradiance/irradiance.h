@@ -68,10 +68,10 @@ struct PointTransfers {
   std::vector<float> deviations;  ///< standard errors of the weights; empty: not asked for
 };
 
-/// Shadow rays from each point to one of input.lights; deviations where input.variance is not empty.
-PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light);
-/// To each of them.
+/// Shadow rays from each point to each of input.lights; deviations where input.variance is not empty.
 std::vector<PointTransfers> transfers_at(const PointIrradianceInput& input);
+/// The same but for those that are there already: with weights, or without points.
+void add_transfers(const PointIrradianceInput& input, std::vector<PointTransfers>& transfers);
 
 /// E per point, W/mm^2: the sum over lights of emission x weight; adds to input.variance if it is not empty.
 /// in    transfers: one a light

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lights/light_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "lights/build_light_tree.h"
+#include "opaline/core/random.h"
+
+namespace opaline {
+namespace {
+
+// Nodes are split until their ball is this much smaller than its distance.
+constexpr double kWide = .5;
+// Added to cosines: what rounding may take from those that lights need to be seen.
+constexpr double kRounding = 1e-3;
+// As many nodes as a cut has at most, but for those that its last ones have beside them on their way from the root.
+constexpr std::size_t kMostInCut = 448, kMostDepth = 64;
+
+/// Cosine and sine of an angle in [0, pi].
+struct Angle {
+  double cosine, sine;
+
+  static Angle of_cosine(double cosine) { return {cosine, std::sqrt(std::max(0.0, 1 - cosine * cosine))}; }
+  /// max(0, this - other)
+  Angle less(const Angle& other) const {
+    if (cosine >= other.cosine) return {1, 0};
+    return {cosine * other.cosine + sine * other.sine, sine * other.cosine - cosine * other.sine};
+  }
+};
+
+std::uint64_t hash_of(std::span<const Light> lights) {
+  std::uint64_t hash = lights.size();
+  const auto add = [&](double value) { hash = hash_bits(hash, std::bit_cast<std::uint64_t>(value)); };
+  for (const Light& light : lights) {
+    hash = hash_bits(hash, light.source.index());
+    for (const double value : geometry(light)) add(value);
+    for (std::size_t c = 0; c < 3; ++c) add(emission(light)[c]);
+  }
+  return hash;
+}
+
+/// Of the brightest light, if all others are multiples of it.
+std::optional<Rgb> common_emission_of(std::span<const Light> lights) {
+  Rgb common{};
+  for (const Light& light : lights)
+    if (max_component(emission(light)) > max_component(common)) common = emission(light);
+  for (const Light& light : lights)
+    for (std::size_t c = 0; c < 3; ++c)
+      if (emission(light)[c] * max_component(common) != common[c] * max_component(emission(light))) return {};
+  return common;
+}
+
+}  // namespace
+
+/// Nodes that are all lights together, and how many lights to draw from each.
+class LightTree::Cut {
+ public:
+  struct Part {
+    std::uint32_t node;
+    double importance, expected;
+  };
+  bool is_full() const { return size_ + kMostDepth >= parts_.size(); }
+  void add(std::uint32_t node, double importance) { parts_[size_++] = {node, importance, 0}; }
+  std::span<Part> parts() { return {parts_.data(), size_}; }
+
+  /// By importance, but no more than most(node) of each.
+  void share_out(double rays, const auto& most) {
+    for (bool has_changed = true; has_changed;) {
+      has_changed = false;
+      double left = rays, importance = 0;
+      for (const Part& part : parts())
+        if (part.expected > 0)
+          left -= part.expected;
+        else
+          importance += part.importance;
+      if (!(importance > 0)) return;
+      for (Part& part : parts())
+        if (const double limit = most(part.node);
+            !(part.expected > 0) && part.importance * left >= limit * importance) {
+          part.expected = limit;
+          has_changed = true;
+        }
+      if (has_changed) continue;
+      for (Part& part : parts())
+        if (!(part.expected > 0)) part.expected = left * part.importance / importance;
+    }
+  }
+
+ private:
+  std::array<Part, kMostInCut + kMostDepth> parts_;
+  std::size_t size_ = 0;
+};
+
+/// Places 0, 1, ... of a draw lie at random, random + 1, ... of the lights in their order, each of which is as long as
+/// it is expected to be drawn.
+class LightTree::Slots {
+ public:
+  Slots(const Vec3f& point_, const Vec3f& normal_, double random, std::span<Drawn> drawn)
+      : point(point_), normal(normal_), random_(random), drawn_(drawn) {}
+
+  bool any_before(double end) const { return next_ < drawn_.size() && random_ + double(next_) < end; }
+  void take(std::uint32_t light, double begin, double end) {
+    const double within = (random_ + double(next_) - begin) / (end - begin);
+    drawn_[next_++] = {light, float(end - begin), std::clamp(float(within), 0.f, 0x1.fffffep-1f)};
+  }
+  /// Draws nothing.
+  void skip() { ++next_; }
+
+  const Vec3f &point, &normal;
+
+ private:
+  double random_;
+  std::span<Drawn> drawn_;
+  std::size_t next_ = 0;
+};
+
+LightTree::LightTree(std::vector<Light> lights)
+    : lights_(std::move(lights)),
+      common_emission_(common_emission_of(lights_)),
+      has_area_(!is_delta(lights_[0])),
+      hash_(hash_of(lights_)) {
+  for (const Light& light : lights_) {
+    const Rgb own = emission(light);
+    const double brightest = common_emission_ ? max_component(*common_emission_) : 0;
+    colours_.push_back(brightest > 0 ? RgbF(Rgb(max_component(own) / brightest)) : RgbF(own));
+  }
+  BuiltLightTree built = build_light_tree(lights_);
+  nodes_ = std::move(built.nodes);
+  order_ = std::move(built.order);
+  places_.resize(order_.size());
+  for (std::uint32_t i = 0; i < order_.size(); ++i) places_[order_[i]] = i;
+}
+
+LightExtent LightTree::extent() const {
+  const Node& root = nodes_[0];
+  return {.center = Vec3d(root.center), .radius = double(root.radius), .width = 2 * double(root.radius)};
+}
+
+double LightTree::importance(const Node& node, const Vec3f& point, const Vec3f& normal) {
+  const Vec3d to(node.center - point);
+  const double d2 = dot(to, to), r2 = double(node.radius) * double(node.radius);
+  if (d2 <= r2) return r2 > 0 ? node.brightness / r2 : 0;
+  const double d = std::sqrt(d2), per_d = 1 / d;
+  const Angle ball{std::sqrt(1 - r2 / d2), double(node.radius) * per_d};  // half of what the ball fills
+  const double lowest = dot(Vec3d(normal), to) * per_d;
+  const double cosine = Angle::of_cosine(lowest).less(ball).cosine + kRounding;
+  if (!(cosine > 0)) return 0;
+  double facing = 1;
+  if (node.cos_half > -1) {
+    const Angle off = Angle::of_cosine(std::clamp(-dot(Vec3d(node.axis), to) * per_d, -1.0, 1.0))
+                          .less({double(node.cos_half), double(node.sin_half)})
+                          .less(ball);
+    if (off.cosine + kRounding < double(node.cos_reach)) return 0;
+    facing = std::max(off.cosine + kRounding, double(node.least_facing));
+  }
+  return node.brightness * cosine * facing / d2;
+}
+
+void LightTree::collect(std::uint32_t node, const Vec3f& point, const Vec3f& normal, Cut& cut) const {
+  const Node& own = nodes_[node];
+  const double weight = importance(own, point, normal);
+  if (!(weight > 0)) return;
+  const Vec3f to = own.center - point;
+  const double r = double(own.radius);
+  if (own.right == 0 || cut.is_full() || r * r <= kWide * kWide * double(dot(to, to)))
+    return cut.add(node, weight);
+  collect(node + 1, point, normal, cut);
+  collect(own.right, point, normal, cut);
+}
+
+void LightTree::draw(const Vec3f& point, const Vec3f& normal, double random, std::span<Drawn> drawn) const {
+  std::ranges::fill(drawn, Drawn{});
+  Cut cut;
+  collect(0, point, normal, cut);
+  const double rays = double(drawn.size());
+  cut.share_out(rays, [&](std::uint32_t node) { return most(nodes_[node], rays); });
+  Slots slots(point, normal, random, drawn);
+  double begin = 0;
+  for (const Cut::Part& part : cut.parts()) {
+    descend(part.node, begin, begin + part.expected, slots);
+    begin += part.expected;
+  }
+}
+
+/// Draws from a node's lights, which lie in [begin, end) together.
+void LightTree::descend(std::uint32_t node, double begin, double end, Slots& slots) const {
+  if (!slots.any_before(end)) return;
+  const Node& own = nodes_[node];
+  if (own.right == 0) {
+    while (slots.any_before(end)) slots.take(order_[own.first], begin, end);
+    return;
+  }
+  const Node &left = nodes_[node + 1], &right = nodes_[own.right];
+  const double of_left = importance(left, slots.point, slots.normal),
+               of_right = importance(right, slots.point, slots.normal), both = of_left + of_right,
+               length = end - begin;
+  if (both > 0) {
+    const double most_left = of_left > 0 ? most(left, length) : 0,
+                 most_right = of_right > 0 ? most(right, length) : 0,
+                 at_left = std::min(length * of_left / both, most_left),
+                 right_length = std::min(length - at_left, most_right),
+                 left_length = std::min(length - right_length, most_left);
+    descend(node + 1, begin, begin + left_length, slots);
+    descend(own.right, begin + left_length, begin + left_length + right_length, slots);
+  }
+  while (slots.any_before(end)) slots.skip();
+}
+
+double LightTree::share(const Vec3f& point, const Vec3f& normal, std::uint32_t light) const {
+  Cut cut;
+  collect(0, point, normal, cut);
+  const std::uint32_t place = places_[light];
+  const auto has_it = [&](const Node& node) { return place - node.first < node.count; };
+  double all = 0, share = 0;
+  std::uint32_t node = 0;
+  for (const Cut::Part& part : cut.parts()) {
+    all += part.importance;
+    if (has_it(nodes_[part.node])) node = part.node, share = part.importance;
+  }
+  if (!(share > 0)) return 0;
+  share /= all;
+  while (nodes_[node].right != 0) {
+    const std::uint32_t left = node + 1, right = nodes_[node].right;
+    const double of_left = importance(nodes_[left], point, normal),
+                 of_right = importance(nodes_[right], point, normal), both = of_left + of_right;
+    const bool is_left = has_it(nodes_[left]);
+    if (!(both > 0)) return 0;
+    share *= (is_left ? of_left : of_right) / both;
+    node = is_left ? left : right;
+  }
+  return share;
+}
+
+std::optional<std::uint32_t> LightTree::first_met(const Vec3f& origin, const Vec3f& direction,
+                                                  float far) const {
+  std::optional<std::uint32_t> met;
+  if (!has_area_) return met;
+  const double per_square = 1 / double(dot(direction, direction));
+  std::array<std::uint32_t, kMostDepth + 1> open{0};
+  for (std::size_t count = 1; count > 0;) {
+    const std::uint32_t index = open[--count];
+    const Node& node = nodes_[index];
+    const Vec3d to(node.center - origin);
+    const double along = dot(to, Vec3d(direction)) * per_square,
+                 r2 = double(node.radius) * double(node.radius);
+    const Vec3d apart = to - Vec3d(direction) * along;
+    const bool is_behind = along < 0 && dot(to, to) > r2 * (1 + kRounding);
+    if (is_behind || dot(apart, apart) > r2 * (1 + kRounding)) continue;
+    if (node.right != 0) {
+      open[count++] = node.right;
+      open[count++] = index + 1;
+      continue;
+    }
+    const EmitterHit hit = intersect_emitter(lights_[order_[node.first]], origin, direction, far);
+    if (!hit.hit) continue;
+    met = order_[node.first];
+    far = hit.t;
+  }
+  return met;
+}
+
+}  // namespace opaline
