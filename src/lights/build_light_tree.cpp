@@ -16,23 +16,34 @@ struct Lamp {
   Vec3d center{};
   double radius = 0;
   std::optional<Vec3d> facing{};
-  double reach = pi;        ///< off its way, to where its light ends
-  double least_facing = 1;  ///< as of a node
-  double intensity = 0;     ///< the way it is brightest, for an emission of 1
+  double full = pi, reach = pi;  ///< off its way, to where its light begins to fade and ends
+  bool fades_by_square = false;
+  double intensity = 0;  ///< the way it is brightest, for an emission of 1
 };
 
 std::optional<Lamp> lamp_of(const Light& light) {
   const LightExtent place = extent(light);
-  const auto lamp = [&](double reach, double least_facing, double intensity) {
-    return Lamp{*place.center, place.radius, place.facing, reach, least_facing, intensity};
+  const auto lamp = [&](double intensity) {
+    return Lamp{.center = *place.center, .radius = place.radius, .intensity = intensity};
   };
-  if (std::holds_alternative<PointLight>(light.source)) return lamp(pi, 1, 1);
-  if (const auto* spot = std::get_if<SpotLight>(&light.source))
-    return lamp(spot->outer_angle * pi / 180, 1, 1);
+  if (std::holds_alternative<PointLight>(light.source)) return lamp(1);
   if (const auto* sphere = std::get_if<SphereLight>(&light.source))
-    return lamp(pi, 1, pi * sphere->radius * sphere->radius);
-  if (const auto* quad = std::get_if<QuadLight>(&light.source))
-    return lamp(pi / 2, 0, length(cross(quad->u, quad->v)));
+    return lamp(pi * sphere->radius * sphere->radius);
+  if (const auto* spot = std::get_if<SpotLight>(&light.source)) {
+    Lamp shining = lamp(1);
+    shining.facing = spot->direction;
+    shining.full = spot->inner_angle * pi / 180;
+    shining.reach = spot->outer_angle * pi / 180;
+    shining.fades_by_square = true;
+    return shining;
+  }
+  if (const auto* quad = std::get_if<QuadLight>(&light.source)) {
+    Lamp shining = lamp(length(cross(quad->u, quad->v)));
+    shining.facing = place.facing;
+    shining.full = 0;
+    shining.reach = pi / 2;
+    return shining;
+  }
   return {};
 }
 
@@ -47,7 +58,8 @@ class Builder {
     built_.order.resize(lights.size());
     std::iota(built_.order.begin(), built_.order.end(), 0u);
     built_.nodes.reserve(2 * lights.size());
-    add(0, std::uint32_t(lights.size()));
+    built_.nodes.resize(1);
+    fill(0, 0, std::uint32_t(lights.size()));
   }
   BuiltLightTree& built() { return built_; }
 
@@ -56,16 +68,17 @@ class Builder {
     return std::span(built_.order).subspan(first, count);
   }
 
-  void add(std::uint32_t first, std::uint32_t count) {
-    const std::size_t index = built_.nodes.size();
-    built_.nodes.push_back(bounds_of(members(first, count)));
-    built_.nodes[index].first = first;
-    built_.nodes[index].count = count;
+  void fill(std::size_t index, std::uint32_t first, std::uint32_t count) {
+    LightTree::Node node = bounds_of(members(first, count));
+    node.first = first;
+    node.count = count;
+    if (count > 1) node.children = std::uint32_t(built_.nodes.size());
+    built_.nodes[index] = node;
     if (count == 1) return;
+    built_.nodes.resize(built_.nodes.size() + 2);
     halve(members(first, count));
-    add(first, count / 2);
-    built_.nodes[index].right = std::uint32_t(built_.nodes.size());
-    add(first + count / 2, count - count / 2);
+    fill(node.children, first, count / 2);
+    fill(node.children + 1, first + count / 2, count - count / 2);
   }
 
   void halve(std::span<std::uint32_t> members) {
@@ -100,20 +113,21 @@ class Builder {
   }
 
   void bound_ways(std::span<const std::uint32_t> members, const Vec3d& axis, LightTree::Node& node) const {
-    double half = 0, reach = 0, least = 0;
+    double half = 0, full = 0, reach = 0;
     for (const std::uint32_t m : members) {
       const Lamp& lamp = lamps_[m];
       if (!lamp.facing) return;  // all around
       half = std::max(half, std::acos(std::clamp(dot(*lamp.facing, axis), -1.0, 1.0)));
       reach = std::max(reach, lamp.reach);
-      least = std::max(least, lamp.least_facing);
+      full = std::max(full, lamp.full);
+      node.fades_by_square |= lamp.fades_by_square;
     }
     if (axis == Vec3d{}) return;
     node.axis = Vec3f(axis);
     node.cos_half = float(std::cos(half));
     node.sin_half = float(std::sin(half));
     node.cos_reach = float(std::cos(reach));
-    node.least_facing = float(least);
+    node.cos_full = float(std::cos(full));
   }
 
   std::vector<Lamp> lamps_;

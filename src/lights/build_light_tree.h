@@ -10,7 +10,7 @@ namespace opaline {
 bool fits_into_tree(const Light& light);
 
 struct BuiltLightTree {
-  std::vector<LightTree::Node> nodes;  ///< the root first, each first child behind its parent
+  std::vector<LightTree::Node> nodes;  ///< the root first
   std::vector<std::uint32_t> order;    ///< the lights as the leaves have them, one each
 };
 /// Nodes are halved, by the number of lights, across the longest side of the box around their centres: depths differ

@@ -43,7 +43,7 @@ bool is_delta(const Light& light) {
 }
 
 int shadow_rays(const Light& light, int light_samples) {
-  constexpr int kFewer = 4;  // measured: src/lights/README.md
+  constexpr int kFewer = 3;  // measured: src/irradiance/README.md
   if (is_delta(light)) return 1;
   const auto* many = std::get_if<ManyLights>(&light.source);
   return many == nullptr || many->tree->has_area() ? light_samples : (light_samples + kFewer - 1) / kFewer;

@@ -14,8 +14,11 @@ namespace {
 
 // Nodes are split until their ball is this much smaller than its distance.
 constexpr double kWide = .5;
+// Share of a bound on the cosine at the surface in a node's importance; the rest is the cosine of its middle. Less than
+// .25 is no better in the mean, and worse at its worst (city of 1000: max 26 % in place of 25 % at .1, 86 % at .03).
+constexpr float kBound = .25f;
 // Added to cosines: what rounding may take from those that lights need to be seen.
-constexpr double kRounding = 1e-3;
+constexpr float kRounding = 1e-3f;
 // As many nodes as a cut has at most, but for those that its last ones have beside them on their way from the root.
 constexpr std::size_t kMostInCut = 448, kMostDepth = 64;
 
@@ -40,6 +43,18 @@ std::uint64_t hash_of(std::span<const Light> lights) {
     for (std::size_t c = 0; c < 3; ++c) add(emission(light)[c]);
   }
   return hash;
+}
+
+/// Share of their brightness that a node's lights have towards a point, at most.
+/// in    cosine: of the angle from the node's way to the point, from its middle; ball: sine of half the angle that the
+///       node's ball fills from there
+double facing(const LightTree::Node& node, float cosine, float ball) {
+  const Angle off = Angle::of_cosine(std::clamp(double(cosine), -1.0, 1.0))
+                        .less({double(node.cos_half), double(node.sin_half)})
+                        .less({std::sqrt(std::max(0.0, 1 - double(ball) * double(ball))), double(ball)});
+  const double reach = double(node.cos_reach) - double(kRounding), fading = double(node.cos_full) - reach,
+               share = std::clamp((off.cosine - reach) / fading, 0.0, 1.0);
+  return node.fades_by_square ? share * share : share;
 }
 
 /// Of the brightest light, if all others are multiples of it.
@@ -139,24 +154,19 @@ LightExtent LightTree::extent() const {
   return {.center = Vec3d(root.center), .radius = double(root.radius), .width = 2 * double(root.radius)};
 }
 
+// The cosine at the surface is between that of the ball's centre and a bound of all its lights' cosines, which is
+// positive where that of any is. The latter alone would give most to wide nodes.
 double LightTree::importance(const Node& node, const Vec3f& point, const Vec3f& normal) {
-  const Vec3d to(node.center - point);
-  const double d2 = dot(to, to), r2 = double(node.radius) * double(node.radius);
-  if (d2 <= r2) return r2 > 0 ? node.brightness / r2 : 0;
-  const double d = std::sqrt(d2), per_d = 1 / d;
-  const Angle ball{std::sqrt(1 - r2 / d2), double(node.radius) * per_d};  // half of what the ball fills
-  const double lowest = dot(Vec3d(normal), to) * per_d;
-  const double cosine = Angle::of_cosine(lowest).less(ball).cosine + kRounding;
-  if (!(cosine > 0)) return 0;
-  double facing = 1;
-  if (node.cos_half > -1) {
-    const Angle off = Angle::of_cosine(std::clamp(-dot(Vec3d(node.axis), to) * per_d, -1.0, 1.0))
-                          .less({double(node.cos_half), double(node.sin_half)})
-                          .less(ball);
-    if (off.cosine + kRounding < double(node.cos_reach)) return 0;
-    facing = std::max(off.cosine + kRounding, double(node.least_facing));
-  }
-  return node.brightness * cosine * facing / d2;
+  const Vec3f to = node.center - point;
+  const float d2 = dot(to, to), r2 = node.radius * node.radius;
+  if (d2 <= r2) return r2 > 0 ? node.brightness / double(r2) : 0;
+  const float per_d = 1 / std::sqrt(d2),
+              ball = node.radius * per_d;  // the sine of half of what the ball fills
+  const float middle = dot(normal, to) * per_d, bound = std::min(1.0f, middle + ball + kRounding);
+  if (!(bound > 0)) return 0;
+  const float cosine = kBound * bound + (1 - kBound) * std::max(0.0f, middle);
+  const double weight = node.brightness * double(cosine * per_d) * double(per_d);
+  return node.cos_half > -1 ? weight * facing(node, -dot(node.axis, to) * per_d, ball) : weight;
 }
 
 void LightTree::collect(std::uint32_t node, const Vec3f& point, const Vec3f& normal, Cut& cut) const {
@@ -165,10 +175,10 @@ void LightTree::collect(std::uint32_t node, const Vec3f& point, const Vec3f& nor
   if (!(weight > 0)) return;
   const Vec3f to = own.center - point;
   const double r = double(own.radius);
-  if (own.right == 0 || cut.is_full() || r * r <= kWide * kWide * double(dot(to, to)))
+  if (own.children == 0 || cut.is_full() || r * r <= kWide * kWide * double(dot(to, to)))
     return cut.add(node, weight);
-  collect(node + 1, point, normal, cut);
-  collect(own.right, point, normal, cut);
+  collect(own.children, point, normal, cut);
+  collect(own.children + 1, point, normal, cut);
 }
 
 void LightTree::draw(const Vec3f& point, const Vec3f& normal, double random, std::span<Drawn> drawn) const {
@@ -189,11 +199,11 @@ void LightTree::draw(const Vec3f& point, const Vec3f& normal, double random, std
 void LightTree::descend(std::uint32_t node, double begin, double end, Slots& slots) const {
   if (!slots.any_before(end)) return;
   const Node& own = nodes_[node];
-  if (own.right == 0) {
+  if (own.children == 0) {
     while (slots.any_before(end)) slots.take(order_[own.first], begin, end);
     return;
   }
-  const Node &left = nodes_[node + 1], &right = nodes_[own.right];
+  const Node &left = nodes_[own.children], &right = nodes_[own.children + 1];
   const double of_left = importance(left, slots.point, slots.normal),
                of_right = importance(right, slots.point, slots.normal), both = of_left + of_right,
                length = end - begin;
@@ -203,8 +213,8 @@ void LightTree::descend(std::uint32_t node, double begin, double end, Slots& slo
                  at_left = std::min(length * of_left / both, most_left),
                  right_length = std::min(length - at_left, most_right),
                  left_length = std::min(length - right_length, most_left);
-    descend(node + 1, begin, begin + left_length, slots);
-    descend(own.right, begin + left_length, begin + left_length + right_length, slots);
+    descend(own.children, begin, begin + left_length, slots);
+    descend(own.children + 1, begin + left_length, begin + left_length + right_length, slots);
   }
   while (slots.any_before(end)) slots.skip();
 }
@@ -222,8 +232,8 @@ double LightTree::share(const Vec3f& point, const Vec3f& normal, std::uint32_t l
   }
   if (!(share > 0)) return 0;
   share /= all;
-  while (nodes_[node].right != 0) {
-    const std::uint32_t left = node + 1, right = nodes_[node].right;
+  while (nodes_[node].children != 0) {
+    const std::uint32_t left = nodes_[node].children, right = left + 1;
     const double of_left = importance(nodes_[left], point, normal),
                  of_right = importance(nodes_[right], point, normal), both = of_left + of_right;
     const bool is_left = has_it(nodes_[left]);
@@ -247,11 +257,11 @@ std::optional<std::uint32_t> LightTree::first_met(const Vec3f& origin, const Vec
     const double along = dot(to, Vec3d(direction)) * per_square,
                  r2 = double(node.radius) * double(node.radius);
     const Vec3d apart = to - Vec3d(direction) * along;
-    const bool is_behind = along < 0 && dot(to, to) > r2 * (1 + kRounding);
-    if (is_behind || dot(apart, apart) > r2 * (1 + kRounding)) continue;
-    if (node.right != 0) {
-      open[count++] = node.right;
-      open[count++] = index + 1;
+    const bool is_behind = along < 0 && dot(to, to) > r2 * (1 + double(kRounding));
+    if (is_behind || dot(apart, apart) > r2 * (1 + double(kRounding))) continue;
+    if (node.children != 0) {
+      open[count++] = node.children + 1;
+      open[count++] = node.children;
       continue;
     }
     const EmitterHit hit = intersect_emitter(lights_[order_[node.first]], origin, direction, far);

@@ -56,12 +56,13 @@ class LightTree {
     /// Of a cone around the ways its lights face; a half angle of pi: they shine all around.
     Vec3f axis{};
     float cos_half = -1, sin_half = 0;
-    float cos_reach = -1;  ///< of the angle off their way at which their light ends
-    float least_facing =
-        1;  ///< that the cosine of that angle takes away down to: 0 for flat lamps, 1: nothing
+    /// Off their way its lights shine fully within an angle, and not at all beyond another. Between them they fade with
+    /// the cosine, spots with its square.
+    float cos_full = -1, cos_reach = -1;
+    bool fades_by_square = false;
     double brightness = 0;  ///< sum of intensities in the brightest direction, W/sr, mean of the channels
     std::uint32_t first = 0, count = 0;  ///< its lights, of those in the leaves' order
-    std::uint32_t right = 0;             ///< its second child, the first follows it; 0: a leaf
+    std::uint32_t children = 0;          ///< the first of two nodes that follow each other; 0: a leaf
   };
   /// What the lights of a node could bring to a surface, W/mm^2.
   static double importance(const Node& node, const Vec3f& point, const Vec3f& normal);

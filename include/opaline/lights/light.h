@@ -31,7 +31,7 @@ Light with_emission(const Light& light, const Rgb& emission);
 bool is_delta(const Light& light);
 
 /// Shadow rays from a point to the light where `light_samples` go to one with an area: 1 to delta lights; to a tree of
-/// delta lights (ManyLights) a quarter.
+/// delta lights (ManyLights) a third.
 int shadow_rays(const Light& light, int light_samples);
 
 /// Whether the light has an area or is all around: rays see it.
