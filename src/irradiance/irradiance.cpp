@@ -137,9 +137,10 @@ std::vector<RgbF> combine_lights(std::span<const LightTransfer> transfers, std::
 
 namespace {
 
-void add_point(const PointIrradianceInput& input, std::size_t i, ShadowBatch& batch) {
+void add_point(const PointIrradianceInput& input, std::size_t i, ShadowBatch& batch,
+               const Lobe* lobe = nullptr) {
   const auto [shift, part] = part_of(input.keys[i]);
-  batch.add(input.points[i], shift, part * std::uint64_t(batch.samples()));
+  batch.add(input.points[i], shift, part * std::uint64_t(batch.samples()), lobe);
 }
 
 // To lights that share their rays.
@@ -181,17 +182,24 @@ std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std:
 
 }  // namespace
 
-void for_each_ray(const PointIrradianceInput& input, std::size_t light, const UseOfRay& use) {
+void for_each_ray(const PointIrradianceInput& input, const UseOfRay& use, std::span<const Lobe> lobes) {
+  constexpr int kMoreOfLobes = 4;
   const std::size_t n = input.points.size(), batch_size = batch_points(input.light_samples);
-  ShadowBatch batch(input.rays, input.lights[light], input.eta,
-                    shadow_rays(input.lights[light], input.light_samples),
-                    light_seed(input.seed, input.lights[light]));
-  batch.keep_directions();
-  for (std::size_t begin = 0; begin < n; begin += batch_size) {
-    for (std::size_t i = begin; i < std::min(n, begin + batch_size); ++i) add_point(input, i, batch);
-    batch.trace([&](std::size_t p, int s, float e, float) {
-      if (e > 0) use(begin + p, batch.direction(p, s), e);
-    });
+  for (std::size_t first = 0, count = 0; first < input.lights.size(); first += count) {
+    count = sharing_rays(input.lights.subspan(first));
+    const std::span<const Light> lights = input.lights.subspan(first, count);
+    const int wanted =
+        is_visible(lights[0]) || lobes.empty() ? input.light_samples : kMoreOfLobes * input.light_samples;
+    ShadowBatch batch(input.rays, lights, input.eta, shadow_rays(lights[0], wanted),
+                      light_seed(input.seed, lights[0]));
+    batch.keep_directions();
+    for (std::size_t begin = 0; begin < n; begin += batch_size) {
+      for (std::size_t i = begin; i < std::min(n, begin + batch_size); ++i)
+        add_point(input, i, batch, lobes.empty() ? nullptr : &lobes[i]);
+      batch.trace_lights([&](std::size_t l, std::size_t p, int s, float e, float) {
+        if (e > 0) use(first + l, begin + p, batch.direction(p, s), e);
+      });
+    }
   }
 }
 

@@ -60,12 +60,13 @@ class ShadowBatch {
   }
 
   /// Adds all rays of one point; `index` chooses its rotation of the low-discrepancy points, `first` where
-  /// among them it begins.
-  void add(const SurfacePoint& point, std::uint64_t index, std::uint64_t first = 0) {
+  /// among them it begins; `lobe` as in for_each_ray.
+  void add(const SurfacePoint& point, std::uint64_t index, std::uint64_t first = 0,
+           const Lobe* lobe = nullptr) {
     std::array<double, 2> shift{};
     if (!is_delta(lights_[0]))
       shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
-    if (many_ != nullptr) return add_drawn(point, shift, first);
+    if (many_ != nullptr) return add_drawn(point, shift, first, lobe);
     for (int s = 0; s < samples_; ++s) {
       const std::array<double, 2> square = r2_point(first + std::uint64_t(s), shift);
       std::array<float, 3> weights{};
@@ -113,7 +114,7 @@ class ShadowBatch {
     trace_lights([&](std::size_t, std::size_t p, int s, float e, float free) { use(p, s, e, free); });
   }
 
-  /// Towards the light, of a point's sample: while `trace` calls `use`.
+  /// Towards the light, of a point's sample: while `use` is called.
   const Vec3f& direction(std::size_t point, int sample) const {
     return directions_[point * std::size_t(samples_) + std::size_t(sample)];
   }
@@ -139,12 +140,15 @@ class ShadowBatch {
   }
 
   // Neighbours in the order of a draw are alike: one after the other they go to the halves of a point's samples.
-  void add_drawn(const SurfacePoint& point, const std::array<double, 2>& shift, std::uint64_t first) {
+  void add_drawn(const SurfacePoint& point, const std::array<double, 2>& shift, std::uint64_t first,
+                 const Lobe* lobe) {
     constexpr double kGolden = 0.61803398874989484820;
     const LightTree& tree = *many_->tree;
     drawn_.resize(std::size_t(samples_));
     const double place = shift[0] + kGolden * double(first / std::uint64_t(samples_) % (1 << 20));
-    tree.draw(point.position, point.normal, place - std::floor(place), drawn_);
+    const bool is_mirrored = lobe != nullptr && !tree.has_area();
+    tree.draw({point.position, point.normal, is_mirrored ? lobe : nullptr}, place - std::floor(place),
+              drawn_);
     for (int s = 0; s < samples_; ++s) {
       const int half = samples_ / 2;
       const auto& [light, expected, rest] = drawn_[std::size_t(s < half ? 2 * s + 1 : 2 * (s - half))];

@@ -34,6 +34,12 @@ class LightTree {
   /// A ball around them.
   LightExtent extent() const;
 
+  /// What is lit.
+  struct Place {
+    Vec3f point, normal;         ///< normal: unit
+    const Lobe* lobe = nullptr;  ///< in which it mirrors light; null: its irradiance is wanted
+  };
+
   struct Drawn {
     std::uint32_t light = 0;
     float expected = 0;  ///< how often it is drawn in the mean; 0: nothing was drawn
@@ -41,11 +47,11 @@ class LightTree {
   };
   /// Draws drawn.size() lights, or fewer where fewer matter, in an order in which neighbours are alike. A light without
   /// an area is drawn once at most; where there are no more of them than places, each is drawn.
-  /// in    normal: unit; random: in [0, 1)
-  void draw(const Vec3f& point, const Vec3f& normal, double random, std::span<Drawn> drawn) const;
+  /// in    random: in [0, 1)
+  void draw(const Place& at, double random, std::span<Drawn> drawn) const;
 
   /// How often a draw of one takes this light, in the mean.
-  double share(const Vec3f& point, const Vec3f& normal, std::uint32_t light) const;
+  double share(const Place& at, std::uint32_t light) const;
 
   /// The light with an area that a ray meets before `far`; of several the nearest.
   std::optional<std::uint32_t> first_met(const Vec3f& origin, const Vec3f& direction, float far) const;
@@ -64,8 +70,8 @@ class LightTree {
     std::uint32_t first = 0, count = 0;  ///< its lights, of those in the leaves' order
     std::uint32_t children = 0;          ///< the first of two nodes that follow each other; 0: a leaf
   };
-  /// What the lights of a node could bring to a surface, W/mm^2.
-  static double importance(const Node& node, const Vec3f& point, const Vec3f& normal);
+  /// What the lights of a node could bring to a place: W/mm^2 of irradiance, or of what it mirrors some measure.
+  static double importance(const Node& node, const Place& at);
   /// The root first.
   const std::vector<Node>& nodes() const { return nodes_; }
 
@@ -75,7 +81,7 @@ class LightTree {
 
   /// How many of a node's lights may be drawn, of so many.
   double most(const Node& node, double rays) const { return has_area_ ? rays : double(node.count); }
-  void collect(std::uint32_t node, const Vec3f& point, const Vec3f& normal, Cut& cut) const;
+  void collect(std::uint32_t node, const Place& at, Cut& cut) const;
   void descend(std::uint32_t node, double begin, double end, Slots& slots) const;
 
   std::vector<Light> lights_;

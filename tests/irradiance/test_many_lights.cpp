@@ -66,7 +66,7 @@ TEST(LightTree, DrawsHaveTheMeanOfAllLights) {
         Mean drawn_mean, all_mean;
         std::vector<LightTree::Drawn> drawn(places);
         for (std::uint64_t k = 0; k < kDraws; ++k) {
-          tree.draw(point, normal, random_at(k, p + 10), drawn);
+          tree.draw({point, normal}, random_at(k, p + 10), drawn);
           double sum = 0, all = 0;
           for (std::size_t i = 0; i < places; ++i)
             if (drawn[i].expected > 0)
@@ -101,7 +101,7 @@ TEST(LightTree, IsImportantWhereverALightShines) {
                       brought(tree.lights()[l], point, normal, {random_at(k, l), random_at(k + 50, l)}) > 0;
       for (std::uint32_t l = 0; l < shines.size(); ++l) {
         lit += shines[l];
-        EXPECT_TRUE(!shines[l] || tree.share(point, normal, l) > 0) << int(kind) << ' ' << p << ' ' << l;
+        EXPECT_TRUE(!shines[l] || tree.share({point, normal}, l) > 0) << int(kind) << ' ' << p << ' ' << l;
       }
     }
   }
@@ -116,14 +116,15 @@ TEST(LightTree, DrawsAllWhereItCan) {
   std::vector<LightTree::Drawn> drawn(40);
   for (std::uint64_t p = 0; p < 20; ++p) {
     const Vec3f point(random_place(p + 77, 200)), normal(random_way(p + 77));
-    tree.draw(point, normal, random_at(p), drawn);
+    tree.draw({point, normal}, random_at(p), drawn);
     std::vector<int> times(40);
     for (const auto& [light, expected, rest] : drawn)
       if (expected > 0) {
         ++times[light];
         EXPECT_FLOAT_EQ(expected, 1);
       }
-    for (std::uint32_t l = 0; l < 40; ++l) EXPECT_EQ(times[l], tree.share(point, normal, l) > 0 ? 1 : 0) << l;
+    for (std::uint32_t l = 0; l < 40; ++l)
+      EXPECT_EQ(times[l], tree.share({point, normal}, l) > 0 ? 1 : 0) << l;
   }
 }
 

@@ -37,6 +37,12 @@ int shadow_rays(const Light& light, int light_samples);
 /// Whether the light has an area or is all around: rays see it.
 bool is_visible(const Light& light);
 
+/// Where a surface mirrors a light towards the eye: facets (GGX) about the direction of a smooth mirror.
+struct Lobe {
+  Vec3f mirrored;  ///< unit
+  float alpha;     ///< > 0
+};
+
 /// True for the channels of one picture, or of one tree of lights: their samples have the same directions.
 bool share_rays(const Light& a, const Light& b);
 
