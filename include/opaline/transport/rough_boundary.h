@@ -16,6 +16,7 @@ class RoughBoundary {
   /// in    roughness: (0, 1], its square is GGX's alpha; eta: inside over outside
   RoughBoundary(double roughness, double eta);
 
+  /// Of GGX: the square of the roughness.
   float alpha() const { return alpha_; }
 
   /// The share of light from a direction that is reflected, to any side; from a table, error below .002.
