@@ -132,6 +132,7 @@ Summary summarize(const Session& session, const Shading& shading) {
   summary.rays = shading.rays;
   summary.shading_seconds = shading.cpu_seconds;
   summary.embree_seconds = shading.embree_seconds;
+  const std::vector<Light> lights = recentred_lights(session.scene(), session.world());
   for (const Body& group : session.bodies()) {
     summary.samples += group.surface.samples.size();
     if (session.scene().settings.method == Method::volume && group.volume) {
@@ -140,7 +141,7 @@ Summary summarize(const Session& session, const Shading& shading) {
     }
     std::map<std::string, double> noise;  // the largest of a light's channels
     for (std::size_t l = 0; l < group.transfers.size(); ++l) {
-      double& largest = noise[session.scene().lights[l].name];
+      double& largest = noise[lights[l].name];
       largest = std::max(largest, group.transfers[l].relative_error);
     }
     for (const auto& [light, error] : noise)

@@ -74,7 +74,8 @@ void trace_transfers(const IrradianceInput& input, std::span<const Light> lights
   std::vector<std::vector<ErrorSums>> errors(lights.size(),
                                              std::vector<ErrorSums>(chunk_count(n, batch_size)));
   parallel_chunks(n, batch_size, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-    ShadowBatch batch(input.rays, lights, input.eta, input.light_samples, light_seed(input.seed, lights[0]));
+    ShadowBatch batch(input.rays, lights, input.eta, shadow_rays(lights[0], input.light_samples),
+                      light_seed(input.seed, lights[0]));
     batch.sort_rays();
     batch.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
@@ -97,7 +98,7 @@ void trace_transfers(const IrradianceInput& input, std::span<const Light> lights
       }
     advance(input.monitor, (end - begin) * lights.size());
   });
-  if (is_delta(lights[0]) || input.light_samples < 2) return;
+  if (shadow_rays(lights[0], input.light_samples) < 2) return;
   for (std::size_t l = 0; l < lights.size(); ++l) {
     ErrorSums all;
     for (const ErrorSums& e : errors[l]) {
@@ -136,9 +137,10 @@ std::vector<RgbF> combine_lights(std::span<const LightTransfer> transfers, std::
 
 namespace {
 
-void add_point(const PointIrradianceInput& input, std::size_t i, ShadowBatch& batch) {
+void add_point(const PointIrradianceInput& input, std::size_t i, ShadowBatch& batch,
+               const Lobe* lobe = nullptr) {
   const auto [shift, part] = part_of(input.keys[i]);
-  batch.add(input.points[i], shift, part * std::uint64_t(batch.samples()));
+  batch.add(input.points[i], shift, part * std::uint64_t(batch.samples()), lobe);
 }
 
 // To lights that share their rays.
@@ -149,7 +151,8 @@ std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std:
     t.weights.resize(n);
     if (!input.variance.empty()) t.deviations.resize(n);
   }
-  ShadowBatch batch(input.rays, lights, input.eta, input.light_samples, light_seed(input.seed, lights[0]));
+  ShadowBatch batch(input.rays, lights, input.eta, shadow_rays(lights[0], input.light_samples),
+                    light_seed(input.seed, lights[0]));
   const Halves halves(batch.samples());
   std::vector<std::array<double, 2>> sums;  // over the halves of a point's rays, light by light
   batch.reserve(std::min(batch_size, n));
@@ -179,30 +182,41 @@ std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std:
 
 }  // namespace
 
-PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light) {
-  return std::move(transfers_to(input, input.lights.subspan(light, 1))[0]);
-}
-
-void for_each_ray(const PointIrradianceInput& input, std::size_t light, const UseOfRay& use) {
+void for_each_ray(const PointIrradianceInput& input, const UseOfRay& use, std::span<const Lobe> lobes) {
+  constexpr int kMoreOfLobes = 4;
   const std::size_t n = input.points.size(), batch_size = batch_points(input.light_samples);
-  ShadowBatch batch(input.rays, input.lights[light], input.eta, input.light_samples,
-                    light_seed(input.seed, input.lights[light]));
-  batch.keep_directions();
-  for (std::size_t begin = 0; begin < n; begin += batch_size) {
-    for (std::size_t i = begin; i < std::min(n, begin + batch_size); ++i) add_point(input, i, batch);
-    batch.trace([&](std::size_t p, int s, float e, float) {
-      if (e > 0) use(begin + p, batch.direction(p, s), e);
-    });
+  for (std::size_t first = 0, count = 0; first < input.lights.size(); first += count) {
+    count = sharing_rays(input.lights.subspan(first));
+    const std::span<const Light> lights = input.lights.subspan(first, count);
+    const int wanted =
+        is_visible(lights[0]) || lobes.empty() ? input.light_samples : kMoreOfLobes * input.light_samples;
+    ShadowBatch batch(input.rays, lights, input.eta, shadow_rays(lights[0], wanted),
+                      light_seed(input.seed, lights[0]));
+    batch.keep_directions();
+    for (std::size_t begin = 0; begin < n; begin += batch_size) {
+      for (std::size_t i = begin; i < std::min(n, begin + batch_size); ++i)
+        add_point(input, i, batch, lobes.empty() ? nullptr : &lobes[i]);
+      batch.trace_lights([&](std::size_t l, std::size_t p, int s, float e, float) {
+        if (e > 0) use(first + l, begin + p, batch.direction(p, s), e);
+      });
+    }
   }
 }
 
 std::vector<PointTransfers> transfers_at(const PointIrradianceInput& input) {
   std::vector<PointTransfers> transfers;
+  add_transfers(input, transfers);
+  return transfers;
+}
+
+void add_transfers(const PointIrradianceInput& input, std::vector<PointTransfers>& transfers) {
+  transfers.resize(input.lights.size());
   for (std::size_t l = 0, count = 0; l < input.lights.size(); l += count) {
     count = sharing_rays(input.lights.subspan(l));
-    std::ranges::move(transfers_to(input, input.lights.subspan(l, count)), std::back_inserter(transfers));
+    const auto known = std::span(transfers).subspan(l, count);
+    if (std::ranges::any_of(known, [](const PointTransfers& t) { return t.weights.empty(); }))
+      std::ranges::move(transfers_to(input, input.lights.subspan(l, count)), known.begin());
   }
-  return transfers;
 }
 
 std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers,

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "lights/light_tree.h"
 #include "opaline/core/morton.h"
 #include "opaline/core/random.h"
 #include "opaline/geometry/ray_scene.h"
@@ -32,14 +34,15 @@ inline std::size_t sharing_rays(std::span<const Light> lights) {
 /// lights that share their rays.
 class ShadowBatch {
  public:
-  /// samples: rays a point; 1 for lights without an area, whatever is asked.
+  /// samples: rays a point; 1 for lights without an area, whatever is asked. Of ManyLights each goes to one of them.
   ShadowBatch(const RayScene& rays, std::span<const Light> lights, double eta, int samples,
               std::uint64_t seed)
       : rays_(rays),
         lights_(lights),
         eta_(float(eta)),
         samples_(is_delta(lights[0]) ? 1 : samples),
-        seed_(seed) {}
+        seed_(seed),
+        many_(std::get_if<ManyLights>(&lights[0].source)) {}
   ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
       : ShadowBatch(rays, std::span(&light, 1), eta, samples, seed) {}
 
@@ -57,35 +60,25 @@ class ShadowBatch {
   }
 
   /// Adds all rays of one point; `index` chooses its rotation of the low-discrepancy points, `first` where
-  /// among them it begins.
-  void add(const SurfacePoint& point, std::uint64_t index, std::uint64_t first = 0) {
+  /// among them it begins; `lobe` as in for_each_ray.
+  void add(const SurfacePoint& point, std::uint64_t index, std::uint64_t first = 0,
+           const Lobe* lobe = nullptr) {
     std::array<double, 2> shift{};
     if (!is_delta(lights_[0]))
       shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
+    if (many_ != nullptr) return add_drawn(point, shift, first, lobe);
     for (int s = 0; s < samples_; ++s) {
       const std::array<double, 2> square = r2_point(first + std::uint64_t(s), shift);
       std::array<float, 3> weights{};
       const LightSample sample =
           sample_lights(lights_, point.position, point.normal, square, samples_, weights);
-      const float cosine = dot(point.normal, sample.direction);
-      const bool is_above = cosine > 0 && dot(point.geometric, sample.direction) > 0;
-      const float transmitted =
-          is_above && eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f;
-      bool is_carried = false;
-      for (std::size_t l = 0; l < lights_.size(); ++l) {
-        carried_.push_back(is_above && weights[l] > 0 ? weights[l] * cosine * transmitted : 0);
-        is_carried |= carried_.back() > 0;
-      }
-      if (keeps_directions_) directions_.push_back(sample.direction);
-      if (is_carried) {
-        const Vec3f origin = point.position + point.geometric * rays_.offset(point);
-        shadow_.push_back({origin, sample.direction, sample.distance * 0.9999f});
-      }
+      carry(point, sample, weights);
     }
   }
 
   /// Calls use(light, point in batch, sample, contribution, contribution were nothing in the way) for each ray in
-  /// order, then forgets them.
+  /// order, then forgets them. What chance has no part in is given in two, half to a sample of either half of a
+  /// point's: so they differ by what they are in error.
   template <class Use>
   void trace_lights(const Use& use) {
     if (scattered_ && shadow_.size() > kSorted)
@@ -97,12 +90,20 @@ class ShadowBatch {
     for (std::size_t i = 0; i < carried_.size(); i += lights) {
       const std::span<const float> carried(&carried_[i], lights);
       const bool lit = std::ranges::any_of(carried, [](float c) { return c > 0; }) && shadow_[ray++].far >= 0;
-      const std::size_t sample = i / lights;
+      const std::size_t sample = i / lights, point = sample / std::size_t(samples_);
+      const int s = int(sample % std::size_t(samples_));
+      const float sure = sure_.empty() ? 0 : sure_[sample];
       for (std::size_t l = 0; l < lights; ++l)
-        use(l, sample / std::size_t(samples_), int(sample % std::size_t(samples_)), lit ? carried[l] : 0.0f,
-            carried[l]);
+        if (sure > 0) {
+          const float half = .5f * sure * carried[l], rest = carried[l] - half;
+          use(l, point, s, lit ? rest : 0.0f, rest);
+          use(l, point, s < samples_ / 2 ? samples_ - 1 : 0, lit ? half : 0.0f, half);
+        } else {
+          use(l, point, s, lit ? carried[l] : 0.0f, carried[l]);
+        }
     }
     carried_.clear();
+    sure_.clear();
     shadow_.clear();
     directions_.clear();
   }
@@ -113,13 +114,58 @@ class ShadowBatch {
     trace_lights([&](std::size_t, std::size_t p, int s, float e, float free) { use(p, s, e, free); });
   }
 
-  /// Towards the light, of a point's sample: while `trace` calls `use`.
+  /// Towards the light, of a point's sample: while `use` is called.
   const Vec3f& direction(std::size_t point, int sample) const {
     return directions_[point * std::size_t(samples_) + std::size_t(sample)];
   }
 
  private:
   static constexpr std::size_t kSorted = 256;  // rays that Embree takes at once
+
+  void carry(const SurfacePoint& point, const LightSample& sample, const std::array<float, 3>& weights) {
+    const float cosine = dot(point.normal, sample.direction);
+    const bool is_above = cosine > 0 && dot(point.geometric, sample.direction) > 0;
+    const float transmitted =
+        is_above && eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f;
+    bool is_carried = false;
+    for (std::size_t l = 0; l < lights_.size(); ++l) {
+      carried_.push_back(is_above && weights[l] > 0 ? weights[l] * cosine * transmitted : 0);
+      is_carried |= carried_.back() > 0;
+    }
+    if (keeps_directions_) directions_.push_back(sample.direction);
+    if (is_carried) {
+      const Vec3f origin = point.position + point.geometric * rays_.offset(point);
+      shadow_.push_back({origin, sample.direction, sample.distance * 0.9999f});
+    }
+  }
+
+  // Neighbours in the order of a draw are alike: one after the other they go to the halves of a point's samples.
+  void add_drawn(const SurfacePoint& point, const std::array<double, 2>& shift, std::uint64_t first,
+                 const Lobe* lobe) {
+    constexpr double kGolden = 0.61803398874989484820;
+    const LightTree& tree = *many_->tree;
+    drawn_.resize(std::size_t(samples_));
+    const double place = shift[0] + kGolden * double(first / std::uint64_t(samples_) % (1 << 20));
+    const bool is_mirrored = lobe != nullptr && !tree.has_area();
+    tree.draw({point.position, point.normal, is_mirrored ? lobe : nullptr}, place - std::floor(place),
+              drawn_);
+    for (int s = 0; s < samples_; ++s) {
+      const int half = samples_ / 2;
+      const auto& [light, expected, rest] = drawn_[std::size_t(s < half ? 2 * s + 1 : 2 * (s - half))];
+      std::array<float, 3> weights{};
+      LightSample sample;
+      if (expected > 0) {
+        const std::array<double, 2> square{double(rest), r2_point(first + std::uint64_t(s), shift)[1]};
+        sample = sample_light(tree.lights()[light], point.position, point.normal, square, 1);
+        const RgbF colour = tree.colour(light) * (sample.weight / expected);
+        for (std::size_t l = 0; l < lights_.size(); ++l)
+          weights[l] = colour[std::get<ManyLights>(lights_[l].source).channel.value_or(0)];
+      }
+      carry(point, sample, weights);
+      const bool is_exact = samples_ > 1 && !keeps_directions_ && !tree.has_area();
+      sure_.push_back(is_exact ? 1 - std::sqrt(std::max(0.0f, 1 - expected)) : 0);
+    }
+  }
 
   // Points that follow each other need not lie together, and rays that do are traced in half the time.
   void trace_sorted() {
@@ -147,8 +193,11 @@ class ShadowBatch {
   float eta_;
   int samples_;
   std::uint64_t seed_;
+  const ManyLights* many_;  // null: a light that is not drawn
+  std::vector<LightTree::Drawn> drawn_;
   bool scattered_ = false, keeps_directions_ = false;
-  std::vector<float> carried_;
+  std::vector<float> carried_,
+      sure_;  // sure: the share of it that does not hang on what was drawn; empty: none
   std::vector<Vec3f> directions_;
   std::vector<Ray> shadow_, sorted_;
   std::vector<std::uint64_t> order_;

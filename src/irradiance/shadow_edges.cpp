@@ -130,9 +130,9 @@ class EdgeFinder {
 void average(const IrradianceInput& input, std::uint32_t light, std::span<const Mark> marks,
              const CellPoints& points, std::vector<Refined>& refined) {
   const bool delta = is_delta(input.lights[light]);
-  const std::uint32_t most =
-      delta ? CellPoints::kMost : std::min(CellPoints::kMost, 2 * std::uint32_t(input.light_samples));
-  const int each = delta ? 1 : 2 * input.light_samples / int(most);
+  const int rays = shadow_rays(input.lights[light], input.light_samples);
+  const std::uint32_t most = delta ? CellPoints::kMost : std::min(CellPoints::kMost, 2 * std::uint32_t(rays));
+  const int each = delta ? 1 : 2 * rays / int(most);
   ShadowBatch batch(input.rays, input.lights[light], input.eta, each,
                     light_seed(input.seed, input.lights[light]));
   const std::size_t batch_size = batch_points(int(most) * each);
@@ -218,7 +218,8 @@ void refine_shadow_edges(const IrradianceInput& input, std::span<const std::vect
     for (const Refined& r : part) {
       float& weight = transfers[r.light].weights[r.sample];
       const double cell = double(input.samples[r.sample].area),
-                   noise = ray_noise(weight, r.weight, unblocked[r.light][r.sample], input.light_samples);
+                   noise = ray_noise(weight, r.weight, unblocked[r.light][r.sample],
+                                     shadow_rays(input.lights[r.light], input.light_samples));
       shifts[r.light].add(cell * double(r.weight - weight), cell * noise);
       weight = r.weight;
     }

@@ -2,6 +2,7 @@
 #include "opaline/lights/light.h"
 
 #include "lights/light_of.h"
+#include "lights/light_tree.h"
 #include "opaline/core/random.h"
 #include "opaline/lights/shared_rays.h"
 
@@ -41,7 +42,21 @@ bool is_delta(const Light& light) {
   return by_kind(light, [](const auto& kind, auto of) { return of.is_delta(kind); });
 }
 
+int shadow_rays(const Light& light, int light_samples) {
+  constexpr int kFewer = 3;  // measured: src/irradiance/README.md
+  if (is_delta(light)) return 1;
+  const auto* many = std::get_if<ManyLights>(&light.source);
+  return many == nullptr || many->tree->has_area() ? light_samples : (light_samples + kFewer - 1) / kFewer;
+}
+
+bool is_visible(const Light& light) {
+  const auto* many = std::get_if<ManyLights>(&light.source);
+  return many != nullptr ? many->tree->has_area() : !is_delta(light);
+}
+
 bool share_rays(const Light& a, const Light& b) {
+  const auto *tree = std::get_if<ManyLights>(&a.source), *other_tree = std::get_if<ManyLights>(&b.source);
+  if (tree != nullptr && other_tree != nullptr) return tree->tree->hash() == other_tree->tree->hash();
   const auto *one = std::get_if<EnvironmentLight>(&a.source),
              *other = std::get_if<EnvironmentLight>(&b.source);
   return one != nullptr && other != nullptr && a.name == b.name && one->picture == other->picture &&

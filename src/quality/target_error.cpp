@@ -35,7 +35,7 @@ double first_guess(const SettingsSearch& search, double fewest, double target) {
 
 /// Of the shadow rays of a small picture, as another one differs.
 double noise_of(SettingsSearch& search, const Image& picture) {
-  if (std::ranges::all_of(search.scene.lights, is_delta)) return 0;
+  if (std::ranges::all_of(recentred_lights(search.scene, search.session.world()), is_delta)) return 0;
   return probe_difference(search.picture(), picture) / std::sqrt(2);
 }
 

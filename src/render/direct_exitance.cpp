@@ -47,14 +47,13 @@ RgbF weight_of(const EntrySampler& sampler, const SurfacePoint& exit, const Entr
 void add_directed_light(const DirectExitanceInput& input, const PointIrradianceInput& at,
                         std::span<const Entry> entries, std::span<const std::size_t> exits,
                         std::vector<RgbF>& exitance) {
-  for (std::size_t l = 0; l < at.lights.size(); ++l) {
-    const RgbF colour(emission(at.lights[l]));
-    for_each_ray(at, l, [&](std::size_t e, const Vec3f& towards_light, float irradiance) {
-      const Entry& entry = entries[e];
-      const RgbF weight = weight_of(input.sampler, input.exits.points[exits[e]], entry, towards_light);
-      exitance[exits[e]] += weight * colour * irradiance * entry.tint;
-    });
-  }
+  std::vector<RgbF> colours;
+  for (const Light& light : at.lights) colours.emplace_back(emission(light));
+  for_each_ray(at, [&](std::size_t l, std::size_t e, const Vec3f& towards_light, float irradiance) {
+    const Entry& entry = entries[e];
+    const RgbF weight = weight_of(input.sampler, input.exits.points[exits[e]], entry, towards_light);
+    exitance[exits[e]] += weight * colours[l] * irradiance * entry.tint;
+  });
 }
 
 /// What surfaces send to the entries, by a ray each.

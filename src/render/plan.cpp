@@ -7,10 +7,12 @@
 #include <cmath>
 #include <set>
 
+#include "lights/light_tree.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/image/texture_file.h"
 #include "opaline/lights/light.h"
 #include "opaline/render/picture_warnings.h"
+#include "opaline/render/precompute.h"
 #include "opaline/render/render.h"
 #include "opaline/render/surface_caches.h"
 #include "opaline/sampling/sample_surface.h"
@@ -211,25 +213,28 @@ std::string walks_stage(const Settings& settings) {
   return fmt::format("random walks, {} a sample, channel and light", kDefaultWalks) + reentry;
 }
 
-std::string irradiance_stage(const Scene& scene) {
-  std::size_t lights = 0, rays = 0;
-  for (std::size_t l = 0; l < scene.lights.size(); ++l) {
-    const Light& light = scene.lights[l];
-    if (l > 0 && share_rays(scene.lights[l - 1], light)) continue;
-    ++lights;
-    rays += is_delta(light) ? 1 : std::size_t(scene.settings.light_samples);
+/// in    traced: recentred
+std::string irradiance_stage(const Scene& scene, std::span<const Light> traced) {
+  std::size_t lights = 0, rays = 0, drawn_from = 0;
+  for (std::size_t l = 0; l < traced.size(); ++l) {
+    if (l > 0 && share_rays(traced[l - 1], traced[l])) continue;
+    const auto* many = std::get_if<ManyLights>(&traced[l].source);
+    lights += many != nullptr ? many->tree->lights().size() : 1;
+    drawn_from += many != nullptr ? many->tree->lights().size() : 0;
+    rays += std::size_t(shadow_rays(traced[l], scene.settings.light_samples));
   }
-  return fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample", lights, rays);
+  const std::string drawn = drawn_from > 0 ? fmt::format(", some to lights drawn from {}", drawn_from) : "";
+  return fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample{}", lights, rays, drawn);
 }
 
-void list_stages(const Scene& scene, Plan& plan) {
+void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) {
   const Method method = scene.settings.method;
   if (has_samples(method) && !plan.groups.empty()) {
     plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
     if (method == Method::volume) {
       plan.stages.push_back(walks_stage(scene.settings));
     } else {
-      plan.stages.push_back(irradiance_stage(scene));
+      plan.stages.push_back(irradiance_stage(scene, lights));
     }
     for (const GroupPlan& group : plan.groups)
       if (method == Method::volume_diffusion)
@@ -254,12 +259,12 @@ void list_stages(const Scene& scene, Plan& plan) {
 
 // Measured (world.h): a quick build saves .3 us a triangle and costs 5 ns a ray of the picture, which lie
 // together, and 75 ns a ray from a sample. Shadow edges bring about as many again.
-RayBuild cheaper_build(const Scene& scene, const Plan& plan) {
+RayBuild cheaper_build(const Scene& scene, std::span<const Light> lights, const Plan& plan) {
   constexpr double kSaved = 300, kPictureRay = 5, kSampleRay = 75;  // ns
   if (scene.settings.method != Method::hierarchical && scene.settings.method != Method::lambert)
     return RayBuild::careful;
   double rays = 0, samples = 0;  // rays: towards the lights from one point
-  for (const Light& light : scene.lights) rays += is_delta(light) ? 1 : scene.settings.light_samples;
+  for (const Light& light : lights) rays += shadow_rays(light, scene.settings.light_samples);
   if (scene.settings.method == Method::hierarchical)
     for (const GroupPlan& group : plan.groups) samples += double(group.samples);
   const Film& film = scene.film;
@@ -289,6 +294,7 @@ std::size_t texture_bytes(const Scene& scene) {
 Plan make_plan(const Scene& scene, const World& world) {
   check_reach(scene, world);
   check_bounces(scene);
+  const std::vector<Light> lights = recentred_lights(scene, world);
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
   for (GroupPlan& group : plan.groups) group.model = planned_model(scene, group);
@@ -315,17 +321,17 @@ Plan make_plan(const Scene& scene, const World& world) {
     choose_samples(scene, group, plan.warnings);
     if (scene.settings.method == Method::volume_diffusion) {
       choose_cells(scene, group, plan.warnings);
-      plan.bytes += group.samples * (191 + 4 * scene.lights.size() + 2 * 24 + kBytesOfFit);
+      plan.bytes += group.samples * (191 + 4 * lights.size() + 2 * 24 + kBytesOfFit);
       plan.bytes += std::size_t(kBytesOfCell * expected_cells(group.area, group.cell));
     }
     if (scene.settings.method == Method::volume)
-      plan.bytes += group.samples * (191 + kBytesOfWalkedCell + 6 * kBytesOfWalkedChannel +
-                                     scene.lights.size() * kBytesOfWalkSums);
+      plan.bytes += group.samples *
+                    (191 + kBytesOfWalkedCell + 6 * kBytesOfWalkedChannel + lights.size() * kBytesOfWalkSums);
     if (scene.settings.method != Method::hierarchical) continue;
     warn_of_near_lights(scene, world, group, plan.warnings);
     warn_of_thin_body(group, plan.warnings);
     // Measured at 1 and 10 million: samples, weights and tree while its nodes are written.
-    plan.bytes += group.samples * (191 + 4 * scene.lights.size());
+    plan.bytes += group.samples * (191 + 4 * lights.size());
     if (scene.settings.evaluator == EvaluatorKind::surface_cache)
       plan.bytes += most_wanted_places(group, world) * kBytesOfPlace;
     plan.bytes += std::size_t(needle_share(world, group) * double(group.samples) * 250);
@@ -334,8 +340,8 @@ Plan make_plan(const Scene& scene, const World& world) {
   // The lattice beside shadow edges has 56 bytes a place: about as many places as pixels there, up to its
   // finest level. Measured on bunnies: 30 bytes a pixel at 512 x 512, 230 a sample at 2048 x 2048.
   plan.bytes += std::min(30 * seen, 250 * samples);
-  plan.rays = cheaper_build(scene, plan);
-  list_stages(scene, plan);
+  plan.rays = cheaper_build(scene, lights, plan);
+  list_stages(scene, lights, plan);
   return plan;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lights/light_tree.h"
 #include "opaline/core/random.h"
 #include "opaline/exitance/cloud_error.h"
 #include "opaline/lights/light.h"
@@ -45,7 +46,7 @@ std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size
 std::vector<Light> recentred_lights(const Scene& scene, const World& world) {
   std::vector<Light> lights;
   for (const Light& light : scene.lights) lights.push_back(recentred(light, world.origin, world.unit));
-  return lights;
+  return with_trees(std::move(lights));
 }
 
 namespace {
@@ -171,7 +172,8 @@ std::array<float, 3> light_shift(const Body& group, const World& world, const Sc
     double light = 0;
     for (std::size_t i = 0; i < transfer.weights.size(); ++i)
       light += double(group.surface.samples[i].area) * double(transfer.weights[i]);
-    const bool chance = !is_delta(lights[l]) && scene.settings.light_samples < kFewRays;
+    const bool chance =
+        !is_delta(lights[l]) && shadow_rays(lights[l], scene.settings.light_samples) < kFewRays;
     const Rgb colour = emission(lights[l]);
     for (std::size_t c = 0; c < 3; ++c) {
       sum[c] += colour[c] * light;

@@ -37,8 +37,8 @@ bool fits(const Film& film, std::size_t bytes) {
 
 // What is held of earlier pictures and to be held of this one, if there is room for it.
 HeldView* view_of(const RenderInput& input, std::size_t tiles) {
-  const std::size_t least =
-      sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) + 2 * sizeof(float) * input.scene.lights.size();
+  const std::size_t least = sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) +
+                            2 * sizeof(float) * recentred_lights(input.scene, input.world).size();
   if (input.view == nullptr || !fits(input.scene.film, least)) return nullptr;
   input.view->tiles.resize(tiles);
   input.view->has_room = fits(input.scene.film, least + sizeof(SurfacePoint));

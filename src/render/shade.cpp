@@ -67,14 +67,12 @@ std::vector<SurfacePoint> points_of(std::span<const TracedRay> traced, const Ray
 
 Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers)
     : input_(input),
+      lights_(recentred_lights(input.scene, input.world)),
       textures_(input.scene, input.world),
       pixel_spread_(camera_ray_spread(input.scene)),
       fields_(make_fields(input, textures_, entry_samplers)) {
-  for (const Light& light : input.scene.lights) {
-    lights_.push_back(recentred(light, input.world.origin, input.world.unit));
-    if (is_delta(light)) continue;
-    (extent(light).center ? emitters_ : surroundings_).push_back(lights_.back());
-  }
+  for (const Light& light : lights_)
+    if (is_visible(light)) (extent(light).center ? emitters_ : surroundings_).push_back(light);
   for (const Shape& shape : input.scene.shapes) appearances_.push_back(mesh_appearance(input.scene, shape));
   // The samples of a pixel share the rays: their average has as many.
   const int spp = input.scene.film.samples_per_pixel;

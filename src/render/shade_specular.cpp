@@ -119,6 +119,7 @@ struct Shader::GlossyHits {
   int facets, to_lights;
   std::uint64_t seed;
   std::vector<std::uint64_t> keys;  // of directions, in the sequence of the pixel
+  std::vector<Lobe> lobes;
 
   GlossyHits(const Shader& shader, const SurfaceHits& all, const RayBatch& rays)
       : hits(all), batch(rays), seed(point_irradiance_seed(shader.input_.scene.settings) + 1) {
@@ -133,6 +134,8 @@ struct Shader::GlossyHits {
       if (!hits.textures.empty()) textured.push_back(shader.appearance_of(hits, i));
       appearances.push_back(hits.textures.empty() ? &shader.appearances_[hits.hits[i].mesh]
                                                   : &textured.back());
+      const Vec3f& view = frames.back().view;
+      lobes.push_back({frames.back().world({-view.x, -view.y, view.z}), boundary(i).alpha()});
     }
   }
   const RoughBoundary& boundary(std::size_t i) const { return *appearances[i]->rough; }
@@ -163,17 +166,19 @@ void Shader::add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pa
 void Shader::add_highlights(const GlossyHits& glossy) const {
   const PointIrradianceInput lighting{input_.rays, glossy.hits.points, glossy.keys, lights_,
                                       0,           glossy.to_lights,   glossy.seed};
-  for (std::size_t l = 0; l < lights_.size(); ++l) {
-    const Light& light = lights_[l];
-    const RgbF emitted(emission(light));
-    for_each_ray(lighting, l, [&](std::size_t i, const Vec3f& towards, float irradiance) {
-      const Vec3f local = glossy.frames[i].local(towards);
-      const float share =
-          is_delta(light) ? 1 : balance(glossy.of_light(i, light, towards), glossy.of_lobe(i, towards));
-      const float value = glossy.boundary(i).value(glossy.frames[i].view, local) / local.z;
-      glossy.specular(i) += emitted * glossy.color(i, local) * (irradiance * value * share);
-    });
-  }
+  std::vector<RgbF> emitted;
+  for (const Light& light : lights_) emitted.emplace_back(emission(light));
+  for_each_ray(
+      lighting,
+      [&](std::size_t l, std::size_t i, const Vec3f& towards, float irradiance) {
+        const Light& light = lights_[l];
+        const Vec3f local = glossy.frames[i].local(towards);
+        const float share =
+            is_delta(light) ? 1 : balance(glossy.of_light(i, light, towards), glossy.of_lobe(i, towards));
+        const float value = glossy.boundary(i).value(glossy.frames[i].view, local) / local.z;
+        glossy.specular(i) += emitted[l] * glossy.color(i, local) * (irradiance * value * share);
+      },
+      glossy.lobes);
 }
 
 // By directions of the lobe.

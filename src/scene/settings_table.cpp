@@ -222,7 +222,8 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::light_samples>("light_samples", whole_number, "", {1, 65536}, "",
                                        "shadow rays from each sample, and from each pixel of an opaque "
                                        "surface, to each area light and to the "
-                                       "surroundings"),
+                                       "surroundings; where lights are more than 16, to all area lights "
+                                       "together, and a third of them to all others"),
       member<&Settings::entry_strategy>("entry_strategy", choice, "", kFiniteNumber, "",
                                         "direct: how the places where light entered are drawn; "
                                         "`\"disc_axes\"`: lines through discs along three "

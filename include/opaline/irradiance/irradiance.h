@@ -8,6 +8,7 @@
 
 #include "opaline/core/monitor.h"
 #include "opaline/geometry/ray_scene.h"
+#include "opaline/lights/light.h"
 #include "opaline/sampling/sample_surface.h"
 #include "opaline/scene/scene.h"
 
@@ -68,22 +69,25 @@ struct PointTransfers {
   std::vector<float> deviations;  ///< standard errors of the weights; empty: not asked for
 };
 
-/// Shadow rays from each point to one of input.lights; deviations where input.variance is not empty.
-PointTransfers transfers_at(const PointIrradianceInput& input, std::size_t light);
-/// To each of them.
+/// Shadow rays from each point to each of input.lights; deviations where input.variance is not empty.
 std::vector<PointTransfers> transfers_at(const PointIrradianceInput& input);
+/// The same but for those that are there already: with weights, or without points.
+void add_transfers(const PointIrradianceInput& input, std::vector<PointTransfers>& transfers);
 
 /// E per point, W/mm^2: the sum over lights of emission x weight; adds to input.variance if it is not empty.
 /// in    transfers: one a light
 std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers,
                                  const PointIrradianceInput& input);
 
-/// Light that reaches a point by one shadow ray: index of the point, unit direction towards the light, irradiance per
-/// unit emission.
-using UseOfRay = std::function<void(std::size_t point, const Vec3f& towards_light, float irradiance)>;
+/// Light that reaches a point by one shadow ray: index of the light and of the point, unit direction towards the light,
+/// irradiance per unit emission.
+using UseOfRay =
+    std::function<void(std::size_t light, std::size_t point, const Vec3f& towards_light, float irradiance)>;
 
-/// The shadow rays of transfers_at that reach the light, one by one: their sum at a point is its weight.
-void for_each_ray(const PointIrradianceInput& input, std::size_t light, const UseOfRay& use);
+/// The shadow rays of transfers_at that reach lights, one by one: the mean of their sum at a point is its weight.
+/// in    lobes: one a point, which light is wanted for; of many delta lights (ManyLights) more are then drawn, rather
+///       those in the lobe. Empty: for the irradiance
+void for_each_ray(const PointIrradianceInput& input, const UseOfRay& use, std::span<const Lobe> lobes = {});
 
 /// Irradiance at arbitrary points, all lights together: for shading where samples are not wanted or too
 /// coarse.

@@ -30,7 +30,20 @@ Light with_emission(const Light& light, const Rgb& emission);
 /// True where one sample is exact: point and spot lights, and directional ones without an angle.
 bool is_delta(const Light& light);
 
-/// True for the channels of one picture: their samples have the same directions.
+/// Shadow rays from a point to the light where `light_samples` go to one with an area: 1 to delta lights; to a tree of
+/// delta lights (ManyLights) a third.
+int shadow_rays(const Light& light, int light_samples);
+
+/// Whether the light has an area or is all around: rays see it.
+bool is_visible(const Light& light);
+
+/// Where a surface mirrors a light towards the eye: facets (GGX) about the direction of a smooth mirror.
+struct Lobe {
+  Vec3f mirrored;  ///< unit
+  float alpha;     ///< > 0
+};
+
+/// True for the channels of one picture, or of one tree of lights: their samples have the same directions.
 bool share_rays(const Light& a, const Light& b);
 
 /// Seed of a light's random numbers: by its name, so that adding or removing another light leaves them alone.

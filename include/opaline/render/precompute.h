@@ -63,7 +63,7 @@ std::uint64_t point_irradiance_seed(const Settings& settings);
 std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
                                          std::span<const SurfaceSample> samples,
                                          std::span<const Light> lights);
-/// The scene's lights in the world's space and unit.
+/// The scene's lights in the world's space and unit; where they are many, trees of them (ManyLights).
 std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 
 /// For random walks inside a body with its samples. Media are walked with their mean cosine g (at most .95: to what is

@@ -225,9 +225,20 @@ struct EnvironmentLight {
   std::optional<std::size_t> channel;  ///< it shines in this one alone; none: the picture is grey
   friend bool operator==(const EnvironmentLight&, const EnvironmentLight&) = default;
 };
+class LightTree;
+/// Many lights as one, of which each point draws a few. No scene file has it: lights become it once they are in the
+/// world's space, where they are many (with_trees in lights/light_tree.h). Of different colours they become three of
+/// one name, a channel each.
+struct ManyLights {
+  static constexpr std::string_view kType = "many";
+  std::shared_ptr<const LightTree> tree;
+  Rgb strength{1, 1, 1};               ///< times the tree's colours
+  std::optional<std::size_t> channel;  ///< it shines in this one alone; none: all lights have one colour
+  friend bool operator==(const ManyLights&, const ManyLights&) = default;
+};
 
 using LightSource = std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, QuadLight,
-                                 Surroundings, EnvironmentLight>;
+                                 Surroundings, EnvironmentLight, ManyLights>;
 
 struct Light {
   std::string name;  ///< the channels of one picture have the same

@@ -55,6 +55,7 @@ struct WalkStore {
 ///                                       twice as dense (in spacing) as it asks for
 ///   eta                                 the light that enters, trees, evaluation
 ///   a light moved, added or removed     that light's share, trees, evaluation
+///   any of many lights (ManyLights)     the share of all of them, also for a colour; trees, evaluation
 ///   an object moved as a whole          no file is read; its samples go along; light that enters it, and
 ///                                       others where the shadow of a ball around it fell or falls
 ///   a mesh bent, the same triangles     the mesh is read, not checked; samples and their cells move with their

@@ -16,6 +16,9 @@ class RoughBoundary {
   /// in    roughness: (0, 1], its square is GGX's alpha; eta: inside over outside
   RoughBoundary(double roughness, double eta);
 
+  /// Of GGX: the square of the roughness.
+  float alpha() const { return alpha_; }
+
   /// The share of light from a direction that is reflected, to any side; from a table, error below .002.
   float reflectance(float cosine) const;
   /// The same of facets that reflect all light: 1 without the light that would meet a second one.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "lights/light_tree.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/irradiance/sample_key.h"
 #include "opaline/lights/light.h"
@@ -74,7 +75,7 @@ Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
 }
 
 bool has_area_lights(const Scene& scene) {
-  return !std::ranges::all_of(scene.lights, is_delta);
+  return !std::ranges::all_of(scene.lights, is_delta) || are_many(scene.lights);
 }
 
 void tint_entering(std::span<const HitTextures> textures, std::span<RgbF> irradiance,
@@ -90,9 +91,7 @@ namespace {
 
 std::vector<RgbF> from_lights(const PointIrradianceInput& lighting, HeldView::Surface* held) {
   if (held == nullptr) return irradiance_at(lighting);
-  held->lights.resize(lighting.lights.size());
-  for (std::size_t l = 0; l < held->lights.size(); ++l)
-    if (held->lights[l].weights.empty()) held->lights[l] = transfers_at(lighting, l);
+  add_transfers(lighting, held->lights);
   return combine_lights(held->lights, lighting);
 }
 
