@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "lights/light_tree.h"
 #include "opaline/core/morton.h"
 #include "opaline/core/random.h"
 #include "opaline/geometry/ray_scene.h"
+#include "opaline/lights/light_tree.h"
 #include "opaline/lights/shared_rays.h"
 #include "opaline/transport/fresnel.h"
 

@@ -2,7 +2,7 @@
 // How a tree of lights is built.
 #pragma once
 
-#include "lights/light_tree.h"
+#include "opaline/lights/light_tree.h"
 
 namespace opaline {
 

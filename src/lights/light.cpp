@@ -2,8 +2,8 @@
 #include "opaline/lights/light.h"
 
 #include "lights/light_of.h"
-#include "lights/light_tree.h"
 #include "opaline/core/random.h"
+#include "opaline/lights/light_tree.h"
 #include "opaline/lights/shared_rays.h"
 
 namespace opaline {

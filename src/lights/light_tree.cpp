@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "lights/light_tree.h"
+#include "opaline/lights/light_tree.h"
 
 #include <algorithm>
 #include <array>

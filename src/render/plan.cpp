@@ -7,10 +7,10 @@
 #include <cmath>
 #include <set>
 
-#include "lights/light_tree.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/image/texture_file.h"
 #include "opaline/lights/light.h"
+#include "opaline/lights/light_tree.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/precompute.h"
 #include "opaline/render/render.h"

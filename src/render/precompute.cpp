@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "lights/light_tree.h"
 #include "opaline/core/random.h"
 #include "opaline/exitance/cloud_error.h"
 #include "opaline/lights/light.h"
+#include "opaline/lights/light_tree.h"
 
 namespace opaline {
 std::uint64_t sampling_seed(const Settings& settings, std::size_t group) {

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "lights/light_tree.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/irradiance/sample_key.h"
 #include "opaline/lights/light.h"
+#include "opaline/lights/light_tree.h"
 #include "render/fields/direct_field.h"
 #include "render/fields/local_field.h"
 #include "render/fields/sample_field.h"
