@@ -51,7 +51,7 @@ class ElementTable {
     std::vector<BoundaryElement> elements;
     elements.reserve(sums_.size());
     for (const ElementSum& sum : sums_)
-      elements.push_back({Vec3f(sum.position / sum.area), Vec3f(normalized(sum.normal)), float(sum.area), 0});
+      elements.push_back({Vec3f(sum.position / sum.area), Vec3f(normalized(sum.normal)), float(sum.area)});
     return elements;
   }
 
@@ -107,11 +107,6 @@ void cut(Polygon polygon, std::size_t axis, const Found& found) {
   found(polygon);
 }
 
-void add_sampled_areas(Boundary& boundary) {
-  for (const BoundaryPiece& piece : boundary.pieces)
-    boundary.elements[piece.element].sampled_area += piece.area;
-}
-
 class Cutter {
  public:
   Cutter(const World& world, std::span<const SurfaceSample> samples, const Lattice& lattice)
@@ -141,25 +136,22 @@ class Cutter {
       for (std::size_t i = begin; i < end; ++i)
         boundary_.pieces[i].sample = nearest.at(boundary_.pieces[i].position, normals_[i]);
     });
-    std::vector<double> area(samples_.size());
-    for (const BoundaryPiece& piece : boundary_.pieces) area[piece.sample] += double(piece.area);
-    for (BoundaryPiece& piece : boundary_.pieces)
-      piece.area = float(double(piece.area) * double(samples_[piece.sample].area) / area[piece.sample]);
+    std::vector<bool> has_piece(samples_.size());
+    for (const BoundaryPiece& piece : boundary_.pieces) has_piece[piece.sample] = true;
     for (std::uint32_t i = 0; i < samples_.size(); ++i) {
-      if (area[i] > 0) continue;  // no part of a triangle is nearest to it
+      if (has_piece[i]) continue;  // else no part of a triangle is nearest to it
       const SurfaceSample& s = samples_[i];
+      const float area = kAlmostNothing * s.area;
       const Vec3f normal = surface_point(world_.meshes[s.mesh], s.triangle, s.u, s.v).geometric;
       boundary_.pieces.push_back(
-          {s.position, s.area, i,
-           table_.add(Vec3d(s.position), Vec3d(normal), kAlmostNothing * double(s.area))});
+          {s.position, area, i, table_.add(Vec3d(s.position), Vec3d(normal), double(area))});
     }
     boundary_.elements = table_.take();
-    add_sampled_areas(boundary_);
     return std::move(boundary_);
   }
 
  private:
-  static constexpr double kAlmostNothing = 1e-3;  // of a sample's area, which other samples' pieces cover
+  static constexpr float kAlmostNothing = 1e-3f;  // of a sample's area, which other samples' pieces cover
 
   void add(const Polygon& part, const Vec3d& normal) {
     Vec3d sum{};
@@ -205,7 +197,6 @@ Boundary coarsened(const Boundary& boundary, const Lattice& doubled) {
     places.push_back(table.add(Vec3d(element.position), Vec3d(element.normal), double(element.area)));
   Boundary result{table.take(), boundary.pieces};
   for (BoundaryPiece& piece : result.pieces) piece.element = places[piece.element];
-  add_sampled_areas(result);
   return result;
 }
 

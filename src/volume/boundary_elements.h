@@ -18,13 +18,12 @@ struct BoundaryElement {
   Vec3f position;  ///< mean, world units
   Vec3f normal;    ///< geometric, outward
   float area = 0;
-  float sampled_area = 0;  ///< the sum of its pieces' areas
 };
 
 /// What an element has of a sample's Voronoi cell.
 struct BoundaryPiece {
   Vec3f position;  ///< mean, world units
-  float area;      ///< the areas of a sample's pieces add up to the sample's
+  float area;
   std::uint32_t sample, element;
 };
 

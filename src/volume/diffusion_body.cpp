@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "opaline/core/parallel.h"
 
@@ -96,10 +95,7 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
   for (std::size_t c = 0; c < 3; ++c) problem.diffusivity[c] = float(media_[c].diffusion * lattice_.cell);
   FirstCollisions collisions = first_collisions(space(), light);
   problem.source = std::move(collisions.source);
-  Solution solution{
-      solve_diffusion(problem, getenv("TOL") ? atof(getenv("TOL")) : kTolerance, std::move(start), monitor)
-          .fluence,
-      {}};
+  Solution solution{solve_diffusion(problem, kTolerance, std::move(start), monitor).fluence, {}};
   solution.exitance = read(solution.fluence, collisions.leaving);
   return solution;
 }
@@ -129,29 +125,33 @@ std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
     }
   });
   std::vector<Rgb> diffused(sample_areas_.size()), at_once(sample_areas_.size());
-  Rgb lost{}, found{};
+  std::vector<double> areas(sample_areas_.size());
   for (const BoundaryPiece& piece : boundary_.pieces) {
     const Plane& plane = planes[piece.element];
     const Vec3f apart = piece.position - boundary_.elements[piece.element].position;
-    Rgb flux;
     for (std::size_t c = 0; c < 3; ++c)
-      flux[c] = double(piece.area * std::max(0.f, plane.value[c] + dot(plane.slope[c], apart)));
-    found += flux;
-    diffused[piece.sample] += flux;
+      diffused[piece.sample][c] +=
+          double(piece.area * std::max(0.f, plane.value[c] + dot(plane.slope[c], apart)));
     at_once[piece.sample] += Rgb(leaving[piece.element]) * double(piece.area);
+    areas[piece.sample] += double(piece.area);
+  }
+  Rgb lost{}, found{};
+  for (std::size_t s = 0; s < areas.size(); ++s) {
+    diffused[s] = diffused[s] / areas[s];
+    found += (diffused[s] + at_once[s] / areas[s]) * double(sample_areas_[s]);
   }
   for (std::size_t i = 0; i < attached_.size(); ++i) {
     const auto& [cell, depth] = attached_[i];
+    lost += Rgb(leaving[i]) * double(boundary_.elements[i].area);
     if (cell == DiffusionGrid::kNone) continue;
     for (std::size_t c = 0; c < 3; ++c)
       lost[c] +=
           double(boundary_.elements[i].area) * double(fluence[cell].c[c]) * media_[c].conductance(depth);
   }
-  std::vector<RgbF> exitance(sample_areas_.size());
-  for (std::size_t s = 0; s < exitance.size(); ++s)
-    for (std::size_t c = 0; c < 3; ++c)
-      exitance[s][c] = float((at_once[s][c] + (found[c] > 0 ? diffused[s][c] * lost[c] / found[c] : 0)) /
-                             double(sample_areas_[s]));
+  for (std::size_t c = 0; c < 3; ++c) lost[c] = found[c] > 0 ? lost[c] / found[c] : 0;
+  std::vector<RgbF> exitance;
+  for (std::size_t s = 0; s < areas.size(); ++s)
+    exitance.push_back(RgbF((diffused[s] + at_once[s] / areas[s]) * lost));
   return exitance;
 }
 

@@ -37,7 +37,7 @@ class DiffusionBody {
   const Boundary& boundary() const { return boundary_; }
 
  private:
-  DiffusionSpace space() const { return {lattice_, grid_, media_, boundary_, attached_}; }
+  DiffusionSpace space() const { return {lattice_, grid_, media_, boundary_, sample_areas_, attached_}; }
   void attach();
   std::vector<Channels> losses() const;
   std::vector<RgbF> read(std::span<const Channels> fluence, std::span<const RgbF> leaving) const;

@@ -22,28 +22,37 @@ double golden_point(std::size_t i) {
   return turns - std::floor(turns);
 }
 
-// Of some directions towards a light, one, with the chance of its share of what would enter there.
-Vec3f towards_light(const Light& light, const BoundaryElement& point, double eta, std::size_t i) {
-  constexpr int kTries = 8;
-  const int tries = is_delta(light) ? 1 : kTries;
-  Vec3f chosen = point.normal;
-  double sum = 0, chance = unit_double(hash_bits(0, i));
-  for (int t = 0; t < tries; ++t) {
+constexpr std::size_t kDirections = 8;  // towards a light that is no point
+
+/// Directions towards a light, each with its share of what enters there.
+struct Directions {
+  struct One {
+    Vec3f outward;
+    double share;
+  };
+  std::array<One, kDirections> some;
+  std::size_t count = 0;
+};
+
+Directions towards_light(const Light& light, const BoundaryElement& element, double eta, std::size_t i) {
+  const std::size_t tries = is_delta(light) ? 1 : kDirections;
+  Directions found;
+  double sum = 0;
+  for (std::size_t t = 0; t < tries; ++t) {
     const LightSample sample =
-        sample_light(light, point.position, point.normal,
-                     r2_point(i * std::size_t(tries) + std::size_t(t), {.5, .5}), tries);
-    const double cosine = double(dot(sample.direction, point.normal));
+        sample_light(light, element.position, element.normal, r2_point(i * tries + t, {.5, .5}), int(tries));
+    const double cosine = double(dot(sample.direction, element.normal));
     if (!(sample.weight > 0 && cosine > 0)) continue;
     const double share = double(sample.weight) * cosine * fresnel_transmittance(std::min(cosine, 1.0), eta);
+    found.some[found.count++] = {sample.direction, share};
     sum += share;
-    if (chance * sum < share) {  // reservoir: the number is used again within what it has chosen
-      chosen = sample.direction;
-      chance = chance * sum / share;
-    } else {
-      chance = (chance * sum - share) / (sum - share);
-    }
   }
-  return chosen;
+  if (!(sum > 0)) {
+    found = {{{{element.normal, 1}}}, 1};
+    sum = 1;
+  }
+  for (std::size_t n = 0; n < found.count; ++n) found.some[n].share /= sum;
+  return found;
 }
 
 float edge_of(const DiffusionGrid::Cell& cell) {
@@ -82,7 +91,7 @@ class Depositor {
   }
 
   /// entering: W
-  void enter(const Light& light, const Rgb& entering, std::size_t i);
+  void enter(const Vec3d& outward, const Rgb& entering, std::size_t i);
   FirstCollisions take() { return std::move(result_); }
 
  private:
@@ -176,7 +185,8 @@ std::optional<Depositor::Exit> Depositor::collide(const Way& way, double start, 
     length += step;
     last = next;
   }
-  for (std::size_t c = 0; c < 3; ++c) result_.source[last].c[c] += float(flux[c]);
+  for (std::size_t c = 0; c < 3; ++c)
+    if (flux[c] > 0) deposit(at(way, farthest + 1 / space_.media[c].extinction), last, c, flux[c]);
   flux = {};
   return {};
 }
@@ -223,20 +233,20 @@ void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, std::size
   const Vec3d normal(point.normal);
   const double reflected =
       flux * inside_reflectance(std::clamp(dot(way.along, normal), kLeastCosine, 1.), medium.eta);
-  result_.leaving[exit.element][channel] += float((flux - reflected) / double(point.sampled_area));
+  result_.leaving[exit.element][channel] += float((flux - reflected) / double(point.area));
   const Way back{at(way, exit.length), mirrored(way.along, normal)};
   const double collided = -std::log1p(-golden_point(i)) / medium.extinction;
   deposit(at(back, collided), exit.cell, channel, reflected * medium.albedo);
 }
 
-// Light of one source that enters at an element: what collides between the element and the centre of its cell leaves in
-// part at once, as between two resistances; of the rest of its way a few places stand for all.
-void Depositor::enter(const Light& light, const Rgb& entering, std::size_t i) {
+// Light that enters at an element from one direction: what collides between the element and the centre of its cell leaves in
+// part at once, as between two resistances; the rest goes on.
+void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) {
   const BoundaryElement& element = space_.boundary.elements[i];
   const AttachedElement& attached = space_.attached[i];
   const double eta = space_.media[0].eta;
   const Vec3d normal(element.normal);
-  const Vec3d inward = refracted_inward(-Vec3d(towards_light(light, element, eta, i)), normal, eta);
+  const Vec3d inward = refracted_inward(-outward, normal, eta);
   const double cosine = std::max(kLeastCosine, -dot(inward, normal)), depth = attached.depth;
   const double path = depth / cosine;
   const Way way{space_.in_lattice(element.position), inward};
@@ -249,7 +259,7 @@ void Depositor::enter(const Light& light, const Rgb& entering, std::size_t i) {
     const double passed = std::exp(-path / free_path);
     const double at_once =
         (depth - cosine * free_path * (1 - passed)) / (2 * medium.mismatch * medium.diffusion + depth);
-    result_.leaving[i][c] += float(enters * at_once / double(element.sampled_area));
+    result_.leaving[i][c] += float(enters * at_once / double(element.area));
     result_.source[attached.cell].c[c] += float(enters * (1 - passed - at_once));
     colliding[c] = enters * passed;
   }
@@ -259,17 +269,22 @@ void Depositor::enter(const Light& light, const Rgb& entering, std::size_t i) {
       leave(way, *exit, i, c, entering[c] * std::exp(-exit->length * space_.media[c].extinction));
 }
 
-// What enters of a light at each element, W.
-std::vector<Rgb> entering_flux(const Boundary& boundary, const EnteringLight& light, std::size_t l) {
-  std::vector<Rgb> flux(boundary.elements.size());
-  const Rgb emitted = emission(light.lights[l]);
-  for (const BoundaryPiece& piece : boundary.pieces) {
-    const double weight = double(piece.area) * double(light.transfers[l].weights[piece.sample]);
-    if (!(weight > 0)) continue;
-    Rgb entering = emitted * weight;
-    if (!light.tints.empty()) entering = entering * Rgb(light.tints[piece.sample]);
-    flux[piece.element] += entering;
+// What enters of a light at each element, W: together what enters at the samples.
+std::vector<Rgb> entering_flux(const DiffusionSpace& space, const EnteringLight& light, std::size_t l) {
+  const auto entering = [&](std::uint32_t sample, float area) {
+    const Rgb flux = emission(light.lights[l]) * (double(area) * double(light.transfers[l].weights[sample]));
+    return light.tints.empty() ? flux : flux * Rgb(light.tints[sample]);
+  };
+  std::vector<Rgb> flux(space.boundary.elements.size());
+  Rgb found{}, whole{};
+  for (const BoundaryPiece& piece : space.boundary.pieces) {
+    const Rgb of_piece = entering(piece.sample, piece.area);
+    flux[piece.element] += of_piece;
+    found += of_piece;
   }
+  for (std::uint32_t s = 0; s < space.sample_areas.size(); ++s) whole += entering(s, space.sample_areas[s]);
+  for (std::size_t c = 0; c < 3; ++c) whole[c] = found[c] > 0 ? whole[c] / found[c] : 1;
+  for (Rgb& of_element : flux) of_element = of_element * whole;
   return flux;
 }
 
@@ -278,10 +293,14 @@ std::vector<Rgb> entering_flux(const Boundary& boundary, const EnteringLight& li
 FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light) {
   Depositor depositor(space);
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
-    const std::vector<Rgb> flux = entering_flux(space.boundary, light, l);
-    for (std::size_t i = 0; i < flux.size(); ++i)
-      if (max_component(flux[i]) > 0 && space.attached[i].cell != DiffusionGrid::kNone)
-        depositor.enter(light.lights[l], flux[i], i);
+    const std::vector<Rgb> flux = entering_flux(space, light, l);
+    for (std::size_t i = 0; i < flux.size(); ++i) {
+      if (!(max_component(flux[i]) > 0) || space.attached[i].cell == DiffusionGrid::kNone) continue;
+      const Directions from =
+          towards_light(light.lights[l], space.boundary.elements[i], space.media[0].eta, i);
+      for (std::size_t n = 0; n < from.count; ++n)
+        depositor.enter(Vec3d(from.some[n].outward), flux[i] * from.some[n].share, i);
+    }
   }
   return depositor.take();
 }

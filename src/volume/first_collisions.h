@@ -33,12 +33,13 @@ struct DiffusionSpace {
   const DiffusionGrid& grid;
   const std::array<CalibratedMedium, 3>& media;
   const Boundary& boundary;
+  std::span<const float> sample_areas;
   std::span<const AttachedElement> attached;  ///< one an element
 
   Vec3d in_lattice(const Vec3f& position) const { return lattice.into(Vec3d(position)); }
 };
 
-/// Flux by cell, and what leaves at each element at once, per sampled area.
+/// Flux by cell, and what leaves at each element at once, per area.
 struct FirstCollisions {
   std::vector<Channels> source;
   std::vector<RgbF> leaving;
