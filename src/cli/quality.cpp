@@ -118,7 +118,7 @@ RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache*
   RenderArguments settled = arguments;
   const KnownErrors known = choose_settings(stages, arguments, session);
   settled.target_error.reset();
-  if (!known.predicted) return settled;
+  if (!known.predicted && session.scene().settings.method != Method::volume_diffusion) return settled;
   for (std::string& text : chosen_overrides(session, 0)) settled.overrides.push_back(std::move(text));
   settled.overrides.push_back(
       fmt::format("settings.light_samples={}", session.scene().settings.light_samples));
@@ -139,6 +139,8 @@ std::vector<std::string> chosen_overrides(const Session& session, std::size_t en
   if (settings.method == Method::direct) return {fmt::format("settings.entry_samples={}", entry_samples)};
   std::vector<std::string> overrides{fmt::format("settings.tolerance={}", settings.tolerance),
                                      fmt::format("settings.evaluator={}", name_of(settings.evaluator))};
+  if (settings.method == Method::volume_diffusion)
+    overrides = {fmt::format("settings.cell_size={}", settings.cell_size)};
   const std::vector<GroupPlan>& groups = session.plan().groups;
   if (groups.size() == 1)
     overrides.push_back(fmt::format("settings.samples={}", groups[0].samples));
@@ -150,17 +152,33 @@ std::vector<std::string> chosen_overrides(const Session& session, std::size_t en
 
 KnownErrors choose_settings(StageRunner& stages, const RenderArguments& arguments, Session& session) {
   const Settings& settings = session.scene().settings;
-  if (arguments.time_budget && settings.method == Method::lambert)
+  if (arguments.time_budget &&
+      (settings.method == Method::lambert || settings.method == Method::volume_diffusion))
     throw bad_usage("--time-budget chooses how light under the surface is summed",
                     "--method hierarchical or direct", std::string(name_of(settings.method)));
   if (arguments.time_budget && settings.method == Method::volume)
     throw bad_usage("--time-budget does not end random walks", "--until-error, and --resume to go on later",
                     "volume");
   const bool hierarchical = settings.method == Method::hierarchical;
+  if (settings.method == Method::volume_diffusion && arguments.target_error && !arguments.verify) {
+    const TargetError chosen = stages.run(
+        "choosing",
+        [&] {
+          return reach_volume_error(session, session.scene(), *arguments.target_error, &stages.monitor());
+        },
+        InnerStages::trials);
+    print_volume_target(arguments.log, *arguments.target_error, chosen, session.scene().settings);
+    KnownErrors known{arguments.target_error, {}, {}};
+    if (chosen.sees_translucent && chosen.model) known.predicted = chosen.predicted;
+    return known;
+  }
   if (!hierarchical && (arguments.target_error || arguments.verify))
     throw bad_usage(arguments.target_error ? "--target-error chooses how light under the surface is summed"
                                            : "--verify measures how light under the surface is summed",
-                    "--method hierarchical; the noise of direct and volume ends at --until-error",
+                    arguments.verify
+                        ? "--method hierarchical; --method volume tells the error of volume_diffusion"
+                        : "--method hierarchical or volume_diffusion; the noise of direct and volume "
+                          "ends at --until-error",
                     std::string(name_of(settings.method)));
   if ((!arguments.target_error && !arguments.time_budget) || !hierarchical) return {};
   if (settings.evaluator == EvaluatorKind::classic)
