@@ -40,7 +40,8 @@ does to edges: that stays yours. A small picture estimates its own error; where 
 with more samples. --verify
 measures what came of it, at a cost that grows with the square of the accuracy. With --frames it holds for
 settings.reference_frame: settings are chosen there, once, and all frames share them, so that nothing flickers.
-With --method volume_diffusion it is the error against --method volume, the model's own included: a bound of what
+With --method volume_diffusion it is the error against --method volume without settings.reenter, the model's own
+included: a bound of what
 the plan expects of it. Where that alone is more, a warning says the least that can be promised, which is taken.
 
 --time-budget is the CPU time of the whole program, all threads, user and system, as the closing table has it: its
