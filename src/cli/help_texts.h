@@ -37,9 +37,11 @@ They are applied first, then each --set in its order: the last one wins.
 --target-error is the mean relative error of the diffuse light over the translucent pixels, of the worst channel,
 against the converged --method direct. What the diffusion model itself is off by is not in it, nor what --spp
 does to edges: that stays yours. A small picture estimates its own error; where that is too much it is made again
-with more samples. --verify
-measures what came of it, at a cost that grows with the square of the accuracy. With --frames it holds for
-settings.reference_frame: settings are chosen there, once, and all frames share them, so that nothing flickers.
+with more samples. --verify measures what came of it, at a cost that grows with the square of the accuracy. With
+--frames it holds for settings.reference_frame: settings are chosen there, once, and all frames share them, so that
+nothing flickers. With --method volume_diffusion it is the error against --method volume without settings.reenter,
+the model's own included: a bound of what the plan expects of it. Where that alone is more, a warning says the least
+that can be promised, which is taken.
 
 --time-budget is the CPU time of the whole program, all threads, user and system, as the closing table has it: its
 start, loading, choosing and writing are within, --verify is not. Small pictures, tiles of the whole one and small

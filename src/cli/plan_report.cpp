@@ -160,6 +160,12 @@ void print_plate(const PlateModel& plate) {
                             three(plate, [](const Channel& c) { return 100 * c.walks.through; })));
 }
 
+void warn_of_nothing_seen(const Log& log) {
+  print_warning(log,
+                "nothing translucent is seen: --target-error promises nothing here; noise of opaque surfaces "
+                "is settings.light_samples, of edges --spp");
+}
+
 }  // namespace
 
 void print_plates(const Log& log, const std::vector<PlateModel>& plates) {
@@ -195,11 +201,7 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
                  {"tolerance", settings.tolerance},
                  {"light_samples", settings.light_samples},
                  {"evaluator", name_of(settings.evaluator)}});
-  if (!chosen.sees_translucent)
-    return print_warning(
-        log,
-        "nothing translucent is seen: --target-error promises nothing here; noise of opaque surfaces "
-        "is settings.light_samples, of edges --spp");
+  if (!chosen.sees_translucent) return warn_of_nothing_seen(log);
   if (!log.quiet && log.format == LogFormat::text)
     print_row("target", fmt::format("{:.3g} %: {} predicted to be {:.2g} % off, tolerance {:.2g} %",
                                     100 * target, counted(chosen.samples, "sample"), 100 * chosen.predicted,
@@ -210,6 +212,36 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
         fmt::format("an error of {:.3g} % cannot be reached with settings.max_samples of {}: {:.2g} % is "
                     "predicted",
                     100 * target, settings.max_samples, 100 * chosen.predicted));
+}
+
+void print_volume_target(const Log& log, double target, const TargetError& chosen, const Settings& settings) {
+  if (!log.quiet)
+    print_event(log, "target",
+                {{"target_error", target},
+                 {"predicted_error", chosen.predicted},
+                 {"model_error", chosen.model ? Json(*chosen.model) : Json()},
+                 {"reached", chosen.reached},
+                 {"sees_translucent", chosen.sees_translucent},
+                 {"samples", chosen.samples},
+                 {"cell_size", settings.cell_size},
+                 {"light_samples", settings.light_samples}});
+  if (!chosen.sees_translucent) return warn_of_nothing_seen(log);
+  if (!log.quiet && log.format == LogFormat::text)
+    print_row(
+        "target",
+        fmt::format("{:.3g} %: {}, cells of {:.3g} mean free paths predicted to be {:.2g} % off random walks",
+                    100 * target, counted(chosen.samples, "sample"), settings.cell_size,
+                    100 * chosen.predicted));
+  if (!chosen.model)
+    return print_warning(log,
+                         "a mesh is open, or too thin for diffusion: what that is off by is not known, and "
+                         "nothing is promised");
+  if (!chosen.reached)
+    print_warning(
+        log,
+        fmt::format("cannot promise less than {:.2g} % against --method volume, of which {:.2g} % "
+                    "are the diffusion model's; taking that in place of {:.3g} %",
+                    100 * std::max(chosen.promised, chosen.predicted), 100 * *chosen.model, 100 * target));
 }
 
 void print_budget(const Log& log, double budget, double before, const TimeBudget& chosen,

@@ -44,6 +44,20 @@ KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, 
   return {{}, chosen.predicted, {}};
 }
 
+KnownErrors choose_cells(StageRunner& stages, const RenderArguments& arguments, Session& session) {
+  for (const std::string& text : arguments.overrides)
+    if (text.starts_with("settings.cell_size="))
+      throw bad_usage("--target-error chooses settings.cell_size itself", "one of the two", text);
+  const double target = *arguments.target_error;
+  const TargetError chosen = stages.run(
+      "choosing", [&] { return reach_volume_error(session, session.scene(), target, &stages.monitor()); },
+      InnerStages::trials);
+  print_volume_target(arguments.log, target, chosen, session.scene().settings);
+  KnownErrors known{target, {}, {}};
+  if (chosen.sees_translucent && chosen.model) known.predicted = chosen.predicted;
+  return known;
+}
+
 /// Which of the two is asked for; "" for neither.
 const char* option_of(const RenderArguments& render) {
   return render.target_error ? "--target-error" : render.time_budget ? "--time-budget" : "";
@@ -118,7 +132,7 @@ RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache*
   RenderArguments settled = arguments;
   const KnownErrors known = choose_settings(stages, arguments, session);
   settled.target_error.reset();
-  if (!known.predicted) return settled;
+  if (!known.predicted && session.scene().settings.method != Method::volume_diffusion) return settled;
   for (std::string& text : chosen_overrides(session, 0)) settled.overrides.push_back(std::move(text));
   settled.overrides.push_back(
       fmt::format("settings.light_samples={}", session.scene().settings.light_samples));
@@ -136,17 +150,23 @@ FinishPicture trial_writing(const RenderArguments& arguments, const Film& film) 
 
 KnownErrors choose_settings(StageRunner& stages, const RenderArguments& arguments, Session& session) {
   const Settings& settings = session.scene().settings;
-  if (arguments.time_budget && settings.method == Method::lambert)
+  if (arguments.time_budget &&
+      (settings.method == Method::lambert || settings.method == Method::volume_diffusion))
     throw bad_usage("--time-budget chooses how light under the surface is summed",
                     "--method hierarchical or direct", std::string(name_of(settings.method)));
   if (arguments.time_budget && settings.method == Method::volume)
     throw bad_usage("--time-budget does not end random walks", "--until-error, and --resume to go on later",
                     "volume");
   const bool hierarchical = settings.method == Method::hierarchical;
+  if (settings.method == Method::volume_diffusion && arguments.target_error && !arguments.verify)
+    return choose_cells(stages, arguments, session);
   if (!hierarchical && (arguments.target_error || arguments.verify))
     throw bad_usage(arguments.target_error ? "--target-error chooses how light under the surface is summed"
                                            : "--verify measures how light under the surface is summed",
-                    "--method hierarchical; the noise of direct and volume ends at --until-error",
+                    arguments.verify
+                        ? "--method hierarchical; --method volume tells the error of volume_diffusion"
+                        : "--method hierarchical or volume_diffusion; the noise of direct and volume "
+                          "ends at --until-error",
                     std::string(name_of(settings.method)));
   if ((!arguments.target_error && !arguments.time_budget) || !hierarchical) return {};
   if (settings.evaluator == EvaluatorKind::classic)

@@ -29,6 +29,8 @@ void print_decisions(const Log& log, const std::vector<std::string>& decisions, 
 
 /// What was chosen for --target-error, and a warning where that does not reach it.
 void print_target(const Log& log, double target, const TargetError& chosen, const Settings& settings);
+/// The same for volume_diffusion.
+void print_volume_target(const Log& log, double target, const TargetError& chosen, const Settings& settings);
 
 /// What was chosen for --time-budget, and a warning where that is too little; `before`: CPU before the
 /// choice, s.

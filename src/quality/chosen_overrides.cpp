@@ -11,6 +11,8 @@ std::vector<std::string> chosen_overrides(const Session& session, std::size_t en
   if (settings.method == Method::direct) return {fmt::format("settings.entry_samples={}", entry_samples)};
   std::vector<std::string> overrides{fmt::format("settings.tolerance={}", settings.tolerance),
                                      fmt::format("settings.evaluator={}", name_of(settings.evaluator))};
+  if (settings.method == Method::volume_diffusion)
+    overrides = {fmt::format("settings.cell_size={}", settings.cell_size)};
   const std::vector<GroupPlan>& groups = session.plan().groups;
   if (groups.size() == 1)
     overrides.push_back(fmt::format("settings.samples={}", groups[0].samples));

@@ -131,11 +131,13 @@ void ViewBackground::work(const Job& job, const BackgroundWork& wanted) {
 
 void ViewBackground::choose(const Job& job, double target_error) {
   const Settings& settings = job.scene.settings;
-  if (settings.method != Method::hierarchical || settings.evaluator == EvaluatorKind::classic)
+  const bool is_volume = settings.method == Method::volume_diffusion;
+  if (!is_volume && (settings.method != Method::hierarchical || settings.evaluator == EvaluatorKind::classic))
     throw Error(ErrorKind::bad_input, {}, 0, 0,
                 "settings for an error are how light under the surface is summed",
-                "the method hierarchical, and an evaluator other than classic");
-  ChosenSettings chosen{job.shown->revision, reach_error(*session_, job.scene, target_error, &monitor_), {}};
+                "the method volume_diffusion, or hierarchical with an evaluator other than classic");
+  const auto reach = is_volume ? reach_volume_error : reach_error;
+  ChosenSettings chosen{job.shown->revision, reach(*session_, job.scene, target_error, &monitor_), {}};
   chosen.overrides = chosen_overrides(*session_);
   chosen.overrides.push_back(
       fmt::format("settings.light_samples={}", session_->scene().settings.light_samples));

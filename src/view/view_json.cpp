@@ -193,10 +193,9 @@ std::string told_text(bool good, const std::string& text) {
 std::string told_choice(double target, const TargetError& chosen) {
   if (!chosen.sees_translucent)
     return told_text(false, "nothing translucent is seen: there is no error to choose for");
-  return told_text(
-      chosen.reached,
-      fmt::format("{:.3g} %: {} samples are predicted to be {:.2g} % off{}", 100 * target, chosen.samples,
-                  100 * chosen.predicted, chosen.reached ? "" : ", as many as settings.max_samples allows"));
+  return told_text(chosen.reached, fmt::format("{:.3g} %: {} samples are predicted to be {:.2g} % off{}",
+                                               100 * target, chosen.samples, 100 * chosen.predicted,
+                                               chosen.reached ? "" : ", the least that can be had"));
 }
 
 }  // namespace opaline

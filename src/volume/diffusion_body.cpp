@@ -11,27 +11,12 @@ namespace {
 
 constexpr double kTolerance = 1e-3;  // of the solver; moves the bunny's picture by .03 %
 
-Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell) {
-  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  for (const std::uint32_t m : meshes)
-    for (const Vec3d& p : world.meshes[m].positions) {
-      low = component_min(low, p);
-      high = component_max(high, p);
-    }
-  // No plane of the lattice in a face of a box.
-  const Vec3d margin = Vec3d(1.3713, 1.4289, 1.3317) * cell;
-  const auto cells = [&](double extent) {
-    return DiffusionGrid::kLargest * int(std::ceil((extent / cell + 2.8) / DiffusionGrid::kLargest));
-  };
-  return {low - margin, cell, cells(high.x - low.x), cells(high.y - low.y), cells(high.z - low.z)};
-}
-
 DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice,
-                        std::span<const BoundaryPoint> points) {
+                        const Boundary& boundary) {
   const InsideLines lines(world, meshes, lattice);
   std::vector<DiffusionGrid::Facet> surface;
-  for (const BoundaryPoint& point : points)
-    surface.push_back({Vec3f(lattice.into(Vec3d(point.position))), point.normal});
+  for (const BoundaryElement& element : boundary.elements)
+    surface.push_back({Vec3f(lattice.into(Vec3d(element.position))), element.normal, element.area});
   return {lines, lattice, surface};
 }
 
@@ -59,21 +44,40 @@ std::array<Vec3f, 3> gradient_at(const DiffusionGrid& grid, std::span<const Chan
 
 }  // namespace
 
+Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell) {
+  constexpr int kMultiple = 2 * DiffusionGrid::kLargest;  // of cells twice as large, too
+  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  for (const std::uint32_t m : meshes)
+    for (const Vec3d& p : world.meshes[m].positions) {
+      low = component_min(low, p);
+      high = component_max(high, p);
+    }
+  // No plane of the lattice in a face of a box.
+  const Vec3d margin = Vec3d(1.3713, 1.4289, 1.3317) * cell;
+  const auto cells = [&](double extent) {
+    return kMultiple * int(std::ceil((extent / cell + 2.8) / kMultiple));
+  };
+  return {low - margin, cell, cells(high.x - low.x), cells(high.y - low.y), cells(high.z - low.z)};
+}
+
 DiffusionBody::DiffusionBody(const World& world, std::span<const std::uint32_t> meshes,
-                             std::span<const BoundaryPoint> points,
-                             const std::array<CalibratedMedium, 3>& media, double cell)
-    : points_(points),
+                             std::span<const float> sample_areas,
+                             const std::array<CalibratedMedium, 3>& media, const Lattice& lattice,
+                             Boundary boundary)
+    : sample_areas_(sample_areas),
       media_(media),
-      lattice_(lattice_around(world, meshes, cell)),
-      grid_(make_grid(world, meshes, lattice_, points)) {
+      lattice_(lattice),
+      boundary_(std::move(boundary)),
+      grid_(make_grid(world, meshes, lattice_, boundary_)) {
   attach();
 }
 
 void DiffusionBody::attach() {
-  attached_.resize(points_.size());
-  parallel_chunks(points_.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+  attached_.resize(boundary_.elements.size());
+  parallel_chunks(attached_.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3f position(space().in_lattice(points_[i].position)), normal = points_[i].normal;
+      const BoundaryElement& element = boundary_.elements[i];
+      const Vec3f position(space().in_lattice(element.position)), normal = element.normal;
       for (const float below : {.05f, .35f, .7f, 1.05f, 1.5f}) {
         const std::uint32_t cell = grid_.at(position - normal * below);
         if (cell == DiffusionGrid::kNone) continue;
@@ -91,41 +95,64 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
   for (std::size_t c = 0; c < 3; ++c) problem.diffusivity[c] = float(media_[c].diffusion * lattice_.cell);
   FirstCollisions collisions = first_collisions(space(), light);
   problem.source = std::move(collisions.source);
-  Solution solution{solve_diffusion(problem, kTolerance, std::move(start), monitor).fluence,
-                    std::move(collisions.leaving)};
-  read(solution);
+  Solution solution{solve_diffusion(problem, kTolerance, std::move(start), monitor).fluence, {}};
+  solution.exitance = read(solution.fluence, collisions.leaving);
   return solution;
 }
 
-// The fluence beside a point, under it as deep as the cell's centre, through the resistances from there to the outside.
-// All points together let out what all cells lose.
-void DiffusionBody::read(Solution& solution) const {
-  std::vector<RgbF> exitance(points_.size());
-  Rgb lost{}, found{};
-  parallel_chunks(points_.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+// The fluence beside a piece, under it as deep as the cell's centre, through the resistances from there to the outside.
+// All pieces together let out what all cells lose.
+std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
+                                      std::span<const RgbF> leaving) const {
+  struct Plane {
+    RgbF value;  // exitance at the element
+    std::array<Vec3f, 3> slope{};
+  };
+  std::vector<Plane> planes(attached_.size());
+  parallel_chunks(planes.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [cell, depth] = attached_[i];
       if (cell == DiffusionGrid::kNone) continue;
-      const Vec3f normal = points_[i].normal,
-                  apart = Vec3f(space().in_lattice(points_[i].position)) - grid_.cells()[cell].centre;
-      const Vec3f beside = apart - normal * dot(apart, normal);
-      const std::array<Vec3f, 3> slopes = gradient_at(grid_, solution.fluence, cell);
-      for (std::size_t c = 0; c < 3; ++c)
-        exitance[i][c] = std::max(0.f, solution.fluence[cell].c[c] + dot(slopes[c], beside)) *
-                         float(media_[c].conductance(depth));
+      const BoundaryElement& element = boundary_.elements[i];
+      const Vec3f apart = Vec3f(space().in_lattice(element.position)) - grid_.cells()[cell].centre;
+      const Vec3f beside = apart - element.normal * dot(apart, element.normal);
+      const std::array<Vec3f, 3> slopes = gradient_at(grid_, fluence, cell);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto conductance = float(media_[c].conductance(depth));
+        planes[i].value[c] = (fluence[cell].c[c] + dot(slopes[c], beside)) * conductance;
+        planes[i].slope[c] = slopes[c] * (conductance / float(lattice_.cell));
+      }
     }
   });
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const auto& [cell, depth] = attached_[i];
-    if (cell == DiffusionGrid::kNone) continue;
-    for (std::size_t c = 0; c < 3; ++c) {
-      lost[c] += double(points_[i].area) * double(solution.fluence[cell].c[c]) * media_[c].conductance(depth);
-      found[c] += double(points_[i].area) * double(exitance[i][c]);
-    }
-  }
-  for (std::size_t i = 0; i < points_.size(); ++i)
+  std::vector<Rgb> diffused(sample_areas_.size()), at_once(sample_areas_.size());
+  std::vector<double> areas(sample_areas_.size());
+  for (const BoundaryPiece& piece : boundary_.pieces) {
+    const Plane& plane = planes[piece.element];
+    const Vec3f apart = piece.position - boundary_.elements[piece.element].position;
     for (std::size_t c = 0; c < 3; ++c)
-      if (found[c] > 0) solution.exitance[i][c] += exitance[i][c] * float(lost[c] / found[c]);
+      diffused[piece.sample][c] +=
+          double(piece.area * std::max(0.f, plane.value[c] + dot(plane.slope[c], apart)));
+    at_once[piece.sample] += Rgb(leaving[piece.element]) * double(piece.area);
+    areas[piece.sample] += double(piece.area);
+  }
+  Rgb lost{}, found{};
+  for (std::size_t s = 0; s < areas.size(); ++s) {
+    diffused[s] = diffused[s] / areas[s];
+    found += (diffused[s] + at_once[s] / areas[s]) * double(sample_areas_[s]);
+  }
+  for (std::size_t i = 0; i < attached_.size(); ++i) {
+    const auto& [cell, depth] = attached_[i];
+    lost += Rgb(leaving[i]) * double(boundary_.elements[i].area);
+    if (cell == DiffusionGrid::kNone) continue;
+    for (std::size_t c = 0; c < 3; ++c)
+      lost[c] +=
+          double(boundary_.elements[i].area) * double(fluence[cell].c[c]) * media_[c].conductance(depth);
+  }
+  for (std::size_t c = 0; c < 3; ++c) lost[c] = found[c] > 0 ? lost[c] / found[c] : 0;
+  std::vector<RgbF> exitance;
+  for (std::size_t s = 0; s < areas.size(); ++s)
+    exitance.push_back(RgbF((diffused[s] + at_once[s] / areas[s]) * lost));
+  return exitance;
 }
 
 std::vector<Channels> DiffusionBody::carried(const Solution& solution, const DiffusionBody& to) const {
@@ -144,10 +171,11 @@ std::vector<Channels> DiffusionBody::losses() const {
   for (std::size_t i = 0; i < loss.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
       loss[i].c[c] = float(media_[c].absorption * double(grid_.cells()[i].volume) * cube);
-  for (std::size_t i = 0; i < points_.size(); ++i)
+  for (std::size_t i = 0; i < attached_.size(); ++i)
     if (attached_[i].cell != DiffusionGrid::kNone)
       for (std::size_t c = 0; c < 3; ++c)
-        loss[attached_[i].cell].c[c] += points_[i].area * float(media_[c].conductance(attached_[i].depth));
+        loss[attached_[i].cell].c[c] +=
+            boundary_.elements[i].area * float(media_[c].conductance(attached_[i].depth));
   return loss;
 }
 

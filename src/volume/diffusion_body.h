@@ -10,15 +10,19 @@
 
 namespace opaline {
 
-/// Cells of one size at the surface. Holds on to `points`.
+/// A lattice around a body whose cells may be merged by eights.
+/// cell: their edge, world units
+Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell);
+
+/// Cells of one size at the surface. Holds on to `sample_areas` and `media`.
 class DiffusionBody {
  public:
-  /// cell: their edge, world units
+  /// boundary: cut by the lattice
   DiffusionBody(const World& world, std::span<const std::uint32_t> meshes,
-                std::span<const BoundaryPoint> points, const std::array<CalibratedMedium, 3>& media,
-                double cell);
+                std::span<const float> sample_areas, const std::array<CalibratedMedium, 3>& media,
+                const Lattice& lattice, Boundary boundary);
 
-  /// The fluence in the cells, and what leaves at the boundary points, W per square of the world's unit.
+  /// The fluence in the cells, and what leaves at the samples, W per square of the world's unit.
   struct Solution {
     std::vector<Channels> fluence;
     std::vector<RgbF> exitance;
@@ -30,18 +34,20 @@ class DiffusionBody {
   std::vector<Channels> carried(const Solution& solution, const DiffusionBody& to) const;
 
   const DiffusionGrid& grid() const { return grid_; }
+  const Boundary& boundary() const { return boundary_; }
 
  private:
-  DiffusionSpace space() const { return {lattice_, grid_, media_, points_, attached_}; }
+  DiffusionSpace space() const { return {lattice_, grid_, media_, boundary_, sample_areas_, attached_}; }
   void attach();
   std::vector<Channels> losses() const;
-  void read(Solution& solution) const;
+  std::vector<RgbF> read(std::span<const Channels> fluence, std::span<const RgbF> leaving) const;
 
-  std::span<const BoundaryPoint> points_;
+  std::span<const float> sample_areas_;
   const std::array<CalibratedMedium, 3>& media_;
   Lattice lattice_;
+  Boundary boundary_;
   DiffusionGrid grid_;
-  std::vector<AttachedPoint> attached_;  // one a point
+  std::vector<AttachedElement> attached_;  // one an element
 };
 
 }  // namespace opaline

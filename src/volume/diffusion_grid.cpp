@@ -58,7 +58,7 @@ class Flags {
 Flags met_by_surface(const InsideLines& lines, const Lattice& lattice,
                      std::span<const DiffusionGrid::Facet> surface) {
   Flags met(lattice.nx / 2, lattice.ny / 2, lattice.nz / 2);
-  for (const auto& [p, normal] : surface) met.set(int(p.x) / 2, int(p.y) / 2, int(p.z) / 2);
+  for (const auto& [p, normal, area] : surface) met.set(int(p.x) / 2, int(p.y) / 2, int(p.z) / 2);
   for (int row = 0; row < lines.rows(); ++row)
     for (int column = 0; column < lines.columns(); ++column)
       for (const float z : lines.bounds(column, row))
@@ -160,22 +160,23 @@ struct DiffusionGrid::Builder {
     constexpr double kLeastAgreement = .97;  // of the facets' normals
     struct Plane {
       Vec3d normal{};
-      double height = 0, facets = 0;
+      double height = 0, area = 0;
     };
     std::vector<Plane> planes(grid.cells_.size());
-    for (const auto& [position, normal] : surface) {
+    for (const auto& [position, normal, area] : surface) {
       const std::uint32_t cell = grid.at(position);
       if (cell == kNone || sizes[cell] > 1) continue;
       const auto& [i, j, k] = corners[cell];
-      planes[cell].normal += Vec3d(normal);
-      planes[cell].height += dot(Vec3d(position) - Vec3d(i + .5, j + .5, k + .5), Vec3d(normal));
-      planes[cell].facets += 1;
+      planes[cell].normal += Vec3d(normal) * double(area);
+      planes[cell].height +=
+          dot(Vec3d(position) - Vec3d(i + .5, j + .5, k + .5), Vec3d(normal)) * double(area);
+      planes[cell].area += double(area);
     }
     for (std::size_t cell = 0; cell < planes.size(); ++cell) {
-      const auto& [normal, height, facets] = planes[cell];
-      if (!(facets > 0 && length(normal) > kLeastAgreement * facets)) continue;
+      const auto& [normal, height, area] = planes[cell];
+      if (!(area > 0 && length(normal) > kLeastAgreement * area)) continue;
       grid.cells_[cell].volume =
-          float(std::clamp(volume_behind(normalized(normal), height / facets), kLeastVolume, 1.0));
+          float(std::clamp(volume_behind(normalized(normal), height / area), kLeastVolume, 1.0));
     }
   }
 

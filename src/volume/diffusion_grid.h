@@ -28,12 +28,13 @@ class DiffusionGrid {
     float conductance;  ///< area of the common face over the distance of the centres
   };
 
-  /// Of the surface: a point and its normal, outward.
+  /// Of the surface in one cell: its middle, its normal, outward, and its area, of any unit.
   struct Facet {
     Vec3f position, normal;
+    float area;
   };
 
-  /// in    surface: facets of about equal area; every lattice cell that the surface meets has one in it or beside it
+  /// in    surface: every lattice cell that the surface meets has a facet
   ///       lattice: nx, ny, nz multiples of kLargest
   DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Facet> surface);
 

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kLeastCosine = 1e-3;  // of light inside: against division by 0 where eta < 1
 constexpr double kFarthest = 5;        // free paths; what goes farther ends there
+constexpr double kStep = .8;           // cells
 
 // Evenly over [0, 1).
 double golden_point(std::size_t i) {
@@ -21,65 +22,76 @@ double golden_point(std::size_t i) {
   return turns - std::floor(turns);
 }
 
-// Of some directions towards a light, one, with the chance of its share of what would enter there.
-Vec3f towards_light(const Light& light, const BoundaryPoint& point, double eta, std::size_t i) {
-  constexpr int kTries = 8;
-  const int tries = is_delta(light) ? 1 : kTries;
-  Vec3f chosen = point.normal;
-  double sum = 0, chance = unit_double(hash_bits(0, i));
-  for (int t = 0; t < tries; ++t) {
+constexpr std::size_t kDirections = 8;  // towards a light that is no point
+
+/// Directions towards a light, each with its share of what enters there.
+struct Directions {
+  struct One {
+    Vec3f outward;
+    double share;
+  };
+  std::array<One, kDirections> some;
+  std::size_t count = 0;
+};
+
+Directions towards_light(const Light& light, const BoundaryElement& element, double eta, std::size_t i) {
+  const std::size_t tries = is_delta(light) ? 1 : kDirections;
+  Directions found;
+  double sum = 0;
+  for (std::size_t t = 0; t < tries; ++t) {
     const LightSample sample =
-        sample_light(light, point.position, point.normal,
-                     r2_point(i * std::size_t(tries) + std::size_t(t), {.5, .5}), tries);
-    const double cosine = double(dot(sample.direction, point.normal));
+        sample_light(light, element.position, element.normal, r2_point(i * tries + t, {.5, .5}), int(tries));
+    const double cosine = double(dot(sample.direction, element.normal));
     if (!(sample.weight > 0 && cosine > 0)) continue;
     const double share = double(sample.weight) * cosine * fresnel_transmittance(std::min(cosine, 1.0), eta);
+    found.some[found.count++] = {sample.direction, share};
     sum += share;
-    if (chance * sum < share) {  // reservoir: the number is used again within what it has chosen
-      chosen = sample.direction;
-      chance = chance * sum / share;
-    } else {
-      chance = (chance * sum - share) / (sum - share);
-    }
   }
-  return chosen;
+  if (!(sum > 0)) {
+    found = {{{{element.normal, 1}}}, 1};
+    sum = 1;
+  }
+  for (std::size_t n = 0; n < found.count; ++n) found.some[n].share /= sum;
+  return found;
 }
 
 float edge_of(const DiffusionGrid::Cell& cell) {
   return cell.volume > 64 ? 8 : cell.volume > 8 ? 4 : cell.volume > 1 ? 2 : 1;
 }
 
-/// The boundary points of each cell.
-class PointsOfCells {
+/// The boundary elements of each cell.
+class ElementsOfCells {
  public:
-  PointsOfCells(std::span<const AttachedPoint> attached, std::size_t cells) : first_(cells + 1) {
-    for (const AttachedPoint& at : attached)
+  ElementsOfCells(std::span<const AttachedElement> attached, std::size_t cells) : first_(cells + 1) {
+    for (const AttachedElement& at : attached)
       if (at.cell != DiffusionGrid::kNone) ++first_[at.cell + 1];
     for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    points_.resize(first_.back());
+    elements_.resize(first_.back());
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
     for (std::uint32_t i = 0; i < attached.size(); ++i)
-      if (attached[i].cell != DiffusionGrid::kNone) points_[next[attached[i].cell]++] = i;
+      if (attached[i].cell != DiffusionGrid::kNone) elements_[next[attached[i].cell]++] = i;
   }
   std::span<const std::uint32_t> of(std::uint32_t cell) const {
-    return std::span(points_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+    return std::span(elements_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
   }
 
  private:
-  std::vector<std::uint32_t> first_, points_;
+  std::vector<std::uint32_t> first_, elements_;
 };
 
 class Depositor {
  public:
   explicit Depositor(const DiffusionSpace& space)
-      : space_(space), points_of_(space.attached, space.grid.cells().size()) {
+      : space_(space), elements_of_(space.attached, space.grid.cells().size()) {
     result_.source.resize(space.grid.cells().size());
-    result_.leaving.resize(space.points.size());
+    result_.leaving.resize(space.boundary.elements.size());
     for (const CalibratedMedium& medium : space.media)
       if (medium.albedo > 0) longest_ = std::max(longest_, 1 / medium.extinction);
+    step_ = stretch_of(kStep * space.lattice.cell);
   }
 
-  void enter(const EnteringLight& light, std::size_t l, std::size_t i);
+  /// entering: W
+  void enter(const Vec3d& outward, const Rgb& entering, std::size_t i);
   FirstCollisions take() { return std::move(result_); }
 
  private:
@@ -90,53 +102,103 @@ class Depositor {
   /// Where a way leaves the body.
   struct Exit {
     double length;
-    std::uint32_t point;  // of the boundary, nearest
-    std::uint32_t cell;   // the last
+    std::uint32_t element;  // of the boundary, nearest
+    std::uint32_t cell;     // the last
   };
 
   Vec3d at(const Way& way, double length) const {
     return way.from + way.along * (length / space_.lattice.cell);
   }
-  std::optional<Exit> exit_of(const Way& way, double start, std::uint32_t first, double farthest) const;
+  /// A stretch of a way: what collides in it, of what comes to it, and how far in, on average, by channel.
+  struct Stretch {
+    double length = 0;
+    std::array<double, 3> share{}, middle{};
+  };
+
+  Stretch stretch_of(double length) const;
+  std::optional<Exit> exit_at(const Way& way, double length, double least, std::uint32_t last) const;
+  std::optional<Exit> collide(const Way& way, double start, std::uint32_t first, Rgb& flux);
   void deposit(const Vec3d& position, std::uint32_t fallback, std::size_t channel, double flux);
+  void deposit(const Way& way, double start, const Stretch& stretch, std::uint32_t fallback, Rgb& flux);
   void leave(const Way& way, const Exit& exit, std::size_t i, std::size_t channel, double flux);
 
   const DiffusionSpace& space_;
-  PointsOfCells points_of_;
+  ElementsOfCells elements_of_;
   double longest_ = 0;  // free path
+  Stretch step_;        // in the smallest cells
   FirstCollisions result_;
 };
 
-// Steps of less than a cell, through larger cells, which lie as deep as they are large, of their edge; then the plane of the boundary point nearest to the way's end.
-std::optional<Depositor::Exit> Depositor::exit_of(const Way& way, double start, std::uint32_t first,
-                                                  double farthest) const {
-  constexpr double kStep = .8;  // cells
-  std::uint32_t last = first;
-  double step = kStep;
-  for (double length = start + kStep * space_.lattice.cell;; length += step * space_.lattice.cell) {
-    if (length > farthest) return {};
-    const std::uint32_t cell = space_.grid.at(Vec3f(at(way, length)));
-    if (cell != DiffusionGrid::kNone) {
-      last = cell;
-      step = std::max(kStep, double(edge_of(space_.grid.cells()[cell])));
+Depositor::Stretch Depositor::stretch_of(double length) const {
+  Stretch stretch{length, {}, {}};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const CalibratedMedium& medium = space_.media[c];
+    if (!(medium.albedo > 0)) continue;
+    const double paths = medium.extinction * length, share = -std::expm1(-paths);
+    stretch.share[c] = share;
+    stretch.middle[c] = paths > 1e-4 ? (1 - paths * (1 - share) / share) / medium.extinction : .5 * length;
+  }
+  return stretch;
+}
+
+// The plane of the boundary element nearest to where a way has left the cells.
+std::optional<Depositor::Exit> Depositor::exit_at(const Way& way, double length, double least,
+                                                  std::uint32_t last) const {
+  const double cell = space_.lattice.cell;
+  const Vec3d end = at(way, length - .5 * kStep * cell);
+  Exit exit{length, ~0u, last};
+  double nearest = INFINITY;
+  for (const std::uint32_t e : elements_of_.of(last)) {
+    const Vec3d apart = space_.in_lattice(space_.boundary.elements[e].position) - end;
+    if (!(dot(way.along, Vec3d(space_.boundary.elements[e].normal)) > 0) || dot(apart, apart) >= nearest)
       continue;
+    nearest = dot(apart, apart);
+    exit.element = e;
+  }
+  if (exit.element == ~0u) return {};
+  const BoundaryElement& element = space_.boundary.elements[exit.element];
+  const Vec3d normal(element.normal);
+  exit.length = dot(space_.in_lattice(element.position) - way.from, normal) /
+                std::max(kLeastCosine, dot(way.along, normal)) * cell;
+  exit.length = std::clamp(exit.length, least, std::max(least, length + cell));
+  return exit;
+}
+
+// Collisions along a way that is inside at `start`, in steps of less than a cell, through larger cells, which lie as deep
+// as they are large, of their edge. Leaves in flux what comes to the exit.
+std::optional<Depositor::Exit> Depositor::collide(const Way& way, double start, std::uint32_t first,
+                                                  Rgb& flux) {
+  const double farthest = start + kFarthest * longest_;
+  std::uint32_t last = first;
+  for (double length = start; length < farthest;) {
+    const double edge = std::max(kStep, double(edge_of(space_.grid.cells()[last])) - 1);
+    const double step = edge * space_.lattice.cell;
+    const std::uint32_t next = space_.grid.at(Vec3f(at(way, length + step)));
+    const std::optional<Exit> exit =
+        next == DiffusionGrid::kNone ? exit_at(way, length + step, length, last) : std::nullopt;
+    if (exit) {
+      deposit(way, length, stretch_of(exit->length - length), last, flux);
+      return exit;
     }
-    Exit exit{length, ~0u, last};
-    const Vec3d end = at(way, length - .5 * kStep * space_.lattice.cell);
-    double nearest = INFINITY;
-    for (const std::uint32_t p : points_of_.of(last)) {
-      const Vec3d apart = space_.in_lattice(space_.points[p].position) - end;
-      if (!(dot(way.along, Vec3d(space_.points[p].normal)) > 0) || dot(apart, apart) >= nearest) continue;
-      nearest = dot(apart, apart);
-      exit.point = p;
-    }
-    if (exit.point == ~0u) return {};
-    const BoundaryPoint& point = space_.points[exit.point];
-    const Vec3d normal(point.normal);
-    exit.length = dot(space_.in_lattice(point.position) - way.from, normal) /
-                  std::max(kLeastCosine, dot(way.along, normal)) * space_.lattice.cell;
-    exit.length = std::clamp(exit.length, start, length + space_.lattice.cell);
-    return exit;
+    if (next == DiffusionGrid::kNone) break;
+    deposit(way, length, edge > kStep ? stretch_of(step) : step_, last, flux);
+    length += step;
+    last = next;
+  }
+  for (std::size_t c = 0; c < 3; ++c)
+    if (flux[c] > 0) deposit(at(way, farthest + 1 / space_.media[c].extinction), last, c, flux[c]);
+  flux = {};
+  return {};
+}
+
+// What collides on a stretch, each channel at its mean place.
+void Depositor::deposit(const Way& way, double start, const Stretch& stretch, std::uint32_t fallback,
+                        Rgb& flux) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double collided = flux[c] * stretch.share[c];
+    if (!(collided > 0)) continue;
+    deposit(at(way, start + stretch.middle[c]), fallback, c, collided);
+    flux[c] -= collided;
   }
 }
 
@@ -166,34 +228,29 @@ void Depositor::deposit(const Vec3d& position, std::uint32_t fallback, std::size
 
 // What the boundary reflects collides on its further way, which is taken to be inside.
 void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, std::size_t channel, double flux) {
-  const BoundaryPoint& point = space_.points[exit.point];
+  const BoundaryElement& point = space_.boundary.elements[exit.element];
   const CalibratedMedium& medium = space_.media[channel];
   const Vec3d normal(point.normal);
   const double reflected =
       flux * inside_reflectance(std::clamp(dot(way.along, normal), kLeastCosine, 1.), medium.eta);
-  result_.leaving[exit.point][channel] += float((flux - reflected) / double(point.area));
+  result_.leaving[exit.element][channel] += float((flux - reflected) / double(point.area));
   const Way back{at(way, exit.length), mirrored(way.along, normal)};
   const double collided = -std::log1p(-golden_point(i)) / medium.extinction;
   deposit(at(back, collided), exit.cell, channel, reflected * medium.albedo);
 }
 
-// Light of one source that enters at a point: what collides between the point and the centre of its cell leaves in
-// part at once, as between two resistances; of the rest of its way one place stands for all.
-void Depositor::enter(const EnteringLight& light, std::size_t l, std::size_t i) {
-  const BoundaryPoint& point = space_.points[i];
-  const AttachedPoint& attached = space_.attached[i];
-  const double weight = double(light.transfers[l].weights[point.sample]);
-  if (!(weight > 0) || attached.cell == DiffusionGrid::kNone) return;
-  Rgb entering = emission(light.lights[l]) * weight;
-  if (!light.tints.empty()) entering = entering * Rgb(light.tints[point.sample]);
+// Light that enters at an element from one direction: what collides between the element and the centre of its cell leaves in
+// part at once, as between two resistances; the rest goes on.
+void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) {
+  const BoundaryElement& element = space_.boundary.elements[i];
+  const AttachedElement& attached = space_.attached[i];
   const double eta = space_.media[0].eta;
-  const Vec3d normal(point.normal);
-  const Vec3d inward = refracted_inward(-Vec3d(towards_light(light.lights[l], point, eta, i)), normal, eta);
+  const Vec3d normal(element.normal);
+  const Vec3d inward = refracted_inward(-outward, normal, eta);
   const double cosine = std::max(kLeastCosine, -dot(inward, normal)), depth = attached.depth;
   const double path = depth / cosine;
-  const Way way{space_.in_lattice(point.position), inward};
-  const std::optional<Exit> exit = exit_of(way, path, attached.cell, path + kFarthest * longest_);
-  const double endless = -std::log1p(-golden_point(i));  // free paths
+  const Way way{space_.in_lattice(element.position), inward};
+  Rgb colliding{};
   for (std::size_t c = 0; c < 3; ++c) {
     const CalibratedMedium& medium = space_.media[c];
     if (!(medium.albedo > 0)) continue;
@@ -202,22 +259,49 @@ void Depositor::enter(const EnteringLight& light, std::size_t l, std::size_t i) 
     const double passed = std::exp(-path / free_path);
     const double at_once =
         (depth - cosine * free_path * (1 - passed)) / (2 * medium.mismatch * medium.diffusion + depth);
-    result_.leaving[i][c] += float(enters * at_once);
-    const double flux = enters * double(point.area);
-    result_.source[attached.cell].c[c] += float(flux * (1 - passed - at_once));
-    const double crosses = exit ? std::exp(-exit->length / free_path) : 0;
-    const double collided = exit ? -std::log1p(-golden_point(i) * (1 - crosses / passed)) : endless;
-    deposit(at(way, path + free_path * collided), attached.cell, c, flux * (passed - crosses));
-    if (exit) leave(way, *exit, i, c, entering[c] * double(point.area) * crosses);
+    result_.leaving[i][c] += float(enters * at_once / double(element.area));
+    result_.source[attached.cell].c[c] += float(enters * (1 - passed - at_once));
+    colliding[c] = enters * passed;
   }
+  const std::optional<Exit> exit = collide(way, path, attached.cell, colliding);
+  for (std::size_t c = 0; exit && c < 3; ++c)
+    if (space_.media[c].albedo > 0)
+      leave(way, *exit, i, c, entering[c] * std::exp(-exit->length * space_.media[c].extinction));
+}
+
+// What enters of a light at each element, W: together what enters at the samples.
+std::vector<Rgb> entering_flux(const DiffusionSpace& space, const EnteringLight& light, std::size_t l) {
+  const auto entering = [&](std::uint32_t sample, float area) {
+    const Rgb flux = emission(light.lights[l]) * (double(area) * double(light.transfers[l].weights[sample]));
+    return light.tints.empty() ? flux : flux * Rgb(light.tints[sample]);
+  };
+  std::vector<Rgb> flux(space.boundary.elements.size());
+  Rgb found{}, whole{};
+  for (const BoundaryPiece& piece : space.boundary.pieces) {
+    const Rgb of_piece = entering(piece.sample, piece.area);
+    flux[piece.element] += of_piece;
+    found += of_piece;
+  }
+  for (std::uint32_t s = 0; s < space.sample_areas.size(); ++s) whole += entering(s, space.sample_areas[s]);
+  for (std::size_t c = 0; c < 3; ++c) whole[c] = found[c] > 0 ? whole[c] / found[c] : 1;
+  for (Rgb& of_element : flux) of_element = of_element * whole;
+  return flux;
 }
 
 }  // namespace
 
 FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light) {
   Depositor depositor(space);
-  for (std::size_t l = 0; l < light.lights.size(); ++l)
-    for (std::size_t i = 0; i < space.points.size(); ++i) depositor.enter(light, l, i);
+  for (std::size_t l = 0; l < light.lights.size(); ++l) {
+    const std::vector<Rgb> flux = entering_flux(space, light, l);
+    for (std::size_t i = 0; i < flux.size(); ++i) {
+      if (!(max_component(flux[i]) > 0) || space.attached[i].cell == DiffusionGrid::kNone) continue;
+      const Directions from =
+          towards_light(light.lights[l], space.boundary.elements[i], space.media[0].eta, i);
+      for (std::size_t n = 0; n < from.count; ++n)
+        depositor.enter(Vec3d(from.some[n].outward), flux[i] * from.some[n].share, i);
+    }
+  }
   return depositor.take();
 }
 

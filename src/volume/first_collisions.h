@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "opaline/irradiance/irradiance.h"
-#include "volume/boundary_points.h"
+#include "volume/boundary_elements.h"
 #include "volume/calibrated_medium.h"
 #include "volume/diffusion_grid.h"
 #include "volume/diffusion_solver.h"
@@ -21,8 +21,8 @@ struct EnteringLight {
   std::span<const RgbF> tints;               ///< factors, one a sample; empty: none
 };
 
-/// A boundary point in its cell.
-struct AttachedPoint {
+/// A boundary element's cell.
+struct AttachedElement {
   std::uint32_t cell = DiffusionGrid::kNone;
   double depth = 0;  ///< of the cell's centre under it, world units
 };
@@ -32,13 +32,14 @@ struct DiffusionSpace {
   const Lattice& lattice;
   const DiffusionGrid& grid;
   const std::array<CalibratedMedium, 3>& media;
-  std::span<const BoundaryPoint> points;
-  std::span<const AttachedPoint> attached;  ///< one a point
+  const Boundary& boundary;
+  std::span<const float> sample_areas;
+  std::span<const AttachedElement> attached;  ///< one an element
 
   Vec3d in_lattice(const Vec3f& position) const { return lattice.into(Vec3d(position)); }
 };
 
-/// Flux by cell, and what leaves at each point at once, per area.
+/// Flux by cell, and what leaves at each element at once, per area.
 struct FirstCollisions {
   std::vector<Channels> source;
   std::vector<RgbF> leaving;

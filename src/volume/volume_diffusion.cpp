@@ -8,10 +8,12 @@
 namespace opaline {
 namespace {
 
-constexpr double kPointSpacing = 1;  // of boundary points, at most, in cells
-
 std::array<CalibratedMedium, 3> calibrated(const std::array<HomogeneousMedium, 3>& media) {
   return {CalibratedMedium(media[0]), CalibratedMedium(media[1]), CalibratedMedium(media[2])};
+}
+
+Lattice doubled(const Lattice& lattice) {
+  return {lattice.low, 2 * lattice.cell, lattice.nx / 2, lattice.ny / 2, lattice.nz / 2};
 }
 
 std::vector<float> areas_of(std::span<const SurfaceSample> samples) {
@@ -26,24 +28,16 @@ struct VolumeDiffusion::State {
   explicit State(const VolumeDiffusionInput& input)
       : media(calibrated(input.media)),
         areas(areas_of(input.samples)),
-        points(boundary_points(input.world, input.meshes, input.samples, kPointSpacing * input.cell)),
-        coarse(input.world, input.meshes, points, media, 2 * input.cell),
-        fine(input.world, input.meshes, points, media, input.cell) {}
-
-  // Means over the samples' cells.
-  std::vector<RgbF> at_samples(const std::vector<RgbF>& exitance) const {
-    std::vector<Rgb> flux(areas.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-      flux[points[i].sample] += Rgb(exitance[i]) * double(points[i].area);
-    std::vector<RgbF> means;
-    for (std::size_t s = 0; s < flux.size(); ++s) means.push_back(RgbF(flux[s] / double(areas[s])));
-    return means;
-  }
+        lattice(lattice_around(input.world, input.meshes, input.cell)),
+        fine(input.world, input.meshes, areas, media, lattice,
+             cut_boundary(input.world, input.meshes, input.samples, lattice)),
+        coarse(input.world, input.meshes, areas, media, doubled(lattice),
+               coarsened(fine.boundary(), doubled(lattice))) {}
 
   std::array<CalibratedMedium, 3> media;
   std::vector<float> areas;  // of the samples
-  std::vector<BoundaryPoint> points;
-  DiffusionBody coarse, fine;
+  Lattice lattice;
+  DiffusionBody fine, coarse;
 };
 
 double expected_cells(double area, double cell) {
@@ -67,8 +61,8 @@ VolumeExitance VolumeDiffusion::exitance(std::span<const Light> lights,
   const DiffusionBody::Solution solution =
       state_->fine.solve(light, state_->coarse.carried(rough, state_->fine), monitor);
   VolumeExitance result;
-  result.exitance = state_->at_samples(solution.exitance);
-  for (const RgbF& before : state_->at_samples(rough.exitance)) {
+  result.exitance = solution.exitance;
+  for (const RgbF& before : rough.exitance) {
     const RgbF change = result.exitance[result.error.size()] - before;
     result.error.push_back({std::abs(change.x), std::abs(change.y), std::abs(change.z)});
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,12 @@ namespace opaline {
 struct TargetError {
   double predicted = 0;          ///< error; 0 where nothing translucent is seen
   std::size_t samples = 0;       ///< asked for, of all groups
-  bool reached = true;           ///< false: settings.max_samples is not enough
+  bool reached = true;           ///< false: settings.max_samples, or the model, does not allow it
   bool sees_translucent = true;  ///< false: there is nothing to promise
+  /// Of reach_volume_error: the bound of the model's own error, none where a mesh is open or too thin; and the error
+  /// that the settings were chosen for, the target or the least that the model allows.
+  std::optional<double> model = {};
+  double promised = 0;
 };
 
 /// Edits the session to the scene with the spacing of samples, tolerance, evaluator and, where shadow rays
@@ -30,6 +35,14 @@ struct TargetError {
 /// out   measured errors are at most the target in about 95 % of scenes (bench_target_error)
 /// error as Session::edit and Session::prepare
 TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);
+
+/// The same for Method::volume_diffusion, against random walks (Method::volume): the target is for the model's own error,
+/// a bound of what the plan expects, and for that of cells, samples and shadow rays, which the picture estimates,
+/// together. Chooses cell_size, sample_spacing and light_samples, coarse cells first. Where the model alone is above the
+/// target, the settings are those of the least that can be promised, and `reached` is false.
+/// in    scene: volume_diffusion; target: relative, > 0
+/// error as Session::edit and Session::prepare
+TargetError reach_volume_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);
 
 /// The settings that were chosen, by reach_error or for a time, as `--set` takes them; without light_samples.
 /// in    session: whose scene has them; entry_samples: of a direct picture

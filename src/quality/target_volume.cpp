@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cells, samples and shadow rays of volume_diffusion that keep an error against random walks.
+#include <algorithm>
+#include <cmath>
+
+#include "opaline/lights/light.h"
+#include "opaline/quality/target_error.h"
+#include "quality/probe.h"
+#include "quality/settings_search.h"
+
+namespace opaline {
+namespace {
+
+// No body of the table of bench_volume_models is farther off than the expected error by more than this factor.
+constexpr double kModelSafety = 1.7;
+constexpr double kThinnest = 3;  // mean free paths, as the plan warns
+// What cells, samples and shadow rays may add where the model alone takes all of the target: 4 % of the promise.
+constexpr double kLeastShare = .3;
+constexpr double kCoarsest = 3, kFinest = .25;  // cells, mean free paths
+constexpr double kMargin = .85;                 // of the error that is aimed at: two steps cost more than one
+constexpr int kMostSteps = 6, kMostLightSamples = 4096;
+constexpr double kProbePixels = 64 * 64;
+constexpr std::size_t kEnoughPoints = 1500;
+
+/// Of the worst body; none where a mesh is open, or so thin that light crosses it almost without scattering.
+std::optional<double> model_error(const Plan& plan) {
+  double worst = 0;
+  for (const GroupPlan& group : plan.groups) {
+    if (!group.model.expected_error_of_diffusion ||
+        group.thickness < kThinnest * group.smallest_mean_free_path)
+      return {};
+    worst = std::max(worst, kModelSafety * *group.model.expected_error_of_diffusion);
+  }
+  return worst;
+}
+
+/// The edge of the smallest cells of all bodies, mm.
+double smallest_cell(const Plan& plan) {
+  double smallest = INFINITY;
+  for (const GroupPlan& group : plan.groups) smallest = std::min(smallest, group.cell);
+  return smallest;
+}
+
+class VolumeSearch {
+ public:
+  VolumeSearch(Session& session, Scene scene, Monitor* monitor)
+      : search_{session, std::move(scene), monitor} {
+    search_.probe_pixels = kProbePixels;
+    search_.enough_points = kEnoughPoints;
+    search_.begin(search_.scene.settings.tolerance);
+  }
+
+  const Plan& plan() const { return search_.session.plan(); }
+  bool has_samples() const { return search_.most_samples > 0; }
+  std::size_t samples() const { return search_.planned_samples(); }
+  double estimated() const { return estimated_; }
+  Scene take() { return std::move(search_.scene); }
+
+  /// Cells of this size, and a sample for each at the surface. Whether the plan allows for them.
+  bool try_cells(double mean_free_paths) {
+    Settings& settings = search_.scene.settings;
+    settings.cell_size = mean_free_paths;
+    search_.session.edit(search_.scene);
+    const double planned = smallest_cell(plan());
+    const double samples =
+        std::clamp(search_.area / (planned * planned), std::min(kFewestTargetSamples, search_.most_samples),
+                   search_.most_samples);
+    picture_ = search_.first_picture(samples);
+    const bool is_finer = planned < .95 * cell_;
+    cell_ = std::min(cell_, planned);
+    estimated_ = search_.estimated;
+    return is_finer;
+  }
+
+  bool sees_translucent() const { return translucent_points(picture_) > 0; }
+
+  /// Four times the shadow rays, as long as they change the picture by more than this.
+  void settle_light(double most) {
+    Settings& settings = search_.scene.settings;
+    if (std::ranges::all_of(search_.scene.lights, is_delta)) return;
+    for (double change = 2 * most; change > most && settings.light_samples < kMostLightSamples;) {
+      settings.light_samples *= 4;
+      const Image before = std::move(picture_);
+      search_.session.edit(search_.scene);
+      search_.session.prepare(search_.monitor);
+      picture_ = search_.picture();
+      change = probe_difference(before, picture_);
+    }
+  }
+
+ private:
+  SettingsSearch search_;
+  Image picture_;
+  double cell_ = INFINITY, estimated_ = 0;
+};
+
+}  // namespace
+
+TargetError reach_volume_error(Session& session, Scene scene, double target, Monitor* monitor) {
+  VolumeSearch search(session, scene, monitor);
+  TargetError result;
+  result.sees_translucent = false;
+  if (search.has_samples()) {
+    search.try_cells(kCoarsest);
+    result.sees_translucent = search.sees_translucent();
+  }
+  if (!result.sees_translucent) {
+    session.edit(std::move(scene));
+    return result;
+  }
+  result.model = model_error(search.plan());
+  const double model = result.model.value_or(0),
+               promised = std::max(target, std::hypot(1, kLeastShare) * model),
+               left = std::sqrt(promised * promised - model * model);
+  double cells = kCoarsest;
+  for (int step = 0; step < kMostSteps && search.estimated() > left && cells > kFinest; ++step) {
+    cells = std::max(kFinest, cells * std::min(.9, kMargin * left / search.estimated()));
+    if (!search.try_cells(cells)) break;
+  }
+  search.settle_light(.5 * left);
+  result.predicted = std::hypot(model, search.estimated());
+  result.promised = promised;
+  result.reached = result.model && result.predicted <= target;
+  result.samples = search.samples();
+  session.edit(search.take());
+  return result;
+}
+
+}  // namespace opaline
