@@ -12,7 +12,6 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
-#include <random>
 #include <set>
 #include <thread>
 #include <utility>
@@ -23,6 +22,7 @@
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
 #include "view/http_connection.h"
+#include "view/view_address.h"
 #include "view/view_background.h"
 #include "view/view_frame.h"
 #include "view/view_json.h"
@@ -32,45 +32,13 @@ namespace {
 
 namespace asio = boost::asio;
 using boost::beast::error_code;
-using Address = asio::ip::tcp::endpoint;
 
 constexpr std::chrono::milliseconds kTick{100};
-constexpr std::size_t kShortestToken = 16, kLongestToken = 64, kLongestName = 200;
-
-std::string random_token() {
-  std::random_device random;
-  std::string token;
-  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", random());
-  return token;
-}
-
-void check_token(const std::string& token) {
-  constexpr const char* kAllowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-  if (token.size() < kShortestToken || token.size() > kLongestToken ||
-      token.find_first_not_of(kAllowed) != std::string::npos)
-    throw Error(ErrorKind::bad_input, {}, 0, 0, "--token",
-                fmt::format("{} to {} of the characters a-z A-Z 0-9 _ -", kShortestToken, kLongestToken),
-                "'" + printable(token) + "'");
-}
-
-Address address_of(const ViewOptions& options) {
-  error_code error;
-  const asio::ip::address address = asio::ip::make_address(options.address, error);
-  if (error)
-    throw Error(ErrorKind::bad_input, {}, 0, 0, "--listen", "an IP address such as 127.0.0.1",
-                "'" + printable(options.address) + "'");
-  return {address, options.port};
-}
+constexpr std::size_t kLongestName = 200;
 
 /// A process that renders a file must not keep the server's sockets open.
 void close_in_children(int socket) {
   ::fcntl(socket, F_SETFD, FD_CLOEXEC);
-}
-
-/// "127.0.0.1:8080" or "[::1]:8080".
-std::string host_text(const std::string& host, std::uint16_t port) {
-  const bool is_v6 = host.find(':') != std::string::npos;
-  return fmt::format("{}{}{}:{}", is_v6 ? "[" : "", host, is_v6 ? "]" : "", port);
 }
 
 /// A file beside the scene. Only files that this server wrote are replaced.
