@@ -154,6 +154,30 @@ struct Shader::GlossyHits {
     const SurfacePoint& point = hits.points[i];
     return float(to_lights) * sampling_density(light, point.position, point.normal, towards);
   }
+
+  struct LobeRay {
+    float weight;
+    RgbF color;  // besides
+    std::uint32_t hit;
+  };
+  // In directions of the lobes, hit by hit; `rays` are to be traced.
+  std::vector<LobeRay> draw_from_lobes(std::vector<TracedRay>& rays) const {
+    std::vector<LobeRay> drawn;
+    for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+      const auto [key, part] = part_of(keys[i]);
+      const std::array<double, 2> shift{unit_double(hash_bits(seed, 2 * key)),
+                                        unit_double(hash_bits(seed, 2 * key + 1))};
+      for (int k = 0; k < facets; ++k) {
+        const std::uint64_t number = part * std::uint64_t(facets) + std::uint64_t(k);
+        const auto [direction, weight] = boundary(i).sample(frames[i].view, r2_point(number, shift));
+        const Vec3f towards = frames[i].world(direction);
+        if (!(weight > 0 && dot(towards, hits.points[i].geometric) > 0)) continue;
+        rays.push_back(leaving(hits.points[i], towards));
+        drawn.push_back({weight / float(facets), color(i, direction), std::uint32_t(i)});
+      }
+    }
+    return drawn;
+  }
 };
 
 void Shader::add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const {
@@ -183,32 +207,13 @@ void Shader::add_highlights(const GlossyHits& glossy) const {
 
 // By directions of the lobe.
 void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
-  struct Drawn {
-    float weight;
-    RgbF color;  // besides
-    std::uint32_t hit;
-  };
   struct Met {
     float weight;  // of all rays that met surfaces
     RgbF share;    // these, each in its colour
     std::uint32_t hit;
   };
   std::vector<TracedRay> rays;
-  std::vector<Drawn> drawn;
-  for (std::size_t i = 0; i < glossy.hits.rays.size(); ++i) {
-    const auto [key, part] = part_of(glossy.keys[i]);
-    const std::array<double, 2> shift{unit_double(hash_bits(glossy.seed, 2 * key)),
-                                      unit_double(hash_bits(glossy.seed, 2 * key + 1))};
-    for (int k = 0; k < glossy.facets; ++k) {
-      const std::uint64_t number = part * std::uint64_t(glossy.facets) + std::uint64_t(k);
-      const auto [direction, weight] =
-          glossy.boundary(i).sample(glossy.frames[i].view, r2_point(number, shift));
-      const Vec3f towards = glossy.frames[i].world(direction);
-      if (!(weight > 0 && dot(towards, glossy.hits.points[i].geometric) > 0)) continue;
-      rays.push_back(leaving(glossy.hits.points[i], towards));
-      drawn.push_back({weight / float(glossy.facets), glossy.color(i, direction), std::uint32_t(i)});
-    }
-  }
+  const std::vector<GlossyHits::LobeRay> drawn = glossy.draw_from_lobes(rays);
   input_.rays.intersect(rays);
 
   // Of the surfaces that a hit's rays meet, one stands for all.
