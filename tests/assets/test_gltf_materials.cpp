@@ -70,8 +70,8 @@ TEST(GltfMaterials, TheInversionEndsAtItsEnds) {
   const Json material = {{"extensions",
                           {{"KHR_materials_volume", kVolume},
                            {"KHR_materials_volume_scatter", {{"multiscatterColor", {1, 0, .5}}}}}}};
-  const auto& medium =
-      std::get<PhysicalMedium>(scene_of(cube_of(material).glb(), "a.glb").media.at(0).coefficients);
+  const Scene scene = scene_of(cube_of(material).glb(), "a.glb");
+  const auto& medium = std::get<PhysicalMedium>(scene.media.at(0).coefficients);
   EXPECT_NEAR(medium.sigma_a.x, 0, 1e-9);
   EXPECT_NEAR(medium.sigma_s_prime.y, 0, 1e-5);
   EXPECT_GT(medium.sigma_a.x, -1e-30);

@@ -63,8 +63,9 @@ class FrameDecoder {
     EXPECT_EQ(words[0], kFrameMark);
     EXPECT_EQ(bytes.size(), sizeof words + frame.colours.size() * 2 + frame.layer.size() * 4);
     std::memcpy(frame.colours.data(), bytes.data() + sizeof words, frame.colours.size() * 2);
-    std::memcpy(frame.layer.data(), bytes.data() + sizeof words + frame.colours.size() * 2,
-                frame.layer.size() * 4);
+    if (!frame.layer.empty())
+      std::memcpy(frame.layer.data(), bytes.data() + sizeof words + frame.colours.size() * 2,
+                  frame.layer.size() * 4);
     return frame;
   }
 
