@@ -71,8 +71,8 @@ std::vector<Rung> truth_ladder(bool quick) {
   for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind)
     if (ProfileKind(kind) != ProfileKind::directional_dipole)  // by `direct` alone
       rungs.push_back({"hierarchical", "", "profile", std::string(kProfileNames[kind]), true});
-  for (const char* cells : {"3", "1.5", "0.75"})
-    if (!quick || cells == std::string_view("1.5"))
+  for (const char* cells : {"3", "2", "1"})
+    if (!quick || cells == std::string_view("2"))
       rungs.push_back({"volume_diffusion", "", "cell_size", cells});
   return rungs;
 }

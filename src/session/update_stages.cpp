@@ -230,11 +230,11 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
 void Session::State::update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                       const std::vector<Light>& lights) {
   update_tint(body, known);
-  KeyBuilder cells("diffusion cells", 3);
+  KeyBuilder cells("diffusion cells", 4);
   cells.add(known.samples_key).add(body.profile.eta).add(body.plan.cell);
   cells.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
   for (const std::uint32_t mesh : body.plan.meshes) cells.add(mesh_keys_[mesh].shape);
-  KeyBuilder builder("diffusion", 3);
+  KeyBuilder builder("diffusion", 4);
   const StageKey cells_key = cells.key();
   const StageKey key = builder.add(cells_key)
                            .add(octree_key(known.samples_key, known.light_keys, lights, known.tint_key))

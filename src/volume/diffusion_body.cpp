@@ -5,11 +5,13 @@
 #include <cmath>
 
 #include "opaline/core/parallel.h"
+#include "volume/fluence_gradient.h"
 
 namespace opaline {
 namespace {
 
 constexpr double kTolerance = 1e-3;  // of the solver; moves the bunny's picture by .03 %
+constexpr double kRough = 1e-2;      // of the fluence that tells the oblique flow
 
 DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice,
                         const Boundary& boundary) {
@@ -18,28 +20,6 @@ DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshe
   for (const BoundaryElement& element : boundary.elements)
     surface.push_back({Vec3f(lattice.into(Vec3d(element.position))), element.normal, element.area});
   return {lines, lattice, surface};
-}
-
-// The fluence around a cell: least squares over its neighbours, one gradient a channel.
-std::array<Vec3f, 3> gradient_at(const DiffusionGrid& grid, std::span<const Channels> fluence,
-                                 std::uint32_t i) {
-  constexpr float kLeastSquare = .05f;  // along an axis without neighbours there is no slope
-  const DiffusionGrid::Cell& cell = grid.cells()[i];
-  Vec3f diagonal(kLeastSquare), off;  // off: of yz, zx, xy
-  std::array<Vec3f, 3> sums{};
-  for (const DiffusionGrid::Link& link : grid.links(i)) {
-    if (!(link.conductance > 0)) continue;
-    const Vec3f apart = grid.cells()[link.to].centre - cell.centre;
-    diagonal += apart * apart * link.conductance;
-    off += Vec3f(apart.y * apart.z, apart.z * apart.x, apart.x * apart.y) * link.conductance;
-    for (std::size_t c = 0; c < 3; ++c)
-      sums[c] += apart * (link.conductance * (fluence[link.to].c[c] - fluence[i].c[c]));
-  }
-  const Vec3f row0(diagonal.x, off.z, off.y), row1(off.z, diagonal.y, off.x), row2(off.y, off.x, diagonal.z);
-  const Vec3f minors0 = cross(row1, row2), minors1 = cross(row2, row0), minors2 = cross(row0, row1);
-  const float inverse = 1 / dot(row0, minors0);  // symmetric and positive
-  for (Vec3f& sum : sums) sum = (minors0 * sum.x + minors1 * sum.y + minors2 * sum.z) * inverse;
-  return sums;
 }
 
 }  // namespace
@@ -95,7 +75,9 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
   for (std::size_t c = 0; c < 3; ++c) problem.diffusivity[c] = float(media_[c].diffusion * lattice_.cell);
   FirstCollisions collisions = first_collisions(space(), light);
   problem.source = std::move(collisions.source);
-  Solution solution{solve_diffusion(problem, kTolerance, std::move(start), monitor).fluence, {}};
+  std::vector<Channels> rough = solve_diffusion(problem, kRough, std::move(start), monitor).fluence;
+  add_oblique_flow(problem, rough);
+  Solution solution{solve_diffusion(problem, kTolerance, std::move(rough), monitor).fluence, {}};
   solution.exitance = read(solution.fluence, collisions.leaving);
   return solution;
 }

@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "volume/cut_cube.h"
 
 namespace opaline {
 namespace {
 
 constexpr double kLeastVolume = .05;                    // of a lattice cell: what is less belongs to no cell
 constexpr double kLeastDistance = .25;                  // of two centres
+constexpr float kLeastAcross = 1e-6f;                   // squared; less is rounding
 constexpr std::array<double, 3> kThirds{.25, .5, .25};  // trapezoids through three lines
 
 /// A flag for each cell of one size.
@@ -67,26 +71,6 @@ Flags met_by_surface(const InsideLines& lines, const Lattice& lattice,
   return met;
 }
 
-/// Of the unit cube, what lies behind a plane (Scardovelli & Zaleski 2000).
-/// in    normal: outward; height: of the plane over the cube's centre, along the normal
-double volume_behind(const Vec3d& normal, double height) {
-  constexpr double kLeast = .01;  // of a component: it divides
-  std::array<double, 3> m{};
-  for (std::size_t axis = 0; axis < 3; ++axis) m[axis] = std::max(kLeast, std::abs(normal[axis]));
-  const double from_corner = height + .5 * (m[0] + m[1] + m[2]);
-  double sum = 0;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    double over = from_corner, sign = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if ((corner >> axis & 1) != 0) {
-        over -= m[axis];
-        sign = -sign;
-      }
-    if (over > 0) sum += sign * over * over * over;
-  }
-  return sum / (6 * m[0] * m[1] * m[2]);
-}
-
 }  // namespace
 
 struct DiffusionGrid::Builder {
@@ -96,6 +80,12 @@ struct DiffusionGrid::Builder {
     while (levels.size() < 3) levels.push_back(levels.back().halved());
     for (Flags& level : levels) level = level.widened();
   }
+
+  /// Of the surface in a cell of size 1.
+  struct Plane {
+    Vec3d normal{};     // outward
+    double height = 0;  // over the cell's middle
+  };
 
   // `size` cells along each side from (i, j, k) on; divided where the surface is near.
   void fill(int i, int j, int k, int size) {
@@ -110,7 +100,7 @@ struct DiffusionGrid::Builder {
     }
     const double middle = .5 * size;
     if (!lines.contains(2 * i + size, 2 * j + size, k + middle)) return;
-    add({Vec3f(Vec3d(i + middle, j + middle, k + middle)), float(size * size * size)}, {i, j, k}, size);
+    add({Vec3f(Vec3d(i + middle, j + middle, k + middle)), float(size * size * size), size}, {i, j, k});
   }
 
   void fill_one(int i, int j, int k) {
@@ -130,14 +120,14 @@ struct DiffusionGrid::Builder {
         moment += Vec3d(.5 * x, .5 * y, z) * (weight * covered);
       }
     if (!(volume > kLeastVolume)) return;
-    add({Vec3f(Vec3d(i, j, k) + moment / volume), float(volume)}, {i, j, k}, 1);
+    add({Vec3f(Vec3d(i, j, k) + moment / volume), float(volume)}, {i, j, k});
   }
 
-  void add(const Cell& cell, std::array<int, 3> corner, int size) {
+  void add(const Cell& cell, std::array<int, 3> corner) {
+    const int size = cell.size;
     const auto index = std::uint32_t(grid.cells_.size());
     grid.cells_.push_back(cell);
     corners.push_back(corner);
-    sizes.push_back(size);
     if (size == kLargest) {
       grid.bricks_[brick] = kWhole + index;
       return;
@@ -158,30 +148,53 @@ struct DiffusionGrid::Builder {
   // facets tell it exactly.
   void weigh_by_planes(std::span<const Facet> surface) {
     constexpr double kLeastAgreement = .97;  // of the facets' normals
-    struct Plane {
-      Vec3d normal{};
-      double height = 0, area = 0;
-    };
-    std::vector<Plane> planes(grid.cells_.size());
+    std::vector<Plane> sums(grid.cells_.size());
+    std::vector<double> areas(grid.cells_.size());
     for (const auto& [position, normal, area] : surface) {
       const std::uint32_t cell = grid.at(position);
-      if (cell == kNone || sizes[cell] > 1) continue;
-      const auto& [i, j, k] = corners[cell];
-      planes[cell].normal += Vec3d(normal) * double(area);
-      planes[cell].height +=
-          dot(Vec3d(position) - Vec3d(i + .5, j + .5, k + .5), Vec3d(normal)) * double(area);
-      planes[cell].area += double(area);
+      if (cell == kNone || size_of(cell) > 1) continue;
+      sums[cell].normal += Vec3d(normal) * double(area);
+      sums[cell].height += dot(Vec3d(position) - middle_of(cell), Vec3d(normal)) * double(area);
+      areas[cell] += double(area);
     }
-    for (std::size_t cell = 0; cell < planes.size(); ++cell) {
-      const auto& [normal, height, area] = planes[cell];
-      if (!(area > 0 && length(normal) > kLeastAgreement * area)) continue;
-      grid.cells_[cell].volume =
-          float(std::clamp(volume_behind(normalized(normal), height / area), kLeastVolume, 1.0));
+    planes.resize(grid.cells_.size());
+    for (std::uint32_t cell = 0; cell < planes.size(); ++cell) {
+      const auto& [normal, height] = sums[cell];
+      if (!(areas[cell] > 0 && length(normal) > kLeastAgreement * areas[cell])) continue;
+      const Plane plane{normalized(normal), height / areas[cell]};
+      const PartOfCube part = part_behind(plane.normal, plane.height);
+      if (!(part.volume > 0)) continue;
+      planes[cell] = plane;
+      grid.cells_[cell].centre = Vec3f(middle_of(cell) + part.centre);
+      grid.cells_[cell].volume = float(std::max(kLeastVolume, part.volume));
     }
   }
 
+  // Of a cell of size 1.
+  Vec3d middle_of(std::uint32_t cell) const {
+    const auto& [i, j, k] = corners[cell];
+    return {i + .5, j + .5, k + .5};
+  }
+  int size_of(std::uint32_t cell) const { return grid.cells_[cell].size; }
+
+  // Of a lattice face between two cells, how much is inside: behind the planes of both, if they have one.
+  // in    corner: of the lattice cell above the face
+  double aperture(std::uint32_t below, std::uint32_t above, const std::array<int, 3>& corner,
+                  std::size_t axis) const {
+    const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+    double sum = 0;
+    int count = 0;
+    for (const auto& [plane, offset] : {std::pair{planes[below], .5}, std::pair{planes[above], -.5}}) {
+      if (!plane) continue;
+      sum += share_behind({plane->normal[u], plane->normal[v]}, plane->height - offset * plane->normal[axis]);
+      ++count;
+    }
+    if (count > 0) return sum / count;
+    return aperture_by_lines(corner[0], corner[1], corner[2], int(axis));
+  }
+
   // Of the lattice face below (i, j, k) along an axis, how much is inside.
-  double aperture(int i, int j, int k, int axis) const {
+  double aperture_by_lines(int i, int j, int k, int axis) const {
     double sum = 0;
     for (std::size_t n = 0; n < 3; ++n) {
       const int m = int(n);
@@ -195,7 +208,7 @@ struct DiffusionGrid::Builder {
 
   template <class Found>
   void link_above(std::uint32_t cell, int axis, const Found& found) const {
-    const int size = sizes[cell], half = std::max(1, size / 2), parts = size > 1 ? 2 : 1;
+    const int size = size_of(cell), half = std::max(1, size / 2), parts = size > 1 ? 2 : 1;
     std::uint32_t before = kNone;
     for (int v = 0; v < parts; ++v)
       for (int u = 0; u < parts; ++u) {
@@ -206,12 +219,9 @@ struct DiffusionGrid::Builder {
         const std::uint32_t other = grid.at(p[0], p[1], p[2]);
         if (other == kNone || other == before) continue;
         before = other;
-        const int edge = std::min(size, sizes[other]);
-        const double area = edge > 1 ? edge * edge : aperture(p[0], p[1], p[2], axis);
-        const auto component = std::size_t(axis);
-        const double distance =
-            double(grid.cells_[other].centre[component] - grid.cells_[cell].centre[component]);
-        if (area > 0) found(other, float(area / std::max(kLeastDistance, distance)));
+        const int edge = std::min(size, size_of(other));
+        const double area = edge > 1 ? edge * edge : aperture(cell, other, p, std::size_t(axis));
+        if (area > 0) found(other, area);
       }
   }
 
@@ -223,7 +233,7 @@ struct DiffusionGrid::Builder {
   // Between the small cells at one side of a larger one: the flow through that side is that of their mean fluence. Each
   // for itself they would lead light along the side, through the larger cell.
   void link_across(std::uint32_t cell, std::size_t axis, int step, std::vector<Pair>& pairs) const {
-    const int size = sizes[cell], half = size / 2;
+    const int size = size_of(cell), half = size / 2;
     std::array<std::uint32_t, 4> others;
     std::size_t count = 0;
     for (int v = 0; v < 2; ++v)
@@ -233,23 +243,42 @@ struct DiffusionGrid::Builder {
         p[(axis + 1) % 3] += u * half;
         p[(axis + 2) % 3] += v * half;
         const std::uint32_t other = grid.at(p[0], p[1], p[2]);
-        if (other != kNone && sizes[other] == half) others[count++] = other;
+        if (other != kNone && size_of(other) == half) others[count++] = other;
       }
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = 0; j < i; ++j)
         pairs.push_back({others[i], others[j], -float(half * half / (.75 * size * double(count)))});
   }
 
+  // Light that fades between two centres flows as at their middle, which lies within the larger cell. Of what lies between
+  // there and the face one half is given to the smaller cell: then what a half space returns is right to second order.
+  // All of it gives as great an error as nothing, of the other sign.
   void link() {
     std::vector<Pair> pairs;
+    std::vector<float> given(grid.cells_.size());
     for (std::uint32_t cell = 0; cell < grid.cells_.size(); ++cell)
       for (int axis = 0; axis < 3; ++axis) {
-        link_above(cell, axis, [&](std::uint32_t other, float conductance) {
-          pairs.push_back({cell, other, conductance});
+        link_above(cell, axis, [&](std::uint32_t other, double area) {
+          const auto component = std::size_t(axis);
+          const double here = double(grid.cells_[cell].centre[component]),
+                       there = double(grid.cells_[other].centre[component]);
+          pairs.push_back({cell, other, float(area / std::max(kLeastDistance, there - here))});
+          const double face = corners[cell][component] + size_of(cell);
+          const auto half = float(.5 * (.5 * (here + there) - face) * area);
+          given[cell] += half;
+          given[other] -= half;
+          Vec3f across = grid.cells_[other].centre - grid.cells_[cell].centre;
+          across[component] = 0;
+          if (size_of(cell) == 1 && size_of(other) == 1 && dot(across, across) > kLeastAcross)
+            grid.oblique_.push_back({cell, other, pairs.back().conductance, across});
         });
         for (const int step : {-1, 1})
-          if (sizes[cell] > 1) link_across(cell, std::size_t(axis), step, pairs);
+          if (size_of(cell) > 1) link_across(cell, std::size_t(axis), step, pairs);
       }
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      float& volume = grid.cells_[i].volume;
+      volume = std::max(.25f * volume, volume + given[i]);
+    }
     std::vector<std::uint32_t>& first = grid.first_link_;
     first.assign(grid.cells_.size() + 1, 0);
     for (const Pair& pair : pairs) ++first[pair.a + 1], ++first[pair.b + 1];
@@ -264,10 +293,10 @@ struct DiffusionGrid::Builder {
 
   DiffusionGrid& grid;
   const InsideLines& lines;
-  std::vector<Flags> levels;                // of sizes 2, 4, 8: what must be divided
-  std::size_t brick = 0;                    // under way
-  std::vector<std::array<int, 3>> corners;  // of the cells
-  std::vector<int> sizes;
+  std::vector<Flags> levels;                 // of sizes 2, 4, 8: what must be divided
+  std::size_t brick = 0;                     // under way
+  std::vector<std::array<int, 3>> corners;   // of the cells
+  std::vector<std::optional<Plane>> planes;  // of the cells that have just one
 };
 
 DiffusionGrid::DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Facet> surface)

@@ -20,12 +20,20 @@ class DiffusionGrid {
 
   struct Cell {
     Vec3f centre;      ///< of what is inside, lattice units, as all here
-    float volume = 0;  ///< of what is inside
+    float volume = 0;  ///< that loses light as its centre does
+    int size = 1;      ///< of its edge
   };
   /// To a neighbour. Both cells have one.
   struct Link {
     std::uint32_t to;
     float conductance;  ///< area of the common face over the distance of the centres
+  };
+
+  /// Between two cells of size 1 whose centres do not face each other.
+  struct ObliqueLink {
+    std::uint32_t a, b;
+    float conductance;
+    Vec3f across;  ///< from a's centre to b's, along their common face
   };
 
   /// Of the surface in one cell: its middle, its normal, outward, and its area, of any unit.
@@ -42,6 +50,7 @@ class DiffusionGrid {
   std::span<const Link> links(std::size_t cell) const {
     return std::span(links_).subspan(first_link_[cell], first_link_[cell + 1] - first_link_[cell]);
   }
+  std::span<const ObliqueLink> oblique() const { return oblique_; }
   /// The cell around a point; kNone outside the body.
   std::uint32_t at(const Vec3f& point) const;
 
@@ -57,6 +66,7 @@ class DiffusionGrid {
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> first_link_;
   std::vector<Link> links_;
+  std::vector<ObliqueLink> oblique_;
 };
 
 }  // namespace opaline

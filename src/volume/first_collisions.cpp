@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLeastCosine = 1e-3;  // of light inside: against division by 0 where eta < 1
 constexpr double kFarthest = 5;        // free paths; what goes farther ends there
-constexpr double kStep = .8;           // cells
+constexpr double kStep = .4;           // cells
 
 // Evenly over [0, 1).
 double golden_point(std::size_t i) {
@@ -53,10 +53,6 @@ Directions towards_light(const Light& light, const BoundaryElement& element, dou
   }
   for (std::size_t n = 0; n < found.count; ++n) found.some[n].share /= sum;
   return found;
-}
-
-float edge_of(const DiffusionGrid::Cell& cell) {
-  return cell.volume > 64 ? 8 : cell.volume > 8 ? 4 : cell.volume > 1 ? 2 : 1;
 }
 
 /// The boundary elements of each cell.
@@ -118,7 +114,13 @@ class Depositor {
   Stretch stretch_of(double length) const;
   std::optional<Exit> exit_at(const Way& way, double length, double least, std::uint32_t last) const;
   std::optional<Exit> collide(const Way& way, double start, std::uint32_t first, Rgb& flux);
-  void deposit(const Vec3d& position, std::uint32_t fallback, std::size_t channel, double flux);
+  /// What collides at a place of its own in each channel; they lie near each other.
+  struct Collided {
+    std::array<Vec3d, 3> places;
+    Rgb flux{};
+  };
+  void deposit(const Collided& collided, const Vec3d& about, std::uint32_t fallback);
+  void deposit(const Vec3d& place, std::uint32_t fallback, std::size_t channel, double flux);
   void deposit(const Way& way, double start, const Stretch& stretch, std::uint32_t fallback, Rgb& flux);
   void leave(const Way& way, const Exit& exit, std::size_t i, std::size_t channel, double flux);
 
@@ -141,17 +143,22 @@ Depositor::Stretch Depositor::stretch_of(double length) const {
   return stretch;
 }
 
-// The plane of the boundary element nearest to where a way has left the cells.
+// The plane of the boundary element nearest to where a way, that was in a cell at `least`, has left the body by `length`:
+// it has come to no cell, or behind a plane in the one that it has come to.
 std::optional<Depositor::Exit> Depositor::exit_at(const Way& way, double length, double least,
                                                   std::uint32_t last) const {
   const double cell = space_.lattice.cell;
-  const Vec3d end = at(way, length - .5 * kStep * cell);
-  Exit exit{length, ~0u, last};
+  const Vec3d end = at(way, length);
+  const std::uint32_t next = space_.grid.at(Vec3f(end));
+  const bool has_left = next == DiffusionGrid::kNone;
+  Exit exit{length, ~0u, has_left ? last : next};
+  const Vec3d about = has_left ? end - way.along * (.5 * kStep) : end;
   double nearest = INFINITY;
-  for (const std::uint32_t e : elements_of_.of(last)) {
-    const Vec3d apart = space_.in_lattice(space_.boundary.elements[e].position) - end;
-    if (!(dot(way.along, Vec3d(space_.boundary.elements[e].normal)) > 0) || dot(apart, apart) >= nearest)
-      continue;
+  for (const std::uint32_t e : elements_of_.of(exit.cell)) {
+    const BoundaryElement& element = space_.boundary.elements[e];
+    const Vec3d apart = about - space_.in_lattice(element.position), normal(element.normal);
+    if (!(dot(way.along, normal) > 0) || dot(apart, apart) >= nearest) continue;
+    if (!has_left && !(dot(apart, normal) > 0)) continue;
     nearest = dot(apart, apart);
     exit.element = e;
   }
@@ -171,15 +178,14 @@ std::optional<Depositor::Exit> Depositor::collide(const Way& way, double start, 
   const double farthest = start + kFarthest * longest_;
   std::uint32_t last = first;
   for (double length = start; length < farthest;) {
-    const double edge = std::max(kStep, double(edge_of(space_.grid.cells()[last])) - 1);
+    const double edge = std::max(kStep, double(space_.grid.cells()[last].size) - 1);
     const double step = edge * space_.lattice.cell;
-    const std::uint32_t next = space_.grid.at(Vec3f(at(way, length + step)));
-    const std::optional<Exit> exit =
-        next == DiffusionGrid::kNone ? exit_at(way, length + step, length, last) : std::nullopt;
+    const std::optional<Exit> exit = exit_at(way, length + step, length, last);
     if (exit) {
       deposit(way, length, stretch_of(exit->length - length), last, flux);
       return exit;
     }
+    const std::uint32_t next = space_.grid.at(Vec3f(at(way, length + step)));
     if (next == DiffusionGrid::kNone) break;
     deposit(way, length, edge > kStep ? stretch_of(step) : step_, last, flux);
     length += step;
@@ -194,36 +200,47 @@ std::optional<Depositor::Exit> Depositor::collide(const Way& way, double start, 
 // What collides on a stretch, each channel at its mean place.
 void Depositor::deposit(const Way& way, double start, const Stretch& stretch, std::uint32_t fallback,
                         Rgb& flux) {
+  Collided collided;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double collided = flux[c] * stretch.share[c];
-    if (!(collided > 0)) continue;
-    deposit(at(way, start + stretch.middle[c]), fallback, c, collided);
-    flux[c] -= collided;
+    collided.places[c] = at(way, start + stretch.middle[c]);
+    collided.flux[c] = flux[c] * stretch.share[c];
+    flux[c] -= collided.flux[c];
   }
+  deposit(collided, at(way, start + .5 * stretch.length), fallback);
 }
 
 // In the cells around a place, by linear interpolation: the cell that it is in and its neighbours towards it.
-void Depositor::deposit(const Vec3d& position, std::uint32_t fallback, std::size_t channel, double flux) {
-  const Vec3f place(position);
+void Depositor::deposit(const Collided& collided, const Vec3d& about, std::uint32_t fallback) {
+  const Vec3f place(about);
   const std::uint32_t found = space_.grid.at(place);
   const std::uint32_t home = found == DiffusionGrid::kNone ? fallback : found;
-  double left = 1;
+  Rgb left = collided.flux;
   if (found != DiffusionGrid::kNone) {
     const DiffusionGrid::Cell& cell = space_.grid.cells()[home];
-    const float edge = edge_of(cell);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float offset = place[axis] - cell.centre[axis];
-      Vec3f beside = cell.centre;
-      beside[axis] += std::copysign(edge, offset);
+      const float centre = cell.centre[axis];
+      const float middle = cell.size > 1 ? centre : std::floor(place[axis]) + .5f;
+      Vec3f beside = place;
+      beside[axis] = middle + std::copysign(.5f * float(cell.size) + .5f, place[axis] - centre);
       const std::uint32_t other = space_.grid.at(beside);
       if (other == DiffusionGrid::kNone || other == home) continue;
-      const float apart = space_.grid.cells()[other].centre[axis] - cell.centre[axis];
-      const double share = std::clamp(double(offset / apart), 0., .5);
-      result_.source[other].c[channel] += float(flux * share);
-      left -= share;
+      const double inverse = 1 / double(space_.grid.cells()[other].centre[axis] - centre);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double offset = collided.places[c][axis] - double(centre);
+        const double share = collided.flux[c] * std::clamp(offset * inverse, 0., 1.);
+        result_.source[other].c[c] += float(share);
+        left[c] -= share;
+      }
     }
   }
-  result_.source[home].c[channel] += float(flux * left);
+  for (std::size_t c = 0; c < 3; ++c) result_.source[home].c[c] += float(left[c]);
+}
+
+// Of one channel.
+void Depositor::deposit(const Vec3d& place, std::uint32_t fallback, std::size_t channel, double flux) {
+  Collided collided{{place, place, place}, {}};
+  collided.flux[channel] = flux;
+  deposit(collided, place, fallback);
 }
 
 // What the boundary reflects collides on its further way, which is taken to be inside.

@@ -84,7 +84,7 @@ TEST(Ladder, AgainstRandomWalks) {
   EXPECT_EQ(profiles.size(), kProfileNames.size() - 1);  // directional_dipole is direct's
   const std::set<std::string> all = names_of(rungs);
   EXPECT_TRUE(all.contains("hierarchical"));
-  EXPECT_TRUE(all.contains("volume_diffusion cell_size=1.5"));
+  EXPECT_TRUE(all.contains("volume_diffusion cell_size=2"));
   EXPECT_TRUE(std::ranges::includes(all, names_of(truth_ladder(/*quick=*/true))));
 }
 

@@ -125,7 +125,7 @@ TEST(CliReport, AgainstRandomWalks) {
   }
   EXPECT_EQ(table.rows.size(), 9u + 12u);
   EXPECT_EQ(errors.size(), 12u);
-  EXPECT_LT(2 * errors.at("volume_diffusion cell_size=1.5"), errors.at("hierarchical"));
+  EXPECT_LT(2 * errors.at("volume_diffusion cell_size=2"), errors.at("hierarchical"));
   EXPECT_GT(errors.at("lambert"), errors.at("hierarchical"));
   EXPECT_NE(errors.at("hierarchical profile=normalized_diffusion"), errors.at("hierarchical profile=dipole"));
   EXPECT_TRUE(contains(bytes_of(folder.file("report/index.html")), "Against random walks: <b>"));

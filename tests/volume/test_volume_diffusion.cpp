@@ -47,9 +47,9 @@ double entered_mean(const LitBody& body, const LightSource& source, double eta) 
 }
 
 // Claim: a body that absorbs nothing sends out all that enters, evenly where light enters evenly. Source:
-// conservation; symmetry. Tolerance: 1e-3 of the whole, as asked of it; 3.5 % rms from sample to sample, which are smaller
-// than the cells (measured 3.2 and 1.7 with eight directions an element; 6.6 with one). Fails if: areas
-// of the boundary or sources are lost between cells, or what collides at once leaves twice.
+// conservation; symmetry. Tolerance: 1e-3 of the whole, as asked of it; 2 % rms from sample to sample, which are smaller
+// than the cells (measured 1.6 and .4; 2.9 and 1.5 without the flow across oblique links). Fails if: areas of the boundary
+// or sources are lost between cells, or what collides at once leaves twice.
 TEST(VolumeDiffusion, WhiteFurnace) {
   for (const double eta : {1.0, 1.5}) {
     const LitBody body(SphereShape{{}, 4}, 2000);
@@ -59,13 +59,14 @@ TEST(VolumeDiffusion, WhiteFurnace) {
     EXPECT_NEAR(body.mean_where(solved, everywhere).value / entered, 1, 1e-3) << eta;
     double square = 0;
     for (const RgbF& exitance : solved.exitance) square += std::pow(double(exitance.x) / entered - 1, 2);
-    EXPECT_LT(std::sqrt(square / double(solved.exitance.size())), .035) << eta;
+    EXPECT_LT(std::sqrt(square / double(solved.exitance.size())), .02) << eta;
   }
 }
 
 // Claim: a thick body's flat face returns what a half space does, whatever the light's direction. Source: HalfSpace.
-// Tolerance: 1.3 %, wherever in a cell the face lies (measured -.2 to 1.2; .8 with cells of .17). Fails if: first
-// collisions are not along the refracted ray, or the volume of cells that the face cuts is not that behind it.
+// Tolerance: .5 %, wherever in a cell the face lies (measured -.03 to .24). Fails if: first collisions are not along the
+// refracted ray, the volume of cells that the face cuts is not that behind it, or larger cells absorb all that is in them
+// (1.2 %).
 TEST(VolumeDiffusion, FlatFaceIsAHalfSpace) {
   const LitBody body(SlabShape{{}, 30, 30, 10}, 6000, NormalMode::faceted);
   const auto middle = [&](const SurfaceSample& s) {
@@ -82,7 +83,7 @@ TEST(VolumeDiffusion, FlatFaceIsAHalfSpace) {
         const double entered = outside * fresnel_transmittance(outside, eta);
         const double inside = std::sqrt(1 - (1 - outside * outside) / (eta * eta));
         const double expected = entered * HalfSpace(1 - medium.albedo(), eta).share(inside);
-        EXPECT_NEAR(body.mean_where(solved, middle).value / expected, 1, .013)
+        EXPECT_NEAR(body.mean_where(solved, middle).value / expected, 1, .005)
             << eta << " " << cell << " " << direction.x;
       }
 }
@@ -115,7 +116,8 @@ TEST(VolumeDiffusion, DarkBallAsWalked) {
 }
 
 // Claim: a plate of three mean free paths sends back and lets through what a slab does. Source: random walks in a slab.
-// Tolerance: 2.5 %. Fails if: light that crosses the plate without a collision stays in it.
+// Tolerance: 2 % (measured 1.9 and -1.0). Fails if: light that crosses the plate without a collision stays in it, or
+// collides behind its far side, in the cell that this cuts (2.8 and -2.4).
 TEST(VolumeDiffusion, ThinPlateIsASlab) {
   const HomogeneousMedium medium{.01, 2, 0, 1.4};
   constexpr double kThickness = 1.5;
@@ -130,7 +132,7 @@ TEST(VolumeDiffusion, ThinPlateIsASlab) {
     };
     const double expected =
         fresnel_transmittance(1., medium.eta) * (side > 0 ? walks.back : walks.through).total.value;
-    EXPECT_NEAR(body.mean_where(solved, middle).value / expected, 1, .025) << side;
+    EXPECT_NEAR(body.mean_where(solved, middle).value / expected, 1, .02) << side;
   }
 }
 

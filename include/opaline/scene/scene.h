@@ -288,7 +288,7 @@ struct Settings {
   std::optional<double>
       until_error;             ///< direct, volume: stop at this estimated relative error of the pixels, cells
   bool reenter = true;         ///< volume: light that has left a body may enter it again elsewhere
-  double cell_size = 1.5;      ///< volume_diffusion: of the cells at the surface, mean free paths
+  double cell_size = 2;        ///< volume_diffusion: of the cells at the surface, mean free paths
   std::optional<int> bounces;  ///< 1: surfaces that are lit light others, once; none: bounces_of()
   std::uint64_t seed = 0;
   int reference_frame = 1;  ///< of frame ranges: samples are placed there and go along to all others
