@@ -144,7 +144,8 @@ void average(const IrradianceInput& input, std::uint32_t light, std::span<const 
     for (std::uint32_t m = 0; m < part.size(); ++m)
       for (const CellPoints::Point& point : points.points(part[m].cell)) {
         if (point.line >= most) break;
-        batch.add(point.at, part[m].sample, std::uint64_t(point.line) * std::uint64_t(each));
+        batch.add(entered_at(input, point.at), part[m].sample,
+                  std::uint64_t(point.line) * std::uint64_t(each));
         owners.push_back(m);
         areas.push_back(point.weight);
         whole[m] += double(point.weight);

@@ -9,6 +9,12 @@
 
 namespace opaline {
 
+/// A point with the normal by which light enters there.
+inline SurfacePoint entered_at(const IrradianceInput& input, SurfacePoint point) {
+  if (input.geometric_normals) point.normal = point.geometric;
+  return point;
+}
+
 /// Replaces, light by light, the weight of each sample beside a shadow's edge by its mean over points of the
 /// sample's Voronoi cell; all other weights keep their bits. An edge is where the visible part of the light
 /// changes from one sample to the next; where a surface merely turns away from the light, or nears it, there

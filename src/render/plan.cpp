@@ -31,6 +31,9 @@ namespace {
 // preview.
 constexpr double kFewestSamples = 10000;
 constexpr double kSuspiciouslyFew = 100;
+// Of the cells of volume_diffusion, between samples at most: what enters and leaves must be known as finely. Measured on
+// bunnies (src/volume/README.md).
+constexpr double kSpacingInCells = .75;
 
 // As far apart as samples may be. Light that enters at a point leaves within a few mean free paths around it;
 // what is nearer than the spacing comes from the irradiance at the shading point itself (SplitKernel), so
@@ -55,12 +58,16 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
   const double wanted = std::isfinite(spacing) ? group.area / (spacing * spacing) : kFewestSamples;
   double count = wanted;
   group.reason = fmt::format("{:.2f} mean free paths of {:.4g} mm", spacing / mean_free_path, mean_free_path);
+  const double of_cells = group.cell > 0 ? group.area / std::pow(kSpacingInCells * group.cell, 2) : 0;
   if (settings.samples) {
     count = double(*settings.samples);
     group.reason = "settings.samples";
   } else if (settings.sample_spacing) {
     count = group.area / (*settings.sample_spacing * *settings.sample_spacing);
     group.reason = fmt::format("settings.sample_spacing of {:.4g} mm", *settings.sample_spacing);
+  } else if (of_cells > std::max(wanted, kFewestSamples)) {
+    count = of_cells;
+    group.reason = fmt::format("{:.2f} cells of {:.4g} mm", kSpacingInCells, group.cell);
   } else if (wanted < kFewestSamples) {
     count = kFewestSamples;
     group.reason =
@@ -318,9 +325,9 @@ Plan make_plan(const Scene& scene, const World& world) {
   plan.bytes += texture_bytes(scene);
   std::size_t samples = 0;
   for (GroupPlan& group : plan.groups) {
+    if (scene.settings.method == Method::volume_diffusion) choose_cells(scene, group, plan.warnings);
     choose_samples(scene, group, plan.warnings);
     if (scene.settings.method == Method::volume_diffusion) {
-      choose_cells(scene, group, plan.warnings);
       plan.bytes += group.samples * (191 + 4 * lights.size() + 2 * 24 + kBytesOfFit);
       plan.bytes += std::size_t(kBytesOfCell * expected_cells(group.area, group.cell));
     }

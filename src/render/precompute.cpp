@@ -40,7 +40,8 @@ std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size
   const DiffuseProfile profile =
       make_diffuse_profile(input.scene.media[input.plan.groups[group].medium], input.world.unit);
   return compute_irradiance({input.rays, samples, lights, profile.eta, settings.light_samples,
-                             irradiance_seed(settings, group), input.monitor});
+                             irradiance_seed(settings, group), input.monitor,
+                             settings.method == Method::volume_diffusion});
 }
 
 std::vector<Light> recentred_lights(const Scene& scene, const World& world) {

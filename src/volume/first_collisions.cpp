@@ -13,8 +13,9 @@ namespace opaline {
 namespace {
 
 constexpr double kLeastCosine = 1e-3;  // of light inside: against division by 0 where eta < 1
-constexpr double kFarthest = 5;        // free paths; what goes farther ends there
-constexpr double kStep = .4;           // cells
+constexpr double kLeastExit = .25;  // of a cell's face: at a smaller element less than all that comes leaves
+constexpr double kFarthest = 5;     // free paths; what goes farther ends there
+constexpr double kStep = .4;        // cells
 
 // Evenly over [0, 1).
 double golden_point(std::size_t i) {
@@ -243,14 +244,19 @@ void Depositor::deposit(const Vec3d& place, std::uint32_t fallback, std::size_t 
   deposit(collided, place, fallback);
 }
 
-// What the boundary reflects collides on its further way, which is taken to be inside.
+// What the boundary reflects collides on its further way, which is taken to be inside. Where the element is small beside
+// the ray, which stands for those through a cell's face, the cell takes the rest: it leaves around.
 void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, std::size_t channel, double flux) {
   const BoundaryElement& point = space_.boundary.elements[exit.element];
   const CalibratedMedium& medium = space_.media[channel];
   const Vec3d normal(point.normal);
   const double reflected =
       flux * inside_reflectance(std::clamp(dot(way.along, normal), kLeastCosine, 1.), medium.eta);
-  result_.leaving[exit.element][channel] += float((flux - reflected) / double(point.area));
+  const double least = kLeastExit * space_.lattice.cell * space_.lattice.cell;
+  const double leaves = (flux - reflected) / std::max(least, double(point.area));
+  result_.leaving[exit.element][channel] += float(leaves);
+  const double stays = flux - reflected - leaves * double(point.area);
+  result_.source[exit.cell].c[channel] += float(stays);
   const Way back{at(way, exit.length), mirrored(way.along, normal)};
   const double collided = -std::log1p(-golden_point(i)) / medium.extinction;
   deposit(at(back, collided), exit.cell, channel, reflected * medium.albedo);

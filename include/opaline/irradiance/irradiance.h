@@ -22,6 +22,9 @@ struct IrradianceInput {
   int light_samples = 64;         ///< shadow rays a sample for lights with an area
   std::uint64_t seed = 0;
   Monitor* monitor = nullptr;
+  /// Cosines and Ft by the triangles' normals: what enters the mesh as it is. Interpolated ones gain and lose light where
+  /// the surface turns within few triangles.
+  bool geometric_normals = false;
 };
 
 /// E(x) = integral of L_i Ft(omega_i) cos d omega is linear in each light's colour, and Ft is the same for
@@ -41,8 +44,8 @@ struct LightTransfer {
   double edge_shift = 0;
 };
 
-/// One transfer per light. Cosines and Ft use the shading normal; which side a light is on, the geometric
-/// one. Everything in the scene casts full shadows.
+/// One transfer per light. Cosines and Ft use the shading normal unless asked otherwise; which side a light is on, the
+/// geometric one. Everything in the scene casts full shadows.
 std::vector<LightTransfer> compute_irradiance(const IrradianceInput& input);
 
 /// E per sample, W/mm^2, per unit area of the surface: the sum over lights of emission x weight.
