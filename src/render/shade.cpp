@@ -126,13 +126,15 @@ std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const P
                               hash_bits(point_irradiance_seed(input_.scene.settings), kGatheringSeed)});
 }
 
-std::vector<RgbF> Shader::diffuse_along(std::span<const TracedRay> rays,
-                                        std::span<const std::uint64_t> keys) const {
+std::vector<RgbF> Shader::radiance_along(std::span<const TracedRay> rays,
+                                         std::span<const std::uint64_t> keys) const {
   std::vector<PixelSample> seen(rays.size());
-  shade_diffuse({rays, keys, seen, kGatheringSpread, {}}, 1, {.entry_samples = 1, .is_seen = false}, nullptr);
+  const RayBatch batch{rays, keys, seen, kGatheringSpread, {}};
+  for (const SurfaceHits& hits : shade_diffuse(batch, 1, {.entry_samples = 1, .is_seen = false}, nullptr))
+    add_evenly_mirrored(hits, batch);
   std::vector<RgbF> radiance;
   radiance.reserve(seen.size());
-  for (const PixelSample& sample : seen) radiance.push_back(sample.diffuse);
+  for (const PixelSample& sample : seen) radiance.push_back(sample.diffuse + sample.specular);
   return radiance;
 }
 

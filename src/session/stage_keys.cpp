@@ -73,7 +73,7 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
                       std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
-  KeyBuilder key("surfaces in their light", 3);
+  KeyBuilder key("surfaces in their light", 4);
   key.add(settings.seed).add(settings.tolerance).add(settings.evaluator).add(settings.max_solid_angle);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {

@@ -33,8 +33,10 @@ def surface(shape):
     base = colour(shape.pop("reflectance", 0.5))
     if "specular_roughness" not in shape:
         return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": base}}
-    return {"type": "roughplastic", "distribution": "ggx", "alpha": shape.pop("specular_roughness") ** 2, "int_ior": 1.5,
-            "diffuse_reflectance": base, "nonlinear": True}
+    facets = {"distribution": "ggx", "alpha": shape.pop("specular_roughness") ** 2}
+    if shape.pop("metalness", 0) == 1:
+        return {"type": "roughconductor", **facets, "material": "none", "specular_reflectance": base}
+    return {"type": "roughplastic", **facets, "int_ior": 1.5, "diffuse_reflectance": base, "nonlinear": True}
 
 
 def shape_of(shape):
