@@ -158,18 +158,18 @@ class MaterialTranslator {
     surface.keys["specular_roughness"] = times(channel(both, "g"), roughness, 1.0);
     const double ior = index_of_refraction();
     if (ior > 1 && ior != kGltfIor) surface.keys["specular_ior"] = ior;
-    add_specular_weight(surface);
+    add_specular_weight(surface.keys);
     translated(
         fmt::format("baseColorFactor, metallicFactor, roughnessFactor -> reflectance {}, metalness {:.3g}, "
                     "specular_roughness {:.3g} (opaque)",
                     short_triple(surface.reflectance), metalness, roughness));
   }
 
-  void add_specular_weight(SurfaceTranslation& surface) {
+  void add_specular_weight(Json& keys) {
     if (!has("KHR_materials_specular")) return;
     const ExtensionValues specular = values("KHR_materials_specular");
     const double weight = std::clamp(specular.number("specularFactor", 1), 0., 1.);
-    if (weight < 1) surface.keys["specular_weight"] = weight;
+    if (weight < 1) keys["specular_weight"] = weight;
     translated(fmt::format("specularFactor -> specular_weight {:.3g}", weight));
     const Vec3d color = specular.color("specularColorFactor", Vec3d(1));
     if (color != Vec3d(1)) not_carried("specularColorFactor " + short_triple(color));
@@ -183,6 +183,7 @@ class MaterialTranslator {
           times(std::move(base), triple_json(surface.reflectance), triple_json(Vec3d(1)));
       translated(fmt::format("baseColorFactor -> tint {}", short_triple(surface.reflectance)));
     }
+    add_specular_weight(surface.medium);
     if (std::optional<Json> rough =
             channel(texture(of(pbr.metallicRoughnessTexture), "metallicRoughnessTexture"), "g"))
       surface.medium["specular_roughness"] =
@@ -301,11 +302,10 @@ class MaterialTranslator {
   void tell_extensions(bool is_translucent) {
     constexpr std::array<std::string_view, 3> of_volume{"KHR_materials_transmission", "KHR_materials_volume",
                                                         "KHR_materials_diffuse_transmission"};
-    constexpr std::array<std::string_view, 3> read{"KHR_materials_ior", "KHR_materials_volume_scatter",
-                                                   "KHR_materials_scatter"};
+    constexpr std::array<std::string_view, 4> read{"KHR_materials_ior", "KHR_materials_specular",
+                                                   "KHR_materials_volume_scatter", "KHR_materials_scatter"};
     for (const auto& [name, unused] : material_.extensions) {
-      const bool is_of_coat = name == "KHR_materials_specular" && !is_translucent;
-      if (is_of_coat || std::ranges::find(read, name) != read.end()) continue;
+      if (std::ranges::find(read, name) != read.end()) continue;
       if (std::ranges::find(of_volume, name) == of_volume.end())
         not_carried(name);
       else if (!is_translucent)

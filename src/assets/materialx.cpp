@@ -108,16 +108,18 @@ class SurfaceReader {
     const double g = number(model_.anisotropy, 0, -kMostAnisotropy, kMostAnisotropy);
     const double ior = number(model_.ior, 1.5, kLeastIor, kMostIor);
     const double roughness = number("specular_roughness", model_.default_roughness, 0, 1);
-    scene_.translated.push_back(
-        fmt::format("{}: {} {}, {} times {} {} scene units -> subsurface_color, subsurface_radius {} mm, "
-                    "anisotropy {:.3g}, specular_ior {:.4g}, specular_roughness {:.3g}",
-                    label_, model_.color, short_triple(reflected), model_.radius, model_.scale,
-                    short_triple(radius), short_triple(radius_mm), g, ior, roughness));
+    const double weight = number(model_.specular_weight, 1, 0, 1);
+    scene_.translated.push_back(fmt::format(
+        "{}: {} {}, {} times {} {} scene units -> subsurface_color, subsurface_radius {} mm, "
+        "anisotropy {:.3g}, specular_ior {:.4g}, specular_roughness {:.3g}, specular_weight {:.3g}",
+        label_, model_.color, short_triple(reflected), model_.radius, model_.scale, short_triple(radius),
+        short_triple(radius_mm), g, ior, roughness, weight));
     return {{"subsurface_color", triple_json(reflected)},
             {"subsurface_radius", triple_json(radius_mm)},
             {"subsurface_scatter_anisotropy", g},
             {"specular_ior", ior},
-            {"specular_roughness", roughness}};
+            {"specular_roughness", roughness},
+            {"specular_weight", weight}};
   }
 
   pugi::xml_node input(const char* name) {

@@ -122,6 +122,9 @@ std::vector<KeyInfo> medium_rows() {
           "medium", "specular_roughness", number, "", kUnitInterval, "0",
           "of the surface as it mirrors: 0 smooth, .3 satin; alone a rough one shows highlights of lights "
           "without size")),
+      row("medium", "specular_weight", number, "", {0, 1}, "1",
+          "times what the surface mirrors at right angles: an index of refraction of its own, for light from "
+          "inside as well; at 0 all light enters"),
       textured(row(
           "medium", "tint", color, "", kUnitInterval, "1",
           "colours the light of any medium at its surface, by `texture_mix`; where it is even, what leaves "

@@ -110,9 +110,9 @@ TEST(GltfMaterials, OthersAreOpaque) {
   EXPECT_EQ(scene_of(cube_asset().glb(), "a.glb").shapes.at(0).reflectance, Rgb(1, 1, 1));
 }
 
-// Claim: specularFactor is the share that an opaque material's coat mirrors at right angles, .04 of the light without
-// it; its colour is told to be lost, and so is all of it for a body. Source: KHR_materials_specular. Fails if it is passed
-// over, or told to be.
+// Claim: specularFactor is the share that the coat of an opaque material or a body mirrors at right angles, .04 of the
+// light without it; its colour is told to be lost. Source: KHR_materials_specular. Fails if it is passed over, or told to
+// be.
 TEST(GltfMaterials, SpecularFactorWeighsTheCoat) {
   Json material = {{"extensions", {{"KHR_materials_specular", {{"specularFactor", .25}}}}}};
   const Scene scene = scene_of(cube_of(material).glb(), "a.glb");
@@ -124,7 +124,11 @@ TEST(GltfMaterials, SpecularFactorWeighsTheCoat) {
   EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "specularColorFactor"));
   material["extensions"]["KHR_materials_volume"] = kVolume;
   material["extensions"]["KHR_materials_volume_scatter"] = {{"multiscatterColor", {.5, .5, .5}}};
-  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "KHR_materials_specular"));
+  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "specularColorFactor"));
+  EXPECT_FALSE(has(imported(cube_of(material)).not_carried, "KHR_materials_specular"));
+  EXPECT_TRUE(has(imported(cube_of(material)).translated, "specularFactor -> specular_weight 0.25"));
+  const double of_body = scene_of(cube_of(material).glb(), "a.glb").media.at(0).eta;
+  EXPECT_NEAR((of_body - 1) / (of_body + 1), std::sqrt(.25 * .04), 1e-9);
 }
 
 // Claim: values that leave nothing to scatter, or lie outside of what a medium may have, are replaced and said. Fails if

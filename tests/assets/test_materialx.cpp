@@ -78,6 +78,18 @@ TEST(MaterialX, OpenPbrIsTheArtistsMedium) {
   }
 }
 
+// Claim: a body's coat mirrors the weight's share of what its index does. Source: OpenPBR 1.1, specular_weight. Fails if
+// the weight is passed over.
+TEST(MaterialX, BodiesHaveASpecularWeight) {
+  const MaterialFolder folder(
+      R"(<materialx><open_pbr_surface name="s"><input name="subsurface_weight" value="1"/>
+    <input name="specular_weight" value="0.25"/></open_pbr_surface></materialx>)");
+  const ImportedAsset import = folder.import("tetrahedron.obj");
+  EXPECT_FALSE(has(import.not_carried, "specular_weight"));
+  const double eta = parse_scene(import.text, "a.json").media.at(0).eta;
+  EXPECT_NEAR((eta - 1) / (eta + 1), std::sqrt(.25 * .04), 1e-9);
+}
+
 // Claim: shapes of an OBJ that share the medium are one body. Fails if the tetrahedron falls into two open ones.
 TEST(MaterialX, PartsOfAnObjAreOneBody) {
   const Scene scene = parse_scene(MaterialFolder().import("tetrahedron.obj").text, "a.json");

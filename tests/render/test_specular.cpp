@@ -136,6 +136,31 @@ TEST(Coat, SpecularWeightIsAShare) {
   }
 }
 
+// Claim: of a body, too, the coat mirrors the weight's share at right angles, .04 at weight 1, and all else enters: a white
+// ball in a white room is white at every weight, smooth or rough, by its samples as by the limit of no mean free path.
+// Source: OpenPBR 1.1, specular_weight; conservation. Tolerance: 1e-3 of the share; .6 % of the mean. Fails if the weight is taken off the mirror alone.
+TEST(Coat, SpecularWeightOfBodies) {
+  for (const char* const method : {"lambert", "hierarchical"})
+    for (const char* const roughness : {"0", "0.4"})
+      for (const double weight : {0., .25, 1.}) {
+        SCOPED_TRACE(std::string(method) + ' ' + roughness + ' ' + std::to_string(weight));
+        const Image image = picture_of(parse_scene(
+            std::string(R"({"media": {"white": {"sigma_a": 0, "sigma_s": 200, "specular_ior": 1.5,
+          "specular_roughness": )") +
+                roughness + R"(, "specular_weight": )" + std::to_string(weight) +
+                R"(}}, "shapes": [{"sphere": {"radius": 10}, "medium": "white"}], "surroundings": 1,
+          "settings": {"method": ")" +
+                method +
+                R"(", "light_samples": 256, "samples": 4000}, "camera": {"position": [0, 0, 100], "field_of_view": 15},
+          "film": {"resolution": [32, 32], "pixel_type": "float"}})",
+            "text.json"));
+        if (roughness[1] == 0) {
+          EXPECT_NEAR(channel(image, 16, 16, "specular.G"), .04 * weight, 1e-3 * weight);
+        }
+        EXPECT_NEAR(mean_over_ball(image, "G"), 1, .006);
+      }
+}
+
 // Claim: metals are seen in mirrors as they mirror: in a white room a white metal ball on a white metal floor is white.
 // Source: conservation. Tolerance: 3.5 %; metals that are black in mirrors take 14 % away. Fails if they are.
 TEST(Coat, MetalsInMirrors) {

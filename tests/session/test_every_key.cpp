@@ -79,6 +79,7 @@ std::vector<Change> changes() {
       {"medium.specular_ior", "media.stone.specular_ior=1.6"},
       {"medium.eta", "media.wax.eta=1.6"},
       {"medium.specular_roughness", "media.stone.specular_roughness=0.5"},
+      {"medium.specular_weight", "media.stone.specular_weight=0.5"},
       {"medium.tint", "media.stone.tint=[0.5, 0.7, 0.9]"},
       {"medium.texture_mix", "media.stone.texture_mix=pre", {R"(media.stone.tint={"texture": "cells.png"})"}},
       {"medium.thickness", "media.stone.thickness=3", {"media.stone.profile=multipole"}},

@@ -114,7 +114,7 @@ export class Knobs {
     select.onchange = () => this.set({[path]: this.converted(name, select.value)}, newStroke());
     const ior = "eta" in medium ? "eta" : "specular_ior";
     return [make("label", {className: "knob"}, make("span", {className: "name", textContent: "given by"}), select),
-      ...[...kForms[form].keys, ior, "specular_roughness", "profile", ...kOptional.filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
+      ...[...kForms[form].keys, ior, "specular_roughness", "specular_weight", "profile", ...kOptional.filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
   }
 
   // The same medium in another form, or where there is no telling one to start from.
