@@ -18,19 +18,22 @@ namespace opaline {
 
 struct Appearance {
   bool translucent = false;
-  RgbF albedo{};                                           ///< reflectance, or total diffuse reflectance
-  float eta = 1;                                           ///< of the boundary, where there is one
-  float average_reflectance = 0;                           ///< F_bar
-  std::optional<RoughBoundary> rough;                      ///< none: smooth
-  bool has_boundary = false;                               ///< translucent things and glossy opaque ones
-  float metalness = 0;                                     ///< of an opaque one
-  std::shared_ptr<const RoughnessRange> roughnesses = {};  ///< of a boundary whose roughness is a texture
+  RgbF albedo{};                       ///< reflectance, or total diffuse reflectance
+  float eta = 1;                       ///< of the boundary, where there is one
+  float average_reflectance = 0;       ///< F_bar
+  std::optional<RoughBoundary> rough;  ///< none: smooth
+  bool has_boundary = false;           ///< translucent things and glossy opaque ones
+  float metalness = 0;                 ///< of an opaque one
+  /// Of a boundary whose roughness is a texture, or that is anisotropic.
+  std::shared_ptr<const RoughnessRange> roughnesses = {};
+  float roughness = 0;  ///< where it is no texture
 
   /// The same at a point whose textures are known.
   Appearance at(const HitTextures& textures) const {
     Appearance here = *this;
     here.albedo = albedo * textures.tint.entering * textures.tint.leaving;
-    if (textures.roughness && roughnesses) here.rough = roughnesses->at(*textures.roughness);
+    if (roughnesses)
+      here.rough = roughnesses->at(textures.roughness.value_or(roughness), textures.tangent_share);
     if (textures.metalness) here.metalness = *textures.metalness;
     return here;
   }

@@ -34,8 +34,14 @@ TracedRay leaving(const SurfacePoint& point, const Vec3f& direction) {
 struct Frame {
   Vec3f x, y, z, view;
 
-  Frame(const SurfacePoint& point, const Vec3f& towards_eye) : z(point.normal) {
-    tangent_frame(z, x, y);
+  /// tangent: 0 where the boundary is the same all around
+  Frame(const SurfacePoint& point, const Vec3f& tangent, const Vec3f& towards_eye) : z(point.normal) {
+    if (tangent == Vec3f{}) {
+      tangent_frame(z, x, y);
+    } else {
+      x = tangent;
+      y = cross(z, x);
+    }
     view = {dot(towards_eye, x), dot(towards_eye, y), cos_view(point, -towards_eye)};
     view = normalized(view);
   }
@@ -152,7 +158,8 @@ struct Shader::GlossyHits {
       // Behind a mirror directions are drawn by themselves: those of the mirror have the pixel's sequence.
       keys.push_back(rays.mirrors > 0 ? hash_bits(seed, hits.keys[i])
                                       : key_in_pixel(hits.keys[i], std::uint64_t(spp)));
-      frames.emplace_back(hits.points[i], -normalized(batch.rays[hits.rays[i]].ray.direction));
+      frames.emplace_back(hits.points[i], hits.textures.empty() ? Vec3f{} : hits.textures[i].tangent,
+                          -normalized(batch.rays[hits.rays[i]].ray.direction));
       if (!hits.textures.empty()) textured.push_back(shader.appearance_of(hits, i));
       appearances.push_back(hits.textures.empty() ? &shader.appearances_[hits.hits[i].mesh]
                                                   : &textured.back());

@@ -108,6 +108,13 @@ double weighted_ior(double ior, double weight) {
   return (1 + amplitude) / (1 - amplitude);
 }
 
+Grain read_grain(const ObjectReader& reader) {
+  Grain grain;
+  if (const auto anisotropy = reader.find("specular_anisotropy")) grain.anisotropy = anisotropy->number();
+  if (const auto rotation = reader.find("specular_rotation")) grain.rotation = rotation->number();
+  return grain;
+}
+
 Medium read_medium(const Value& value, double mm_per_unit) {
   const ObjectReader reader(value, "medium");
   Medium medium;
@@ -136,6 +143,7 @@ Medium read_medium(const Value& value, double mm_per_unit) {
     medium.specular_roughness = roughness.number;
     medium.roughness_texture = std::move(roughness.texture);
   }
+  medium.grain = read_grain(reader);
   read_tint(reader, medium);
   const auto profile = reader.find("profile");
   const std::size_t choice = profile ? profile->choice() : 0;

@@ -94,9 +94,10 @@ std::size_t find_medium(const Value& value, const std::vector<Medium>& media) {
 void read_gloss(const ObjectReader& reader, Shape& shape) {
   const auto metalness = reader.find("metalness"), roughness = reader.find("specular_roughness"),
              ior = reader.find("specular_ior"), weight = reader.find("specular_weight");
-  for (const auto& key : {metalness, roughness, ior, weight})
+  const auto anisotropy = reader.find("specular_anisotropy"), rotation = reader.find("specular_rotation");
+  for (const auto& key : {metalness, roughness, ior, weight, anisotropy, rotation})
     if (key && shape.medium) key->fail_key("is the medium's to say", "it in 'media', or an opaque shape");
-  for (const auto& key : {ior, weight})
+  for (const auto& key : {ior, weight, anisotropy, rotation})
     if (key && !metalness && !roughness)
       key->fail_key("has no meaning on a matte shape", "'specular_roughness' beside it");
   if (!metalness && !roughness) return;
@@ -111,6 +112,7 @@ void read_gloss(const ObjectReader& reader, Shape& shape) {
     gloss.roughness = reading.number;
     gloss.roughness_texture = std::move(reading.texture);
   }
+  gloss.grain = read_grain(reader);
   if (ior) gloss.eta = ior->number();
   constexpr double kTrace = 1e-4;  // of a coat of no weight, so that metals keep a boundary
   if (weight) gloss.eta = weighted_ior(gloss.eta, std::max(weight->number(), kTrace));
