@@ -78,8 +78,9 @@ std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
                                             const Pass& pass, int mirrors) const {
   std::vector<PixelSample> seen(rays.size());
   const RayBatch batch{rays, keys, seen, cones.spread, cones.widths, mirrors};
+  const Pass& mirrored = pass.in_mirrors != nullptr ? *pass.in_mirrors : pass;
   for (const SurfaceHits& hits :
-       shade_diffuse(batch, std::max(1, light_samples_ / kFewerInMirrors), pass, nullptr)) {
+       shade_diffuse(batch, std::max(1, light_samples_ / kFewerInMirrors), mirrored, nullptr)) {
     SurfaceHits followed, last;
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
       const Appearance& plain = appearances_[hits.hits[i].mesh];
@@ -87,7 +88,7 @@ std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
       const float metalness = (hits.textures.empty() ? plain : appearance_of(hits, i)).metalness;
       add_hit(hits, i, mirrors < (metalness > 0 ? kMostMirrors : kMostCoats) ? followed : last);
     }
-    if (!followed.rays.empty()) add_specular(followed, batch, pass);
+    if (!followed.rays.empty()) add_specular(followed, batch, mirrored);
     add_evenly_mirrored(last, batch);
   }
   return seen;
