@@ -7,6 +7,7 @@
 
 #include <array>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -149,8 +150,7 @@ class MaterialTranslator {
   void add_opaque(SurfaceTranslation& surface) {
     const tinygltf::PbrMetallicRoughness& pbr = material_.pbrMetallicRoughness;
     const Json white = triple_json(Vec3d(1));
-    const double metalness = std::clamp(pbr.metallicFactor, 0., 1.),
-                 roughness = std::clamp(pbr.roughnessFactor, 0., 1.);
+    const double metalness = std::clamp(pbr.metallicFactor, 0., 1.), roughness = add_grain(surface.keys);
     surface.keys["reflectance"] =
         times(texture(of(pbr.baseColorTexture), "baseColorTexture"), triple_json(surface.reflectance), white);
     const std::optional<Json> both = texture(of(pbr.metallicRoughnessTexture), "metallicRoughnessTexture");
@@ -158,18 +158,41 @@ class MaterialTranslator {
     surface.keys["specular_roughness"] = times(channel(both, "g"), roughness, 1.0);
     const double ior = index_of_refraction();
     if (ior > 1 && ior != kGltfIor) surface.keys["specular_ior"] = ior;
-    add_specular_weight(surface);
+    add_specular_weight(surface.keys);
     translated(
         fmt::format("baseColorFactor, metallicFactor, roughnessFactor -> reflectance {}, metalness {:.3g}, "
                     "specular_roughness {:.3g} (opaque)",
                     short_triple(surface.reflectance), metalness, roughness));
   }
 
-  void add_specular_weight(SurfaceTranslation& surface) {
+  /// Both alphas are met exactly: the roughness that is returned is the factor's without anisotropy.
+  double add_grain(Json& keys) {
+    const double roughness = std::clamp(material_.pbrMetallicRoughness.roughnessFactor, 0., 1.);
+    const ExtensionValues extension = values("KHR_materials_anisotropy");
+    const double strength = std::clamp(extension.number("anisotropyStrength", 0), 0., 1.);
+    if (!(strength > 0)) return roughness;
+    const double across = roughness * roughness, along = across + (1 - across) * strength * strength;
+    const double anisotropy = 1 - across / along, rotation = extension.number("anisotropyRotation", 0);
+    const double mean = std::sqrt(std::sqrt((along * along + across * across) / 2));
+    const double degrees = std::remainder(rotation * 180 / std::numbers::pi, 360);
+    keys["specular_anisotropy"] = anisotropy;
+    if (degrees != 0) keys["specular_rotation"] = degrees;
+    translated(
+        fmt::format("anisotropyStrength {:.3g}, anisotropyRotation {:.3g}, roughnessFactor {:.3g} -> "
+                    "specular_anisotropy {:.3g}, specular_rotation {:.4g}, specular_roughness {:.3g}{}",
+                    strength, rotation, roughness, anisotropy, degrees, mean,
+                    use_.has_uvs ? "" : "; about y, for its mesh has no TEXCOORD_0"));
+    if (material_.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0)
+      not_carried(
+          "anisotropyStrength where the roughness is not roughnessFactor: both alphas follow the texture");
+    return mean;
+  }
+
+  void add_specular_weight(Json& keys) {
     if (!has("KHR_materials_specular")) return;
     const ExtensionValues specular = values("KHR_materials_specular");
     const double weight = std::clamp(specular.number("specularFactor", 1), 0., 1.);
-    if (weight < 1) surface.keys["specular_weight"] = weight;
+    if (weight < 1) keys["specular_weight"] = weight;
     translated(fmt::format("specularFactor -> specular_weight {:.3g}", weight));
     const Vec3d color = specular.color("specularColorFactor", Vec3d(1));
     if (color != Vec3d(1)) not_carried("specularColorFactor " + short_triple(color));
@@ -183,10 +206,11 @@ class MaterialTranslator {
           times(std::move(base), triple_json(surface.reflectance), triple_json(Vec3d(1)));
       translated(fmt::format("baseColorFactor -> tint {}", short_triple(surface.reflectance)));
     }
+    add_specular_weight(surface.medium);
     if (std::optional<Json> rough =
             channel(texture(of(pbr.metallicRoughnessTexture), "metallicRoughnessTexture"), "g"))
       surface.medium["specular_roughness"] =
-          times(std::move(rough), std::clamp(pbr.roughnessFactor, 0., 1.), 1.0);
+          times(std::move(rough), surface.medium["specular_roughness"], 1.0);
   }
 
   bool has(const char* extension) const { return material_.extensions.contains(extension); }
@@ -242,19 +266,22 @@ class MaterialTranslator {
       sigma_s[i] = shares.scattered * sigma_t;
     }
     const double ior = index_of_refraction();
-    const double roughness = std::clamp(material_.pbrMetallicRoughness.roughnessFactor, 0., 1.);
+    Json medium = Json::object();
+    const double roughness = add_grain(medium);
     translated(fmt::format(
         "attenuationColor {} over {:.4g} mm, multiscatter colour {}, anisotropy {:.3g}, ior {:.4g}, "
-        "roughnessFactor "
-        "{:.3g} -> sigma_a {}, sigma_s {} 1/mm, g {:.3g}, specular_ior {:.4g}, specular_roughness {:.3g}",
+        "roughnessFactor {:.3g} -> sigma_a {}, sigma_s {} 1/mm, g {:.3g}, specular_ior {:.4g}, "
+        "specular_roughness {:.3g}",
         short_triple(color), distance * kMillimetres, short_triple(scatter.multiscatter_color),
-        scatter.anisotropy, ior, roughness, short_triple(sigma_a), short_triple(sigma_s), g, ior, roughness));
+        scatter.anisotropy, ior, material_.pbrMetallicRoughness.roughnessFactor, short_triple(sigma_a),
+        short_triple(sigma_s), g, ior, roughness));
     tell_of_entry(volume);
-    return {{"sigma_a", triple_json(sigma_a)},
-            {"sigma_s", triple_json(sigma_s)},
-            {"g", g},
-            {"specular_ior", ior},
-            {"specular_roughness", roughness}};
+    medium.update({{"sigma_a", triple_json(sigma_a)},
+                   {"sigma_s", triple_json(sigma_s)},
+                   {"g", g},
+                   {"specular_ior", ior},
+                   {"specular_roughness", roughness}});
+    return medium;
   }
 
   static Vec3d clamped(const Vec3d& color) {
@@ -301,11 +328,11 @@ class MaterialTranslator {
   void tell_extensions(bool is_translucent) {
     constexpr std::array<std::string_view, 3> of_volume{"KHR_materials_transmission", "KHR_materials_volume",
                                                         "KHR_materials_diffuse_transmission"};
-    constexpr std::array<std::string_view, 3> read{"KHR_materials_ior", "KHR_materials_volume_scatter",
+    constexpr std::array<std::string_view, 5> read{"KHR_materials_anisotropy", "KHR_materials_ior",
+                                                   "KHR_materials_specular", "KHR_materials_volume_scatter",
                                                    "KHR_materials_scatter"};
     for (const auto& [name, unused] : material_.extensions) {
-      const bool is_of_coat = name == "KHR_materials_specular" && !is_translucent;
-      if (is_of_coat || std::ranges::find(read, name) != read.end()) continue;
+      if (std::ranges::find(read, name) != read.end()) continue;
       if (std::ranges::find(of_volume, name) == of_volume.end())
         not_carried(name);
       else if (!is_translucent)

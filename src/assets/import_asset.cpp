@@ -48,8 +48,9 @@ void replace_materials(AssetScene& scene, const std::string& material) {
   scene.media = Json::object();
   if (!surface.medium.is_null()) scene.media[name] = surface.medium;
   for (Json& shape : scene.shapes) {
-    for (const char* key : {"medium", "reflectance", "group", "metalness", "specular_roughness",
-                            "specular_ior", "specular_weight", "normal_map"})
+    for (const char* key :
+         {"medium", "reflectance", "group", "metalness", "specular_roughness", "specular_ior",
+          "specular_weight", "specular_anisotropy", "specular_rotation", "normal_map"})
       shape.erase(key);
     if (surface.medium.is_null())
       shape["reflectance"] = triple_json(surface.reflectance);

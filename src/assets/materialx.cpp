@@ -18,14 +18,15 @@
 namespace opaline {
 namespace {
 
-constexpr double kMostAnisotropy = .99, kLeastIor = .1, kMostIor = 10;
+constexpr double kMostSpecularAnisotropy = .98, kMostAnisotropy = .99, kLeastIor = .1, kMostIor = 10;
 
 /// What a surface model calls its values, and those it has where nothing is given.
 struct SurfaceModel {
   const char *node, *base_weight, *base_color, *weight, *color, *radius, *scale, *anisotropy, *ior,
-      *metalness, *specular_weight;
+      *metalness, *specular_weight, *specular_anisotropy;
   Vec3d default_color, default_scale;
   double default_roughness;
+  bool has_rotation;  ///< of the anisotropy, in turns
 };
 
 // OpenPBR 1.1; Autodesk Standard Surface 1.0.1.
@@ -41,12 +42,14 @@ constexpr std::array<SurfaceModel, 2> models{
       "specular_ior",
       "base_metalness",
       "specular_weight",
+      "specular_roughness_anisotropy",
       Vec3d(.8),
       {1, .5, .25},
-      .3},
+      .3,
+      false},
      {"standard_surface", "base", "base_color", "subsurface", "subsurface_color", "subsurface_radius",
-      "subsurface_scale", "subsurface_anisotropy", "specular_IOR", "metalness", "specular", Vec3d(1),
-      Vec3d(1), .2}}};
+      "subsurface_scale", "subsurface_anisotropy", "specular_IOR", "metalness", "specular",
+      "specular_anisotropy", Vec3d(1), Vec3d(1), .2, true}}};
 
 const SurfaceModel* find_model(const pugi::xml_node& node) {
   const auto found = std::ranges::find_if(
@@ -86,11 +89,28 @@ class SurfaceReader {
   }
 
  private:
+  /// Of OpenPBR the keys' own meaning. Standard Surface divides and multiplies alpha by the root of the alphas' ratio.
+  /// Returns the roughness beside it.
+  double add_grain(Json& keys) {
+    const double roughness = number("specular_roughness", model_.default_roughness, 0, 1);
+    const double anisotropy = number(model_.specular_anisotropy, 0, 0, 1),
+                 rotation = model_.has_rotation ? number("specular_rotation", 0, 0, 1) * 360 : 0;
+    if (!(anisotropy > 0)) return roughness;
+    const double ratio = 1 - std::min(anisotropy, kMostSpecularAnisotropy);
+    const double scale = model_.has_rotation ? std::pow((ratio + 1 / ratio) / 2, .25) : 1;
+    const double mean = std::min(roughness * scale, 1.);
+    keys["specular_anisotropy"] = 1 - ratio;
+    keys["specular_rotation"] = rotation;
+    scene_.translated.push_back(fmt::format(
+        "{}: {} {:.3g} -> specular_anisotropy {:.3g}, specular_rotation {:.4g}, specular_roughness {:.3g}",
+        label_, model_.specular_anisotropy, anisotropy, 1 - ratio, rotation, mean));
+    return mean;
+  }
+
   void add_gloss(SurfaceTranslation& surface) {
     const double metalness = number(model_.metalness, 0, 0, 1),
                  weight = number(model_.specular_weight, 1, 0, 1),
-                 ior = number(model_.ior, 1.5, kLeastIor, kMostIor),
-                 roughness = number("specular_roughness", model_.default_roughness, 0, 1);
+                 ior = number(model_.ior, 1.5, kLeastIor, kMostIor), roughness = add_grain(surface.keys);
     surface.keys["metalness"] = metalness;
     surface.keys["specular_roughness"] = roughness;
     surface.keys["specular_ior"] = ior;
@@ -107,17 +127,21 @@ class SurfaceReader {
     const Vec3d radius_mm = radius * scene_.mm_per_unit;
     const double g = number(model_.anisotropy, 0, -kMostAnisotropy, kMostAnisotropy);
     const double ior = number(model_.ior, 1.5, kLeastIor, kMostIor);
-    const double roughness = number("specular_roughness", model_.default_roughness, 0, 1);
-    scene_.translated.push_back(
-        fmt::format("{}: {} {}, {} times {} {} scene units -> subsurface_color, subsurface_radius {} mm, "
-                    "anisotropy {:.3g}, specular_ior {:.4g}, specular_roughness {:.3g}",
-                    label_, model_.color, short_triple(reflected), model_.radius, model_.scale,
-                    short_triple(radius), short_triple(radius_mm), g, ior, roughness));
-    return {{"subsurface_color", triple_json(reflected)},
-            {"subsurface_radius", triple_json(radius_mm)},
-            {"subsurface_scatter_anisotropy", g},
-            {"specular_ior", ior},
-            {"specular_roughness", roughness}};
+    Json medium = Json::object();
+    const double roughness = add_grain(medium);
+    const double weight = number(model_.specular_weight, 1, 0, 1);
+    scene_.translated.push_back(fmt::format(
+        "{}: {} {}, {} times {} {} scene units -> subsurface_color, subsurface_radius {} mm, "
+        "anisotropy {:.3g}, specular_ior {:.4g}, specular_roughness {:.3g}, specular_weight {:.3g}",
+        label_, model_.color, short_triple(reflected), model_.radius, model_.scale, short_triple(radius),
+        short_triple(radius_mm), g, ior, roughness, weight));
+    medium.update({{"subsurface_color", triple_json(reflected)},
+                   {"subsurface_radius", triple_json(radius_mm)},
+                   {"subsurface_scatter_anisotropy", g},
+                   {"specular_ior", ior},
+                   {"specular_roughness", roughness},
+                   {"specular_weight", weight}});
+    return medium;
   }
 
   pugi::xml_node input(const char* name) {

@@ -82,9 +82,9 @@ void place(SourceMesh& mesh, const Transform& to_world, const std::string& name)
   }
 }
 
-SourceMesh read_source(const Shape& shape, const std::string& name, bool with_uvs) {
-  SourceMesh mesh = std::visit(SourceReader{name, with_uvs}, shape.source);
-  if (with_uvs && mesh.uvs.empty())
+SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs) {
+  SourceMesh mesh = std::visit(SourceReader{name, uvs != MeshUvs::unread}, shape.source);
+  if (uvs == MeshUvs::required && mesh.uvs.empty())
     throw bad_file(name, "has no UVs, by which its textures would be laid over it",
                    "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF", "none");
   if (const auto* file = std::get_if<MeshFile>(&shape.source))
@@ -127,16 +127,16 @@ const MeshMemory::Work& MeshMemory::work() const {
   return state_->work;
 }
 
-CheckedMesh make_mesh(const Shape& shape, bool with_uvs) {
+CheckedMesh make_mesh(const Shape& shape, MeshUvs uvs) {
   const std::string name = shape_label(shape);
-  return make_mesh(shape, name, read_source(shape, name, with_uvs), nullptr);
+  return make_mesh(shape, name, read_source(shape, name, uvs), nullptr);
 }
 
-CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory, bool with_uvs) {
+CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory, MeshUvs uvs) {
   const std::string name = shape_label(shape);
   MeshMemory::State& state = *memory.state_;
   if (!state.is_current) {
-    state.source = read_source(shape, name, with_uvs);
+    state.source = read_source(shape, name, uvs);
     state.is_current = true;
     ++state.work.read;
   }

@@ -21,9 +21,9 @@ Vec3d stable_middle(const Bounds& all, double diagonal) {
 
 /// What is wrong with a shape is said where the scene has it.
 CheckedMesh load_mesh(const Scene& scene, const Shape& shape, MeshMemory* memory) {
-  const bool with_uvs = needs_uvs(scene, shape);
+  const MeshUvs uvs = uvs_of(scene, shape);
   try {
-    return memory == nullptr ? make_mesh(shape, with_uvs) : make_mesh(shape, *memory, with_uvs);
+    return memory == nullptr ? make_mesh(shape, uvs) : make_mesh(shape, *memory, uvs);
   } catch (const Error& failure) {
     throw told_at(shape.place, failure);
   }

@@ -18,19 +18,22 @@ namespace opaline {
 
 struct Appearance {
   bool translucent = false;
-  RgbF albedo{};                                           ///< reflectance, or total diffuse reflectance
-  float eta = 1;                                           ///< of the boundary, where there is one
-  float average_reflectance = 0;                           ///< F_bar
-  std::optional<RoughBoundary> rough;                      ///< none: smooth
-  bool has_boundary = false;                               ///< translucent things and glossy opaque ones
-  float metalness = 0;                                     ///< of an opaque one
-  std::shared_ptr<const RoughnessRange> roughnesses = {};  ///< of a boundary whose roughness is a texture
+  RgbF albedo{};                       ///< reflectance, or total diffuse reflectance
+  float eta = 1;                       ///< of the boundary, where there is one
+  float average_reflectance = 0;       ///< F_bar
+  std::optional<RoughBoundary> rough;  ///< none: smooth
+  bool has_boundary = false;           ///< translucent things and glossy opaque ones
+  float metalness = 0;                 ///< of an opaque one
+  /// Of a boundary whose roughness is a texture, or that is anisotropic.
+  std::shared_ptr<const RoughnessRange> roughnesses = {};
+  float roughness = 0;  ///< where it is no texture
 
   /// The same at a point whose textures are known.
   Appearance at(const HitTextures& textures) const {
     Appearance here = *this;
     here.albedo = albedo * textures.tint.entering * textures.tint.leaving;
-    if (textures.roughness && roughnesses) here.rough = roughnesses->at(*textures.roughness);
+    if (roughnesses)
+      here.rough = roughnesses->at(textures.roughness.value_or(roughness), textures.tangent_share);
     if (textures.metalness) here.metalness = *textures.metalness;
     return here;
   }
@@ -46,16 +49,29 @@ struct Appearance {
     const float entered = kInversePi * (1 - reflectance(cosine)) / (1 - average_reflectance);
     return metalness > 0 ? entered * (1 - metalness) : entered;
   }
+  bool mirrors() const { return has_boundary && eta != 1; }
+  /// The share of even light that is mirrored towards a direction.
+  RgbF mirrored_share(float cosine) const {
+    const float dielectric = reflectance(cosine);
+    if (!(metalness > 0)) return RgbF(dielectric);
+    const float once = rough ? rough->reflected_once(cosine) : 1;
+    return RgbF(dielectric * (1 - metalness)) +
+           metal(cosine) * (RgbF(once) + albedo * (1 - once)) * metalness;
+  }
   /// Light that is mirrored over that of a dielectric without a metal.
   /// in    cosine: with the facet's normal; reflected_once: RoughBoundary's, of the view
   /// from  Turquin 2019, Practical multiple scattering compensation for microfacet models: what facets reflect again
   RgbF mirror_color(float cosine, float reflected_once = 1) const {
     if (!(metalness > 0)) return RgbF(1);
     const float dielectric = fresnel_reflectance(std::min(cosine, 1.0f), eta);
-    const float grazing = std::pow(1 - std::min(cosine, 1.0f), 5.0f);  // Schlick 1994
-    const RgbF metal = albedo + (RgbF(1) - albedo) * grazing;
     const RgbF again = RgbF(1) + albedo * (1 / reflected_once - 1);
-    return RgbF(1 - metalness) + metal * again * (metalness / dielectric);
+    return RgbF(1 - metalness) + metal(cosine) * again * (metalness / dielectric);
+  }
+  /// Reflectance of a metal's facet.
+  /// from  Schlick 1994
+  RgbF metal(float cosine) const {
+    const float grazing = std::pow(1 - std::min(cosine, 1.0f), 5.0f);
+    return albedo + (RgbF(1) - albedo) * grazing;
   }
 };
 

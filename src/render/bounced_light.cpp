@@ -77,7 +77,7 @@ void for_each_gathered(const GatherInput& input, const UseOfGathered& use) {
     for (std::size_t p = begin; p < end; ++p) add_rays(input, std::uint32_t(p), gathered);
     input.rays.intersect(gathered.rays);
     keep_hits(gathered);
-    const std::vector<RgbF> radiance = input.shader.diffuse_along(gathered.rays, gathered.keys);
+    const std::vector<RgbF> radiance = input.shader.radiance_along(gathered.rays, gathered.keys);
     for (std::size_t r = 0; r < radiance.size(); ++r)
       use(gathered.points[r], gathered.rays[r].ray.direction, radiance[r] * gathered.weights[r]);
   }

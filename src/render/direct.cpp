@@ -44,8 +44,7 @@ class DirectRenderer {
 
   void add_pass(DirectState& state) const {
     const int samples = scene_.film.samples_per_pixel;
-    const Pass pass{state.passes, entry_samples_per_ray(scene_.film), true,
-                    bounces_of(scene_) > 0 ? &shader_ : nullptr};
+    const Pass pass = pass_of(state);
     std::vector<RgbF> radiance(pixels());
     for_each_tile(pass, [&](std::size_t pixel, const PixelSample& sum) {
       radiance[pixel] = sum.diffuse * (1 / float(samples));
@@ -62,12 +61,13 @@ class DirectRenderer {
     ++state.passes;
   }
 
-  // All layers; those without noise from rays of their own.
+  // All layers; those but the diffuse one from rays of their own, which ask entries for what they see in mirrors alone.
   RenderResult picture(const DirectState& state) const {
     RenderResult result;
     result.image = empty_image(part_, scene_.film, layer_names(Method::direct));
     std::atomic<std::size_t> queries{0}, non_finite{0};
-    for_each_tile(Pass{}, [&](std::size_t pixel, PixelSample sum) {
+    const Pass mirrored = pass_of(state);
+    for_each_tile(Pass{.in_mirrors = &mirrored}, [&](std::size_t pixel, PixelSample sum) {
       if (sum.empty()) return;
       // As if each of the samples had sent out the mean; where the irradiance of other pictures is, the
       // variance.
@@ -91,6 +91,12 @@ class DirectRenderer {
       samplers.emplace_back(group, make_diffuse_profile(input.scene.media[group.medium], input.world.unit),
                             input.rays, input.world.diagonal, input.scene.settings.entry_strategy);
     return samplers;
+  }
+
+  Pass pass_of(const DirectState& state) const {
+    return {.index = state.passes,
+            .entry_samples = entry_samples_per_ray(scene_.film),
+            .gathers = bounces_of(scene_) > 0 ? &shader_ : nullptr};
   }
 
   template <class Use>

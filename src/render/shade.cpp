@@ -12,9 +12,13 @@
 namespace opaline {
 namespace {
 
-void roughen(Appearance& appearance, double roughness, bool is_texture, double eta) {
+void roughen(Appearance& appearance, double roughness, bool is_texture, const Grain& grain, double eta) {
+  const float anisotropy = float(grain.anisotropy);
+  appearance.roughness = float(roughness);
   if (is_texture)
-    appearance.roughnesses = std::make_shared<const RoughnessRange>(eta);
+    appearance.roughnesses = std::make_shared<const RoughnessRange>(eta, anisotropy);
+  else if (roughness > 0 && anisotropy > 0)
+    appearance.roughnesses = std::make_shared<const RoughnessRange>(eta, anisotropy, appearance.roughness);
   else if (roughness > 0)
     appearance.rough.emplace(roughness, eta);
 }
@@ -27,7 +31,7 @@ Appearance opaque_appearance(const Shape& shape) {
   appearance.average_reflectance = float(average_reflectance_outside(gloss.eta));
   appearance.has_boundary = true;
   appearance.metalness = float(gloss.metalness);
-  roughen(appearance, gloss.roughness, gloss.roughness_texture.has_value(), gloss.eta);
+  roughen(appearance, gloss.roughness, gloss.roughness_texture.has_value(), gloss.grain, gloss.eta);
   return appearance;
 }
 
@@ -37,7 +41,8 @@ Appearance mesh_appearance(const Scene& scene, const Shape& shape) {
   const DiffuseProfile profile = make_diffuse_profile(medium);
   Appearance appearance{true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), {},
                         true};
-  roughen(appearance, medium.specular_roughness, medium.roughness_texture.has_value(), medium.eta);
+  roughen(appearance, medium.specular_roughness, medium.roughness_texture.has_value(), medium.grain,
+          medium.eta);
   return appearance;
 }
 
@@ -126,13 +131,15 @@ std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const P
                               hash_bits(point_irradiance_seed(input_.scene.settings), kGatheringSeed)});
 }
 
-std::vector<RgbF> Shader::diffuse_along(std::span<const TracedRay> rays,
-                                        std::span<const std::uint64_t> keys) const {
+std::vector<RgbF> Shader::radiance_along(std::span<const TracedRay> rays,
+                                         std::span<const std::uint64_t> keys) const {
   std::vector<PixelSample> seen(rays.size());
-  shade_diffuse({rays, keys, seen, kGatheringSpread, {}}, 1, {.entry_samples = 1, .is_seen = false}, nullptr);
+  const RayBatch batch{rays, keys, seen, kGatheringSpread, {}};
+  for (const SurfaceHits& hits : shade_diffuse(batch, 1, {.entry_samples = 1, .is_seen = false}, nullptr))
+    add_evenly_mirrored(hits, batch);
   std::vector<RgbF> radiance;
   radiance.reserve(seen.size());
-  for (const PixelSample& sample : seen) radiance.push_back(sample.diffuse);
+  for (const PixelSample& sample : seen) radiance.push_back(sample.diffuse + sample.specular);
   return radiance;
 }
 
@@ -194,7 +201,15 @@ void Shader::add_textures(const RayBatch& batch, std::size_t ray, SurfacePoint& 
   const SurfaceTextures::Place place = textures_.place(
       hit.mesh, hit.triangle, hit.u, hit.v, footprint_of(point, traced.direction, width_at(batch, ray)));
   textures_.bend(place, point);
-  hits.textures.push_back({textures_.tint(place), textures_.roughness(place), textures_.metalness(place)});
+  HitTextures here{textures_.tint(place), textures_.roughness(place), textures_.metalness(place)};
+  here.tangent = textures_.tangent(place, point);
+  if (here.tangent != Vec3f{}) {
+    const float along = dot(traced.direction, here.tangent),
+                across = dot(traced.direction, cross(point.normal, here.tangent));
+    const float both = along * along + across * across;
+    if (both > 0) here.tangent_share = along * along / both;
+  }
+  hits.textures.push_back(here);
 }
 
 float Shader::width_at(const RayBatch& batch, std::size_t ray) const {

@@ -26,8 +26,10 @@ class Shader {
   std::size_t shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                     std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
-  /// What surfaces send back along rays that met them, diffusely, W/(mm^2 sr); by a ray to each light.
-  std::vector<RgbF> diffuse_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys) const;
+  /// What surfaces send back along rays that met them, W/(mm^2 sr): diffusely, and what boundaries mirror of light as if
+  /// it were even; by a ray to each light.
+  std::vector<RgbF> radiance_along(std::span<const TracedRay> rays,
+                                   std::span<const std::uint64_t> keys) const;
 
   /// Hits of rays that met surfaces whose light depends on the irradiance at the hit, and the boundary that light
   /// enters through there; 0: none.
@@ -80,7 +82,8 @@ class Shader {
   void add_reflections(const GlossyHits& glossy, const Pass& pass) const;
   std::vector<PixelSample> seen_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                       const Cones& cones, const Pass& pass, int mirrors) const;
-  SurfaceHits metals_of(const SurfaceHits& hits) const;
+  /// What boundaries mirror where no ray follows it: the irradiance there, as if it came evenly from all sides.
+  void add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch) const;
   float width_at(const RayBatch& batch, std::size_t ray) const;
   bool mirrors_surfaces() const { return has_visible_lights() || input_.scene.shapes.size() > 1; }
   EmitterHit nearest_emitter(const Vec3f& origin, const Vec3f& direction, float far) const;

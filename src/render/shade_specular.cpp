@@ -4,6 +4,7 @@
 // heuristic (Veach & Guibas 1995).
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "opaline/core/random.h"
 #include "opaline/irradiance/sample_key.h"
@@ -14,10 +15,11 @@ namespace {
 
 // Of a camera ray where there is one a pixel: facets drawn, and directions to each light.
 constexpr int kFacets = 16, kLightSamples = 16;
-// These, too, over those of a metal that is seen in a mirror.
+// These, too, over those of what is seen in a mirror.
 constexpr int kFewerOfMirrored = 4;
-// One after the other that a camera ray is followed through; a further metal is black.
-constexpr int kMostMirrors = 4;
+// One after the other that a camera ray is followed through: metals, and coats, which mirror less. A further one mirrors
+// the light that arrives there as if it were even.
+constexpr int kMostMirrors = 4, kMostCoats = 2;
 // Shadow rays towards a surface that is seen in a mirror, over those where it is seen: a mirror takes most away.
 constexpr int kFewerInMirrors = 4;
 // Of the cones around directions of a lobe, for textures that they meet.
@@ -32,8 +34,14 @@ TracedRay leaving(const SurfacePoint& point, const Vec3f& direction) {
 struct Frame {
   Vec3f x, y, z, view;
 
-  Frame(const SurfacePoint& point, const Vec3f& towards_eye) : z(point.normal) {
-    tangent_frame(z, x, y);
+  /// tangent: 0 where the boundary is the same all around
+  Frame(const SurfacePoint& point, const Vec3f& tangent, const Vec3f& towards_eye) : z(point.normal) {
+    if (tangent == Vec3f{}) {
+      tangent_frame(z, x, y);
+    } else {
+      x = tangent;
+      y = cross(z, x);
+    }
     view = {dot(towards_eye, x), dot(towards_eye, y), cos_view(point, -towards_eye)};
     view = normalized(view);
   }
@@ -65,27 +73,44 @@ void Shader::add_specular(const SurfaceHits& hits, const RayBatch& batch, const 
   if (!rough.rays.empty()) add_glossy(rough, batch, pass);
 }
 
-SurfaceHits Shader::metals_of(const SurfaceHits& hits) const {
-  SurfaceHits metals;
-  for (std::size_t i = 0; i < hits.rays.size(); ++i) {
-    const Appearance& appearance = appearances_[hits.hits[i].mesh];
-    if ((hits.textures.empty() ? appearance : appearance_of(hits, i)).metalness > 0) add_hit(hits, i, metals);
-  }
-  return metals;
-}
-
-// Coats mirror little there and are passed over; metals are nothing else.
 std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
                                             std::span<const std::uint64_t> keys, const Cones& cones,
                                             const Pass& pass, int mirrors) const {
   std::vector<PixelSample> seen(rays.size());
   const RayBatch batch{rays, keys, seen, cones.spread, cones.widths, mirrors};
-  const std::vector<SurfaceHits> hits =
-      shade_diffuse(batch, std::max(1, light_samples_ / kFewerInMirrors), pass, nullptr);
-  for (std::size_t f = 0; f < hits.size() && mirrors < kMostMirrors; ++f)
-    if (const SurfaceHits metals = metals_of(hits[f]); !metals.rays.empty())
-      add_specular(metals, batch, pass);
+  const Pass& mirrored = pass.in_mirrors != nullptr ? *pass.in_mirrors : pass;
+  for (const SurfaceHits& hits :
+       shade_diffuse(batch, std::max(1, light_samples_ / kFewerInMirrors), mirrored, nullptr)) {
+    SurfaceHits followed, last;
+    for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+      const Appearance& plain = appearances_[hits.hits[i].mesh];
+      if (!plain.mirrors()) continue;
+      const float metalness = (hits.textures.empty() ? plain : appearance_of(hits, i)).metalness;
+      add_hit(hits, i, mirrors < (metalness > 0 ? kMostMirrors : kMostCoats) ? followed : last);
+    }
+    if (!followed.rays.empty()) add_specular(followed, batch, mirrored);
+    add_evenly_mirrored(last, batch);
+  }
   return seen;
+}
+
+void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch) const {
+  constexpr float kInversePi = std::numbers::inv_pi_v<float>;
+  for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+    const bool is_plain = hits.textures.empty();
+    const Appearance textured = is_plain ? Appearance{} : appearance_of(hits, i);
+    const Appearance& appearance = is_plain ? appearances_[hits.hits[i].mesh] : textured;
+    if (!appearance.mirrors()) continue;
+    const float cosine = cos_view(hits.points[i], batch.rays[hits.rays[i]].ray.direction);
+    PixelSample& sample = batch.out[hits.rays[i]];
+    RgbF arriving = sample.irradiance * (kInversePi / (1 - appearance.average_reflectance));
+    // A field that does not know the irradiance: what left, over what leaves of even light.
+    const float leaving = appearance.translucent ? 1 - appearance.reflectance(cosine) : 0;
+    if (arriving == RgbF{} && leaving > 0)
+      for (std::size_t c = 0; c < 3; ++c)
+        if (appearance.albedo[c] > 0) arriving[c] = sample.diffuse[c] / (leaving * appearance.albedo[c]);
+    sample.specular += arriving * appearance.mirrored_share(cosine);
+  }
 }
 
 // Lights without an area have no extent to be seen by.
@@ -122,15 +147,20 @@ struct Shader::GlossyHits {
   std::vector<Lobe> lobes;
 
   GlossyHits(const Shader& shader, const SurfaceHits& all, const RayBatch& rays)
-      : hits(all), batch(rays), seed(point_irradiance_seed(shader.input_.scene.settings) + 1) {
+      : hits(all),
+        batch(rays),
+        seed(point_irradiance_seed(shader.input_.scene.settings) + 1 + (std::uint64_t(rays.mirrors) << 32)) {
     const int spp = shader.input_.scene.film.samples_per_pixel;
     const int shared_by = rays.mirrors > 0 ? spp * kFewerOfMirrored : spp;
     facets = (kFacets + shared_by - 1) / shared_by;
     to_lights = (kLightSamples + shared_by - 1) / shared_by;
     textured.reserve(hits.textures.size());
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
-      keys.push_back(key_in_pixel(hits.keys[i], std::uint64_t(spp)));
-      frames.emplace_back(hits.points[i], -normalized(batch.rays[hits.rays[i]].ray.direction));
+      // Behind a mirror directions are drawn by themselves: those of the mirror have the pixel's sequence.
+      keys.push_back(rays.mirrors > 0 ? hash_bits(seed, hits.keys[i])
+                                      : key_in_pixel(hits.keys[i], std::uint64_t(spp)));
+      frames.emplace_back(hits.points[i], hits.textures.empty() ? Vec3f{} : hits.textures[i].tangent,
+                          -normalized(batch.rays[hits.rays[i]].ray.direction));
       if (!hits.textures.empty()) textured.push_back(shader.appearance_of(hits, i));
       appearances.push_back(hits.textures.empty() ? &shader.appearances_[hits.hits[i].mesh]
                                                   : &textured.back());

@@ -69,6 +69,28 @@ RgbF powered(const RgbF& value, double exponent) {
   return result;
 }
 
+/// Around the shading normal, the way that u goes and the way that v does; zeros where the UVs do not tell.
+struct TangentFrame {
+  Vec3f tangent{}, bitangent{};
+};
+
+TangentFrame frame_of(const SurfaceUv& uv, const SurfacePoint& point) {
+  const Vec3f across_v = cross(uv.gradient_v, point.geometric);
+  const float side = dot(uv.gradient_u, across_v);
+  if (!(std::abs(side) > 0)) return {};
+  const Vec3f along = across_v * (side > 0 ? 1.0f : -1.0f);
+  const Vec3f tangent = normalized(along - point.normal * dot(along, point.normal));
+  return {tangent, cross(point.normal, tangent) * (side > 0 ? 1.0f : -1.0f)};
+}
+
+/// Around +y, as turned on a lathe; where the normal is +y itself, along x.
+TangentFrame level_frame(const Vec3f& normal) {
+  Vec3f tangent{normal.z, 0, -normal.x};
+  if (dot(tangent, tangent) < 1e-12f) tangent = Vec3f{1, 0, 0} - normal * normal.x;
+  tangent = normalized(tangent);
+  return {tangent, cross(normal, tangent)};
+}
+
 const Texture* pointer_to(const std::optional<Texture>& texture) {
   return texture ? &*texture : nullptr;
 }
@@ -95,8 +117,9 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
       if (shape.gloss) own.metalness = pointer_to(shape.gloss->metalness_texture);
     }
     own.has_tint = own.tint != nullptr || own.factor != Rgb(1);
-    own.needs_uv = needs_uvs(scene, shape);
-    is_empty_ = is_empty_ && !own.has_tint && !own.needs_uv;
+    own.grain = grain_of(scene, shape);
+    own.has_uv = uvs_of(scene, shape) != MeshUvs::unread && !world.meshes[m].uvs.empty();
+    is_empty_ = is_empty_ && !own.has_tint && !needs_uvs(scene, shape) && own.grain == nullptr;
     for (const Texture* texture : textures_of(scene, shape))
       check_tiles(*texture, world.meshes[m], shape.name);
   }
@@ -109,7 +132,7 @@ bool SurfaceTextures::tints_entering(std::uint32_t mesh) const {
 SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t triangle, float u, float v,
                                               const Footprint& footprint) const {
   Place place{mesh, {}, footprint};
-  if (of_mesh_[mesh].needs_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
+  if (of_mesh_[mesh].has_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
   return place;
 }
 
@@ -139,7 +162,15 @@ std::optional<float> SurfaceTextures::metalness(const Place& place) const {
   return number_of(*texture, place);
 }
 
-// Around the normal, the way that u goes and the way that v does.
+Vec3f SurfaceTextures::tangent(const Place& place, const SurfacePoint& point) const {
+  const Grain* const grain = of_mesh_[place.mesh].grain;
+  if (grain == nullptr) return {};
+  TangentFrame frame = place.uv ? frame_of(*place.uv, point) : TangentFrame{};
+  if (frame.tangent == Vec3f{}) frame = level_frame(point.normal);
+  const double angle = grain->rotation * std::numbers::pi / 180;
+  return frame.tangent * float(std::cos(angle)) + frame.bitangent * float(std::sin(angle));
+}
+
 void SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
   const Texture* const texture = of_mesh_[place.mesh].normals;
   if (texture == nullptr) return;
@@ -147,12 +178,8 @@ void SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
   const float x = slope_of(texel[0]) * float(texture->scale.x),
               y = slope_of(texel[1]) * float(texture->scale.x);
   if (x == 0 && y == 0) return;
-  const Vec3f across_v = cross(place.uv->gradient_v, point.geometric);
-  const float side = dot(place.uv->gradient_u, across_v);
-  if (!(std::abs(side) > 0)) return;
-  const Vec3f along = across_v * (side > 0 ? 1.0f : -1.0f);
-  const Vec3f tangent = normalized(along - point.normal * dot(along, point.normal));
-  const Vec3f bitangent = cross(point.normal, tangent) * (side > 0 ? 1.0f : -1.0f);
+  const auto [tangent, bitangent] = frame_of(*place.uv, point);
+  if (tangent == Vec3f{}) return;
   point.normal =
       normalized(tangent * x + bitangent * y + point.normal * std::max(2 * texel[2] - 1, 1.0f / 255));
 }

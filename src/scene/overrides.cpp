@@ -146,8 +146,8 @@ void drop_replaced_surface(Node& shape) {
                   [&](const Node& c) { return c.override_index < 0 && same_key(c.key, key); });
   };
   if (is_given("medium"))
-    for (const char* key :
-         {"reflectance", "metalness", "specular_roughness", "specular_ior", "specular_weight"})
+    for (const char* key : {"reflectance", "metalness", "specular_roughness", "specular_ior",
+                            "specular_weight", "specular_anisotropy", "specular_rotation"})
       drop(key);
   else if (is_given("reflectance"))
     for (const char* key : {"medium", "group"}) drop(key);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "opaline/image/texture_file.h"
@@ -101,6 +102,19 @@ void read_tint(const ObjectReader& reader, Medium& medium) {
 
 }  // namespace
 
+double weighted_ior(double ior, double weight) {
+  if (weight == 1) return ior;
+  const double amplitude = (ior - 1) / (ior + 1) * std::sqrt(weight);
+  return (1 + amplitude) / (1 - amplitude);
+}
+
+Grain read_grain(const ObjectReader& reader) {
+  Grain grain;
+  if (const auto anisotropy = reader.find("specular_anisotropy")) grain.anisotropy = anisotropy->number();
+  if (const auto rotation = reader.find("specular_rotation")) grain.rotation = rotation->number();
+  return grain;
+}
+
 Medium read_medium(const Value& value, double mm_per_unit) {
   const ObjectReader reader(value, "medium");
   Medium medium;
@@ -122,11 +136,14 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   const auto eta = reader.find("eta"), specular_ior = reader.find("specular_ior");
   if (eta && specular_ior) eta->fail_key("and 'specular_ior' are the same", "one of the two");
   if (eta || specular_ior) medium.eta = (eta ? eta : specular_ior)->number();
+  if (const auto weight = reader.find("specular_weight"))
+    medium.eta = weighted_ior(medium.eta, weight->number());
   if (const auto rough = reader.find("specular_roughness")) {
     NumberReading roughness = read_number(*rough);
     medium.specular_roughness = roughness.number;
     medium.roughness_texture = std::move(roughness.texture);
   }
+  medium.grain = read_grain(reader);
   read_tint(reader, medium);
   const auto profile = reader.find("profile");
   const std::size_t choice = profile ? profile->choice() : 0;

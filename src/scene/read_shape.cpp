@@ -91,22 +91,13 @@ std::size_t find_medium(const Value& value, const std::vector<Medium>& media) {
              names.empty() ? "a name from 'media', which is empty" : "one of " + printable(join(names)));
 }
 
-/// The index that mirrors the weight's share of what `ior` mirrors at right angles. Of nothing a trace is left, so that
-/// metals keep a boundary.
-/// from  OpenPBR Surface 1.1, specular_weight
-double weighted_ior(double ior, double weight) {
-  constexpr double kTrace = 1e-4;
-  const double amplitude = (ior - 1) / (ior + 1) * std::sqrt(std::max(weight, kTrace));
-  return (1 + amplitude) / (1 - amplitude);
-}
-
 void read_gloss(const ObjectReader& reader, Shape& shape) {
   const auto metalness = reader.find("metalness"), roughness = reader.find("specular_roughness"),
              ior = reader.find("specular_ior"), weight = reader.find("specular_weight");
-  for (const auto& key : {metalness, roughness, ior})
+  const auto anisotropy = reader.find("specular_anisotropy"), rotation = reader.find("specular_rotation");
+  for (const auto& key : {metalness, roughness, ior, weight, anisotropy, rotation})
     if (key && shape.medium) key->fail_key("is the medium's to say", "it in 'media', or an opaque shape");
-  if (weight && shape.medium) weight->fail_key("cannot stand beside 'medium'", "an opaque shape");
-  for (const auto& key : {ior, weight})
+  for (const auto& key : {ior, weight, anisotropy, rotation})
     if (key && !metalness && !roughness)
       key->fail_key("has no meaning on a matte shape", "'specular_roughness' beside it");
   if (!metalness && !roughness) return;
@@ -121,8 +112,10 @@ void read_gloss(const ObjectReader& reader, Shape& shape) {
     gloss.roughness = reading.number;
     gloss.roughness_texture = std::move(reading.texture);
   }
+  gloss.grain = read_grain(reader);
   if (ior) gloss.eta = ior->number();
-  if (weight) gloss.eta = weighted_ior(gloss.eta, weight->number());
+  constexpr double kTrace = 1e-4;  // of a coat of no weight, so that metals keep a boundary
+  if (weight) gloss.eta = weighted_ior(gloss.eta, std::max(weight->number(), kTrace));
 }
 
 void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shape) {

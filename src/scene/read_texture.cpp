@@ -97,4 +97,21 @@ bool needs_uvs(const Scene& scene, const Shape& shape) {
   return !textures_of(scene, shape).empty();
 }
 
+const Grain* grain_of(const Scene& scene, const Shape& shape) {
+  const auto found = [](const Grain& grain, double roughness, const std::optional<Texture>& texture) {
+    return grain.anisotropy > 0 && (roughness > 0 || texture) ? &grain : nullptr;
+  };
+  if (shape.medium) {
+    const Medium& medium = scene.media[*shape.medium];
+    return found(medium.grain, medium.specular_roughness, medium.roughness_texture);
+  }
+  return shape.gloss ? found(shape.gloss->grain, shape.gloss->roughness, shape.gloss->roughness_texture)
+                     : nullptr;
+}
+
+MeshUvs uvs_of(const Scene& scene, const Shape& shape) {
+  if (needs_uvs(scene, shape)) return MeshUvs::required;
+  return grain_of(scene, shape) != nullptr ? MeshUvs::if_any : MeshUvs::unread;
+}
+
 }  // namespace opaline

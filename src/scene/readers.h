@@ -33,6 +33,13 @@ struct NumberReading {
 NumberReading read_number(const Value& value);
 Texture read_normal_map(const Value& value);
 
+/// The index that mirrors the weight's share of what `ior` mirrors at right angles.
+/// from  OpenPBR Surface 1.1, specular_weight
+double weighted_ior(double ior, double weight);
+
+/// Of `specular_anisotropy` and `specular_rotation`.
+Grain read_grain(const ObjectReader& reader);
+
 Medium read_medium(const Value& value, double mm_per_unit);
 /// `name` is what the shape is called without one of its own.
 Shape read_shape(const Value& value, const std::string& name, ShapeContext& context);

@@ -86,6 +86,14 @@ std::vector<KeyInfo> scene_rows() {
   };
 }
 
+constexpr const char
+    *kAnisotropyMeaning =
+        "of `specular_roughness`, as OpenPBR's: towards 1 highlights are long along u and "
+        "short across, as on metal that is brushed across u",
+    *kRotationMeaning =
+        "turns u for `specular_anisotropy`, counterclockwise; where a mesh has no UVs u runs "
+        "level, around y";
+
 std::vector<KeyInfo> medium_rows() {
   using enum ValueType;
   return {
@@ -122,6 +130,11 @@ std::vector<KeyInfo> medium_rows() {
           "medium", "specular_roughness", number, "", kUnitInterval, "0",
           "of the surface as it mirrors: 0 smooth, .3 satin; alone a rough one shows highlights of lights "
           "without size")),
+      row("medium", "specular_weight", number, "", {0, 1}, "1",
+          "times what the surface mirrors at right angles: an index of refraction of its own, for light from "
+          "inside as well; at 0 all light enters"),
+      row("medium", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning),
+      row("medium", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning),
       textured(row(
           "medium", "tint", color, "", kUnitInterval, "1",
           "colours the light of any medium at its surface, by `texture_mix`; where it is even, what leaves "
@@ -181,6 +194,8 @@ std::vector<KeyInfo> shape_rows() {
       row("shape", "specular_weight", number, "", {0, 1}, "1",
           "how much of its light the coat of a glossy opaque shape mirrors at right angles: 0 next to "
           "nothing; metals stay"),
+      row("shape", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning),
+      row("shape", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning),
       textured(row("shape", "normal_map", object, "", kFiniteNumber, "none",
                    "normals of the file's details, around the mesh's own: red to the right, green up, blue "
                    "out, 0 to 1 "

@@ -33,7 +33,7 @@ std::vector<std::optional<std::size_t>> kept_shapes(const std::vector<StageKey>&
 void Session::State::edit(Scene scene) {
   std::vector<StageKey> sources, keys;
   for (const Shape& shape : scene.shapes) {
-    sources.push_back(source_key(shape, needs_uvs(scene, shape)));
+    sources.push_back(source_key(shape, uvs_of(scene, shape)));
     keys.push_back(shape_key(shape, sources.back()));
   }
   SessionWork work;

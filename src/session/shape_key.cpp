@@ -23,10 +23,11 @@ struct AddSource {
 
 }  // namespace
 
-StageKey source_key(const Shape& shape, bool with_uvs) {
+StageKey source_key(const Shape& shape, MeshUvs uvs) {
   KeyBuilder key("source", 1);
   key.add(std::uint64_t(shape.source.index()));
-  if (with_uvs) key.add(with_uvs);
+  if (uvs == MeshUvs::required) key.add(true);
+  if (uvs == MeshUvs::if_any) key.add(uvs);
   try {
     std::visit(AddSource{key}, shape.source);
   } catch (const Error& failure) {

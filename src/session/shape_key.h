@@ -7,10 +7,10 @@
 
 namespace opaline {
 
-/// Of the file's bytes or the built-in shape's measures, and whether UVs are read.
+/// Of the file's bytes or the built-in shape's measures, and how UVs are asked for.
 /// error Error{bad_input} naming a mesh file that is
 /// none
-StageKey source_key(const Shape& shape, bool with_uvs = false);
+StageKey source_key(const Shape& shape, MeshUvs uvs = MeshUvs::unread);
 
 /// Of the source and all that loading does with it.
 StageKey shape_key(const Shape& shape, const StageKey& source);

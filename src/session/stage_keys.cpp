@@ -74,7 +74,7 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
                       std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
-  KeyBuilder key("surfaces in their light", 3);
+  KeyBuilder key("surfaces in their light", 4);
   key.add(settings.seed).add(settings.tolerance).add(settings.evaluator).add(settings.max_solid_angle);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
@@ -82,12 +82,16 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
     if (shape.medium) {
       const Medium& medium = input.scene.media[*shape.medium];
       key.add(medium.tint).add(medium.texture_mix).add(medium.eta).add(medium.specular_roughness);
+      key.add(medium.grain.anisotropy).add(medium.grain.rotation);
     } else {
       key.add(shape.reflectance).add(shape.gloss.has_value());
-      if (const auto& gloss = shape.gloss) key.add(gloss->metalness).add(gloss->roughness).add(gloss->eta);
+      if (const auto& gloss = shape.gloss) {
+        key.add(gloss->metalness).add(gloss->roughness).add(gloss->eta);
+        key.add(gloss->grain.anisotropy).add(gloss->grain.rotation);
+      }
     }
     for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
-    if (needs_uvs(input.scene, shape)) key.add_array(std::span(input.world.meshes[i].uvs));
+    if (uvs_of(input.scene, shape) != MeshUvs::unread) key.add_array(std::span(input.world.meshes[i].uvs));
   }
   for (const Light& light : lights) key.add(view_light_key(light)).add(emission(light));
   return key.key();

@@ -12,15 +12,43 @@ namespace opaline {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
+// Against facets that are level in one direction, whose density has no bound.
+constexpr float kLeastAcross = 1e-3f;
+constexpr std::size_t kSides = 9;
+
+/// Of a view by its tangent_share.
+float seen_alpha(const FacetAlphas& alphas, float tangent_share) {
+  const float along2 = alphas.along * alphas.along, across2 = alphas.across * alphas.across;
+  return std::sqrt(across2 + (along2 - across2) * tangent_share);
+}
+
+/// The tangent_share at which the alpha that is seen is this part of the way from the smaller to the larger one.
+float share_of_side(const FacetAlphas& alphas, float part) {
+  const float seen = alphas.across + (alphas.along - alphas.across) * part;
+  const float along2 = alphas.along * alphas.along, across2 = alphas.across * alphas.across;
+  return along2 > across2 ? std::clamp((seen * seen - across2) / (along2 - across2), 0.0f, 1.0f) : 0;
+}
 
 }  // namespace
 
+FacetAlphas facet_alphas(float roughness, float anisotropy) {
+  const float alpha = roughness * roughness;
+  if (!(anisotropy > 0)) return {alpha, alpha};
+  const float ratio = 1 - anisotropy, along = alpha * std::sqrt(2 / (1 + ratio * ratio));
+  return {along, std::max(ratio * along, std::min(kLeastAcross, along))};
+}
+
 RoughBoundary::RoughBoundary(double roughness, double eta)
-    : alpha_(float(roughness * roughness)), eta_(float(eta)) {
+    : RoughBoundary({float(roughness * roughness), float(roughness * roughness)}, eta, 0) {}
+
+RoughBoundary::RoughBoundary(const FacetAlphas& alphas, double eta, float tangent_share)
+    : alphas_(alphas), eta_(float(eta)) {
+  const float along = std::sqrt(tangent_share), across = std::sqrt(1 - tangent_share);
   constexpr std::uint64_t kSamples = 1024;
   for (std::size_t i = 0; i < kCosines; ++i) {
     const float cosine = std::max(1e-3f, float(i) / float(kCosines - 1));
-    const Vec3f view{std::sqrt(1 - cosine * cosine), 0, cosine};
+    const float sine = std::sqrt(1 - cosine * cosine);
+    const Vec3f view = is_isotropic() ? Vec3f{sine, 0, cosine} : Vec3f{sine * along, sine * across, cosine};
     double sum = 0, once = 0;
     for (std::uint64_t s = 0; s < kSamples; ++s) {
       const auto [light, weight] = sample(view, r2_point(s, {.5, .5}));
@@ -49,20 +77,22 @@ float RoughBoundary::value_of(const Table& table, float cosine) {
 }
 
 float RoughBoundary::smith(const Vec3f& direction) const {
-  const float tangent2 =
-      (direction.x * direction.x + direction.y * direction.y) / (direction.z * direction.z);
-  return 2 / (1 + std::sqrt(1 + alpha_ * alpha_ * tangent2));
+  const float x2 = direction.x * direction.x, y2 = direction.y * direction.y, z2 = direction.z * direction.z;
+  const float a = alphas_.along, b = alphas_.across;
+  const float stretched2 = is_isotropic() ? a * a * ((x2 + y2) / z2) : (a * a * x2 + b * b * y2) / z2;
+  return 2 / (1 + std::sqrt(1 + stretched2));
 }
 
 float RoughBoundary::facets(const Vec3f& normal) const {
-  const float a2 = alpha_ * alpha_;
-  const float slope2 = (normal.x * normal.x + normal.y * normal.y) / a2 + normal.z * normal.z;
-  return 1 / (kPi * a2 * slope2 * slope2);
+  const float x2 = normal.x * normal.x, y2 = normal.y * normal.y, z2 = normal.z * normal.z;
+  const float a = alphas_.along, b = alphas_.across;
+  const float slope2 = (is_isotropic() ? (x2 + y2) / (a * a) : x2 / (a * a) + y2 / (b * b)) + z2;
+  return 1 / (kPi * (a * b) * slope2 * slope2);
 }
 
 // Facets of a rough surface are those of a hemisphere, stretched: its disc as seen by the viewer is drawn from evenly.
 RoughBoundary::Sample RoughBoundary::sample(const Vec3f& view, std::array<double, 2> unit_square) const {
-  const Vec3f stretched = normalized(Vec3f{alpha_ * view.x, alpha_ * view.y, view.z});
+  const Vec3f stretched = normalized(Vec3f{alphas_.along * view.x, alphas_.across * view.y, view.z});
   Vec3f x, y;
   tangent_frame(stretched, x, y);
   const float radius = float(std::sqrt(unit_square[0])), phi = 2 * kPi * float(unit_square[1]);
@@ -75,7 +105,8 @@ RoughBoundary::Sample RoughBoundary::sample(const Vec3f& view, std::array<double
   const float a = radius * std::cos(phi), share = .5f * (1 + stretched.z);
   const float b = (1 - share) * std::sqrt(std::max(0.0f, 1 - a * a)) + share * radius * std::sin(phi);
   const Vec3f facet = x * a + y * b + stretched * std::sqrt(std::max(0.0f, 1 - a * a - b * b));
-  const Vec3f normal = normalized(Vec3f{alpha_ * facet.x, alpha_ * facet.y, std::max(1e-6f, facet.z)});
+  const Vec3f normal =
+      normalized(Vec3f{alphas_.along * facet.x, alphas_.across * facet.y, std::max(1e-6f, facet.z)});
   const float cosine = dot(view, normal);
   const Vec3f light = normal * (2 * cosine) - view;
   if (!(light.z > 0 && cosine > 0)) return {light, 0};
@@ -98,23 +129,49 @@ float RoughBoundary::value(const Vec3f& view, const Vec3f& light) const {
   return fresnel_reflectance(std::min(dot(view, normal), 1.0f), eta_) * both * facets(normal) / (4 * view.z);
 }
 
-RoughnessRange::RoughnessRange(double eta) {
-  for (std::size_t i = 0; i <= kSteps; ++i)
-    boundaries_.emplace_back(double(kLeast) + (1 - double(kLeast)) * double(i) / double(kSteps), eta);
+RoughnessRange::RoughnessRange(double eta, float anisotropy, float least, float most, std::size_t steps)
+    : anisotropy_(anisotropy),
+      least_(least),
+      most_(most),
+      steps_(steps),
+      sides_(anisotropy > 0 ? kSides : 1) {
+  for (std::size_t i = 0; i < steps_; ++i) {
+    double roughness = double(least_);
+    if (steps_ > 1) roughness += (double(most_) - double(least_)) * double(i) / double(steps_ - 1);
+    if (sides_ == 1) {
+      boundaries_.emplace_back(roughness, eta);
+      continue;
+    }
+    const FacetAlphas alphas = facet_alphas(float(roughness), anisotropy_);
+    for (std::size_t k = 0; k < sides_; ++k)
+      boundaries_.emplace_back(alphas, eta, share_of_side(alphas, float(k) / float(sides_ - 1)));
+  }
 }
 
-RoughBoundary RoughnessRange::at(float roughness) const {
-  const float bounded = std::clamp(roughness, kLeast, 1.0f);
-  const float place = (bounded - kLeast) / (1 - kLeast) * float(kSteps);
-  const std::size_t i = std::min(std::size_t(place), kSteps - 1);
-  const float share = place - float(i);
-  RoughBoundary boundary = boundaries_[i];
-  boundary.alpha_ = bounded * bounded;
-  const auto mix = [&](RoughBoundary::Table& table, const RoughBoundary::Table& next) {
-    for (std::size_t c = 0; c < table.size(); ++c) table[c] = table[c] * (1 - share) + next[c] * share;
+RoughBoundary RoughnessRange::at(float roughness, float tangent_share) const {
+  const float bounded = std::clamp(roughness, least_, most_);
+  const float place = steps_ > 1 ? (bounded - least_) / (most_ - least_) * float(steps_ - 1) : 0;
+  const std::size_t i = steps_ > 1 ? std::min(std::size_t(place), steps_ - 2) : 0;
+  const auto mix = [](RoughBoundary& boundary, const RoughBoundary& next, float share) {
+    const auto mix_tables = [&](RoughBoundary::Table& table, const RoughBoundary::Table& other) {
+      for (std::size_t c = 0; c < table.size(); ++c) table[c] = table[c] * (1 - share) + other[c] * share;
+    };
+    mix_tables(boundary.reflectances_, next.reflectances_);
+    mix_tables(boundary.once_, next.once_);
   };
-  mix(boundary.reflectances_, boundaries_[i + 1].reflectances_);
-  mix(boundary.once_, boundaries_[i + 1].once_);
+  const FacetAlphas alphas = facet_alphas(bounded, anisotropy_);
+  const auto of_step = [&](std::size_t step) {
+    if (sides_ == 1) return boundaries_[step];
+    const float spread = std::max(alphas.along - alphas.across, 1e-6f);
+    const float side = (seen_alpha(alphas, tangent_share) - alphas.across) / spread * float(sides_ - 1);
+    const std::size_t k = std::min(std::size_t(std::max(side, 0.0f)), sides_ - 2);
+    RoughBoundary boundary = boundaries_[step * sides_ + k];
+    mix(boundary, boundaries_[step * sides_ + k + 1], side - float(k));
+    return boundary;
+  };
+  RoughBoundary boundary = of_step(i);
+  boundary.alphas_ = alphas;
+  if (steps_ > 1) mix(boundary, of_step(i + 1), place - float(i));
   return boundary;
 }
 

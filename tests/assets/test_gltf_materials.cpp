@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "asset_test.h"
+#include "opaline/transport/rough_boundary.h"
 
 namespace opaline::asset_test {
 namespace {
@@ -110,9 +111,9 @@ TEST(GltfMaterials, OthersAreOpaque) {
   EXPECT_EQ(scene_of(cube_asset().glb(), "a.glb").shapes.at(0).reflectance, Rgb(1, 1, 1));
 }
 
-// Claim: specularFactor is the share that an opaque material's coat mirrors at right angles, .04 of the light without
-// it; its colour is told to be lost, and so is all of it for a body. Source: KHR_materials_specular. Fails if it is passed
-// over, or told to be.
+// Claim: specularFactor is the share that the coat of an opaque material or a body mirrors at right angles, .04 of the
+// light without it; its colour is told to be lost. Source: KHR_materials_specular. Fails if it is passed over, or told to
+// be.
 TEST(GltfMaterials, SpecularFactorWeighsTheCoat) {
   Json material = {{"extensions", {{"KHR_materials_specular", {{"specularFactor", .25}}}}}};
   const Scene scene = scene_of(cube_of(material).glb(), "a.glb");
@@ -124,7 +125,34 @@ TEST(GltfMaterials, SpecularFactorWeighsTheCoat) {
   EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "specularColorFactor"));
   material["extensions"]["KHR_materials_volume"] = kVolume;
   material["extensions"]["KHR_materials_volume_scatter"] = {{"multiscatterColor", {.5, .5, .5}}};
-  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "KHR_materials_specular"));
+  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "specularColorFactor"));
+  EXPECT_FALSE(has(imported(cube_of(material)).not_carried, "KHR_materials_specular"));
+  EXPECT_TRUE(has(imported(cube_of(material)).translated, "specularFactor -> specular_weight 0.25"));
+  const double of_body = scene_of(cube_of(material).glb(), "a.glb").media.at(0).eta;
+  EXPECT_NEAR((of_body - 1) / (of_body + 1), std::sqrt(.25 * .04), 1e-9);
+}
+
+// Claim: anisotropy has both of glTF's alphas, mix(alpha, 1, strength^2) along the tangent and alpha across, turned by
+// degrees, of what is opaque and of bodies; it is said where no UVs tell the tangent. Source: KHR_materials_anisotropy. Fails
+// if the strength is not squared, or roughness stays what it was.
+TEST(GltfMaterials, AnisotropyHasBothAlphas) {
+  Json material = {{"pbrMetallicRoughness", {{"roughnessFactor", .4}}},
+                   {"extensions",
+                    {{"KHR_materials_anisotropy", {{"anisotropyStrength", .5}, {"anisotropyRotation", 1}}}}}};
+  const auto expect = [](double roughness, const Grain& grain) {
+    const FacetAlphas alphas = facet_alphas(float(roughness), float(grain.anisotropy));
+    EXPECT_NEAR(alphas.across, .16, 1e-6);
+    EXPECT_NEAR(alphas.along, .16 + .84 * .25, 1e-6);
+    EXPECT_NEAR(grain.rotation, 57.29578, 1e-5);
+  };
+  const Scene opaque = scene_of(cube_of(material).glb(), "a.glb");
+  expect(opaque.shapes.at(0).gloss.value().roughness, opaque.shapes[0].gloss->grain);
+  EXPECT_TRUE(imported(cube_of(material)).not_carried.empty());
+  EXPECT_TRUE(has(imported(cube_of(material)).translated, "about y, for its mesh has no TEXCOORD_0"));
+  material["extensions"]["KHR_materials_volume"] = kVolume;
+  material["extensions"]["KHR_materials_volume_scatter"] = {{"multiscatterColor", {.5, .5, .5}}};
+  const Scene body = scene_of(cube_of(material).glb(), "a.glb");
+  expect(body.media.at(0).specular_roughness, body.media[0].grain);
 }
 
 // Claim: values that leave nothing to scatter, or lie outside of what a medium may have, are replaced and said. Fails if

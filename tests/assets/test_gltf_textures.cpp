@@ -85,7 +85,7 @@ TEST(GltfTextures, CountUpwards) {
   put_bytes(folder.file("a.glb"), textured_triangle(Json::object(), {{"uri", "x.png"}}).glb());
   Shape shape;
   shape.source = MeshFile{folder.file("a.glb"), false, {}, "0/0"};
-  const Mesh mesh = make_mesh(shape, true).mesh;
+  const Mesh mesh = make_mesh(shape, MeshUvs::required).mesh;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d& p = mesh.positions[mesh.triangles[0][k]];
     EXPECT_EQ(mesh.uvs.at(0)[k], (std::array<float, 2>{float(p.x), float(1 - p.y)}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "asset_test.h"
+#include "opaline/transport/rough_boundary.h"
 
 namespace opaline::asset_test {
 namespace {
@@ -78,6 +79,18 @@ TEST(MaterialX, OpenPbrIsTheArtistsMedium) {
   }
 }
 
+// Claim: a body's coat mirrors the weight's share of what its index does. Source: OpenPBR 1.1, specular_weight. Fails if
+// the weight is passed over.
+TEST(MaterialX, BodiesHaveASpecularWeight) {
+  const MaterialFolder folder(
+      R"(<materialx><open_pbr_surface name="s"><input name="subsurface_weight" value="1"/>
+    <input name="specular_weight" value="0.25"/></open_pbr_surface></materialx>)");
+  const ImportedAsset import = folder.import("tetrahedron.obj");
+  EXPECT_FALSE(has(import.not_carried, "specular_weight"));
+  const double eta = parse_scene(import.text, "a.json").media.at(0).eta;
+  EXPECT_NEAR((eta - 1) / (eta + 1), std::sqrt(.25 * .04), 1e-9);
+}
+
 // Claim: shapes of an OBJ that share the medium are one body. Fails if the tetrahedron falls into two open ones.
 TEST(MaterialX, PartsOfAnObjAreOneBody) {
   const Scene scene = parse_scene(MaterialFolder().import("tetrahedron.obj").text, "a.json");
@@ -139,6 +152,28 @@ TEST(MaterialX, OpaqueSurfacesAreGlossy) {
   EXPECT_EQ(standard.metalness, 1);
   EXPECT_EQ(standard.roughness, .6);
   EXPECT_NEAR(standard.eta, 1.4, 1e-12);
+}
+
+// Claim: anisotropy is OpenPBR's as it stands; of a standard surface, alpha over and times the root of the alphas' ratio,
+// turned by a part of a full turn. Source: OpenPBR 1.1; MaterialX 1.38, roughness_anisotropy. Fails if one is taken for the
+// other.
+TEST(MaterialX, AnisotropyIsThatOfTheModel) {
+  const auto gloss = [](const std::string& text) {
+    const MaterialFolder folder("<materialx>" + text + "</materialx>");
+    const ImportedAsset import = folder.import("tetrahedron.obj");
+    EXPECT_FALSE(has(import.not_carried, "material 's'"));
+    return parse_scene(import.text, "a.json").shapes.at(0).gloss.value();
+  };
+  const Gloss pbr = gloss(R"(<open_pbr_surface name="s"><input name="specular_roughness" value="0.4"/>
+    <input name="specular_roughness_anisotropy" value="0.5"/></open_pbr_surface>)");
+  EXPECT_EQ(pbr.grain, (Grain{.5, 0}));
+  EXPECT_EQ(pbr.roughness, .4);
+  const Gloss standard = gloss(R"(<standard_surface name="s"><input name="specular_roughness" value="0.4"/>
+    <input name="specular_anisotropy" value="0.5"/><input name="specular_rotation" value="0.25"/></standard_surface>)");
+  const FacetAlphas alphas = facet_alphas(float(standard.roughness), float(standard.grain.anisotropy));
+  EXPECT_NEAR(alphas.along, .16 / std::sqrt(.5), 1e-6);
+  EXPECT_NEAR(alphas.across, .16 * std::sqrt(.5), 1e-6);
+  EXPECT_EQ(standard.grain.rotation, 90);
 }
 
 // Claim: what is wrong is named by file, surface and input. Fails if a broken value becomes 0.

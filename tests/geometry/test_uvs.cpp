@@ -10,7 +10,7 @@ namespace {
 Mesh with_uvs(const ShapeSource& source) {
   Shape shape;
   shape.source = source;
-  return make_mesh(shape, true).mesh;
+  return make_mesh(shape, MeshUvs::required).mesh;
 }
 
 /// Of all corners, as (position, uv) pairs, in the mesh's order.
@@ -64,11 +64,11 @@ TEST(Uvs, GoAlongWhenAMeshIsMended) {
   put_bytes(folder.file("t.obj"), turned);
   Shape shape = file_shape(folder.file("t.obj"));
   MeshMemory memory;
-  expect_tetrahedron(make_mesh(shape, memory, true).mesh);
-  expect_tetrahedron(make_mesh(shape, memory, true).mesh);  // by what was found before
+  expect_tetrahedron(make_mesh(shape, memory, MeshUvs::required).mesh);
+  expect_tetrahedron(make_mesh(shape, memory, MeshUvs::required).mesh);  // by what was found before
   EXPECT_EQ(memory.work().checked, 1u);
   shape.to_world.z = {0, 0, -1};
-  Mesh mirrored = make_mesh(shape, true).mesh;
+  Mesh mirrored = make_mesh(shape, MeshUvs::required).mesh;
   for (Vec3d& p : mirrored.positions) p.z = -p.z;
   expect_tetrahedron(mirrored);
 }

@@ -5,6 +5,7 @@
 #include "opaline/core/random.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
+#include "opaline/transport/fresnel.h"
 #include "opaline/transport/rough_boundary.h"
 #include "support/scenes.h"
 
@@ -135,9 +136,33 @@ TEST(Coat, SpecularWeightIsAShare) {
   }
 }
 
-// Claim: metals are seen in mirrors as they mirror: in a white room a white metal ball on a white metal floor is white,
-// but for rays that meet a fifth one, 1.9 % of the mean if smooth and 2.8 % if rough. Source: conservation. Tolerance:
-// 3.5 %; metals that are black in mirrors take 14 % away. Fails if they are.
+// Claim: of a body, too, the coat mirrors the weight's share at right angles, .04 at weight 1, and all else enters: a white
+// ball in a white room is white at every weight, smooth or rough, by its samples as by the limit of no mean free path.
+// Source: OpenPBR 1.1, specular_weight; conservation. Tolerance: 1e-3 of the share; .6 % of the mean. Fails if the weight is taken off the mirror alone.
+TEST(Coat, SpecularWeightOfBodies) {
+  for (const char* const method : {"lambert", "hierarchical"})
+    for (const char* const roughness : {"0", "0.4"})
+      for (const double weight : {0., .25, 1.}) {
+        SCOPED_TRACE(std::string(method) + ' ' + roughness + ' ' + std::to_string(weight));
+        const Image image = picture_of(parse_scene(
+            std::string(R"({"media": {"white": {"sigma_a": 0, "sigma_s": 200, "specular_ior": 1.5,
+          "specular_roughness": )") +
+                roughness + R"(, "specular_weight": )" + std::to_string(weight) +
+                R"(}}, "shapes": [{"sphere": {"radius": 10}, "medium": "white"}], "surroundings": 1,
+          "settings": {"method": ")" +
+                method +
+                R"(", "light_samples": 256, "samples": 4000}, "camera": {"position": [0, 0, 100], "field_of_view": 15},
+          "film": {"resolution": [32, 32], "pixel_type": "float"}})",
+            "text.json"));
+        if (roughness[1] == 0) {
+          EXPECT_NEAR(channel(image, 16, 16, "specular.G"), .04 * weight, 1e-3 * weight);
+        }
+        EXPECT_NEAR(mean_over_ball(image, "G"), 1, .006);
+      }
+}
+
+// Claim: metals are seen in mirrors as they mirror: in a white room a white metal ball on a white metal floor is white.
+// Source: conservation. Tolerance: 3.5 %; metals that are black in mirrors take 14 % away. Fails if they are.
 TEST(Coat, MetalsInMirrors) {
   for (const char* const roughness : {"0", "0.3"}) {
     SCOPED_TRACE(roughness);
@@ -148,6 +173,77 @@ TEST(Coat, MetalsInMirrors) {
         R"(, {"quad": {"corner": [-40, -11, 40], "u": [80, 0, 0], "v": [0, 0, -80]}, )" + metal);
     EXPECT_NEAR(mean_over_ball(image, "G"), 1, .035);
   }
+}
+
+// Claim: what is seen in a mirror has its own highlight: that of a black ball with a coat in a metal or another coat is the
+// lobe's value times the light's, times what the mirror reflects at 45 degrees. Source: the reflectance functions.
+// Tolerance: point 1e-3; lamp 3 % at 64 samples a pixel. Fails if mirrored coats are passed over (nothing is seen then).
+TEST(Coat, IsSeenInMirrors) {
+  const Vec3d at{30, 0, 60}, to_light = normalized(at - Vec3d{0, 0, 10});
+  const double d2 = dot(at - Vec3d{0, 0, 10}, at - Vec3d{0, 0, 10});
+  const double value = double(RoughBoundary(.4, kEta).value({0, 0, 1}, Vec3f(to_light)));
+  for (const double metalness : {0., 1.}) {
+    // The mirror's middle is above the ball, the eye at its side.
+    Scene scene = parse_scene(
+        R"({"shapes": [{"sphere": {"radius": 10}, "reflectance": 0, "specular_roughness": 0.4},
+      {"name": "mirror", "quad": {"corner": [-1, -1, 109], "u": [2, 0, 2], "v": [0, 2, 0]}, "specular_roughness": 0}],
+      "camera": {"position": [200, 0, 110], "look_at": [0, 0, 110], "field_of_view": 0.01},
+      "film": {"resolution": [1, 1], "pixel_type": "float"}, "settings": {"bounces": 0}})",
+        "text.json");
+    scene.shapes[1].reflectance = Rgb(metalness);
+    scene.shapes[1].gloss->metalness = metalness;
+    const double mirrored = value * (metalness > 0 ? 1 : fresnel_reflectance(std::sqrt(.5), kEta));
+    scene.lights = {point_light(at, Rgb(d2))};
+    EXPECT_NEAR(channel(picture_of(scene), 0, 0, "specular.G") / mirrored, 1, 1e-3) << metalness;
+    scene.lights = {{"ball", SphereLight{at, 2, Rgb(d2 / (4 * kPi))}}};
+    scene.film.samples_per_pixel = 64;
+    EXPECT_NEAR(channel(picture_of(scene), 0, 0, "specular.G") / mirrored, 1, .03) << metalness;
+  }
+}
+
+struct FurnaceMeans {
+  double mean = 0, least_block = INFINITY, most_block = 0;
+};
+
+// Of a picture that bodies fill, and over its blocks of 4 x 4 pixels.
+FurnaceMeans furnace_means(const Image& image) {
+  FurnaceMeans means;
+  for (int y = 0; y < image.height; y += 4)
+    for (int x = 0; x < image.width; x += 4) {
+      double block = 0;
+      for (int i = 0; i < 16; ++i) block += double(channel(image, x + i % 4, y + i / 4, "G")) / 16;
+      means.mean += block * 16 / (image.width * image.height);
+      means.least_block = std::min(means.least_block, block);
+      means.most_block = std::max(means.most_block, block);
+    }
+  return means;
+}
+
+// Claim: in a white room a white ball with a coat above a white metal floor, and its image there, are white wherever one
+// looks, opaque or translucent; so are two of them side by side. Source: conservation. Tolerance: .5 % of the mean; 2 % of
+// a block of 4 x 4 pixels (light that bounces twice is missing, 1.2 % below the ball; noise). Fails if coats are passed
+// over in mirrors (a block is then .97), or surfaces get nothing of what mirrors send them (the ball's lower side is 21 %
+// dark).
+TEST(Coat, TwoBodiesInAFurnace) {
+  for (const char* const roughness : {"0", "0.3"})
+    for (const char* const ball :
+         {R"("reflectance": 1, "specular_roughness": )", R"("medium": "white", "name": )"}) {
+      SCOPED_TRACE(std::string(ball) + roughness);
+      const std::string rough(roughness), is_named = ball[1] == 'm' ? "\"" : "";
+      const Image image = picture_of(parse_scene(
+          R"({"media": {"white": {"sigma_a": 0, "sigma_s": 1, "specular_ior": 1.5, "specular_roughness": )" +
+              rough + R"(}}, "shapes": [{"sphere": {"radius": 10}, )" + ball + is_named + rough + is_named +
+              R"(}, {"quad": {"corner": [-400, -90, 400], "u": [800, 0, 0], "v": [0, 0, -800]}, "reflectance": 1,
+          "metalness": 1, "specular_roughness": )" +
+              rough + R"(}], "surroundings": 1, "settings": {"method": "lambert", "light_samples": 4096},
+          "camera": {"position": [0, 60, 140], "look_at": [0, -45, 0], "field_of_view": 46},
+          "film": {"resolution": [48, 48], "samples_per_pixel": 64, "pixel_type": "float"}})",
+          "text.json"));
+      const FurnaceMeans means = furnace_means(image);
+      EXPECT_NEAR(means.mean, 1, .005);
+      EXPECT_GT(means.least_block, .98);
+      EXPECT_LT(means.most_block, 1.02);
+    }
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ const std::string kBox =
     R"({"name": "ball", "box": {"low": [-20, 0, -8], "high": [-4, 16, 8]}, "medium": "stone"})";
 const std::string kSlab =
     R"({"name": "ball", "slab": {"center": [-12, 9, 0], "width": 18, "depth": 16, "thickness": 4}, "medium": "stone"})";
+const std::string kRough = "media.stone.specular_roughness=0.5";
 const std::string kGloss = "shapes.floor.specular_roughness=0.4";
 const std::string kMap = R"(shapes.ball.normal_map={"texture": "cells.png"})";
 const std::string kMesh = R"(shapes.ball={"name": "ball", "file": "bump.obj", "medium": "stone"})";
@@ -79,6 +80,11 @@ std::vector<Change> changes() {
       {"medium.specular_ior", "media.stone.specular_ior=1.6"},
       {"medium.eta", "media.wax.eta=1.6"},
       {"medium.specular_roughness", "media.stone.specular_roughness=0.5"},
+      {"medium.specular_weight", "media.stone.specular_weight=0.5"},
+      {"medium.specular_anisotropy", "media.stone.specular_anisotropy=0.8", {kRough}},
+      {"medium.specular_rotation",
+       "media.stone.specular_rotation=40",
+       {kRough, "media.stone.specular_anisotropy=0.8"}},
       {"medium.tint", "media.stone.tint=[0.5, 0.7, 0.9]"},
       {"medium.texture_mix", "media.stone.texture_mix=pre", {R"(media.stone.tint={"texture": "cells.png"})"}},
       {"medium.thickness", "media.stone.thickness=3", {"media.stone.profile=multipole"}},
@@ -100,6 +106,10 @@ std::vector<Change> changes() {
       {"shape.specular_roughness", "shapes.floor.specular_roughness=0.2", {kGloss}},
       {"shape.specular_ior", "shapes.floor.specular_ior=2", {kGloss}},
       {"shape.specular_weight", "shapes.floor.specular_weight=0.3", {kGloss}},
+      {"shape.specular_anisotropy", "shapes.floor.specular_anisotropy=0.8", {kGloss}},
+      {"shape.specular_rotation",
+       "shapes.floor.specular_rotation=40",
+       {kGloss, "shapes.floor.specular_anisotropy=0.8"}},
       {"shape.normal_map", kMap},
       {"shape.group", "shapes.ring.group=pair", {"shapes.ball.group=pair", "shapes.ring.medium=stone"}},
       {"texture.texture", R"(shapes.floor.reflectance.texture=other.png)"},

@@ -18,9 +18,8 @@ namespace opaline {
 ///       closed components wound outward; holes filled if asked; normals as shape.normals says
 /// error Error{bad_input} naming the file: missing, empty, truncated or unreadable mesh, NaN or huge
 /// coordinates,
-///       index out of range, no area; no UVs where they are wanted
-/// with_uvs: the mesh is to have UVs
-CheckedMesh make_mesh(const Shape& shape, bool with_uvs = false);
+///       index out of range, no area; no UVs where they are required
+CheckedMesh make_mesh(const Shape& shape, MeshUvs uvs = MeshUvs::unread);
 
 /// What loading a shape found, for loading it again after an edit: its triangles as they were read, and what
 /// checking them found that does not depend on where their corners are. Some 100 bytes a vertex.
@@ -31,7 +30,7 @@ class MeshMemory {
   MeshMemory(MeshMemory&&) noexcept;
   MeshMemory& operator=(MeshMemory&&) noexcept;
 
-  /// To be told when the shape's source is another, its file's bytes and whether UVs are wanted among it: then
+  /// To be told when the shape's source is another, its file's bytes and how UVs are asked for among it: then
   /// it is read again.
   void source_changed();
 
@@ -43,12 +42,12 @@ class MeshMemory {
   const Work& work() const;
 
  private:
-  friend CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory, bool with_uvs);
+  friend CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory, MeshUvs uvs);
   struct State;
   std::unique_ptr<State> state_;
 };
 
 /// The same mesh, bit for bit, with what the memory holds of the shape, or of another one, not done again.
-CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory, bool with_uvs = false);
+CheckedMesh make_mesh(const Shape& shape, MeshMemory& memory, MeshUvs uvs = MeshUvs::unread);
 
 }  // namespace opaline

@@ -31,7 +31,7 @@ class SurfaceTextures {
   /// error Error{bad_input}: UVs reach a tile that a texture has not, told at the texture's place
   SurfaceTextures(const Scene& scene, const World& world);
 
-  /// Whether any surface has other values at other points, or a tint.
+  /// Whether no surface has other values at other points, a tint, or an anisotropic boundary.
   bool empty() const { return is_empty_; }
   /// Whether it has a tint that light meets as it enters.
   bool tints_entering(std::uint32_t mesh) const;
@@ -39,7 +39,7 @@ class SurfaceTextures {
   /// One point of a mesh; its lookups all have one footprint.
   struct Place {
     std::uint32_t mesh;
-    std::optional<SurfaceUv> uv;  ///< none: no texture asks for it
+    std::optional<SurfaceUv> uv;  ///< none: nothing asks for it, or the mesh has none
     Footprint footprint;
   };
   Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
@@ -49,6 +49,8 @@ class SurfaceTextures {
   /// None: the surface's own.
   std::optional<float> roughness(const Place& place) const;
   std::optional<float> metalness(const Place& place) const;
+  /// Unit, at right angles to the shading normal, the way in which an anisotropic boundary is roughest; of others 0.
+  Vec3f tangent(const Place& place, const SurfacePoint& point) const;
   /// Turns the point's shading normal by the normal map, if there is one.
   void bend(const Place& place, SurfacePoint& point) const;
 
@@ -57,7 +59,8 @@ class SurfaceTextures {
     const Texture *tint = nullptr, *roughness = nullptr, *metalness = nullptr, *normals = nullptr;
     Rgb factor{1, 1, 1};               ///< times the tint's texture
     double at_entry = 0, at_exit = 1;  ///< exponents of the tint
-    bool has_tint = false, needs_uv = false;
+    bool has_tint = false, has_uv = false;
+    const Grain* grain = nullptr;
   };
 
   const World& world_;

@@ -49,6 +49,14 @@ struct Texture {
   friend bool operator==(const Texture&, const Texture&) = default;
 };
 
+/// A rough boundary that mirrors differently along and across a tangent: that of growing u, or, where the mesh has no UVs,
+/// the level one, at right angles to +y.
+struct Grain {
+  double anisotropy = 0;  ///< [0, 1], specular_roughness_anisotropy of OpenPBR: 0 is the same all around
+  double rotation = 0;    ///< of the tangent about the normal, counterclockwise, degrees
+  friend bool operator==(const Grain&, const Grain&) = default;
+};
+
 // ---- media ----------------------------------------------------------------------------------------------
 
 /// Reduced coefficients per channel, 1/mm, finite and >= 0.
@@ -89,6 +97,7 @@ struct Medium {
   std::optional<Texture> tint_texture{}, roughness_texture{};
   TextureMix texture_mix = TextureMix::split;
   ChosenProfile chosen{};  ///< where profile is none
+  Grain grain{};           ///< of the boundary
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
@@ -151,6 +160,7 @@ struct Gloss {
   double metalness = 0, roughness = 1;  ///< [0, 1]; the square of the latter is GGX's alpha
   std::optional<Texture> metalness_texture{}, roughness_texture{};
   double eta = 1.5;  ///< of the dielectric, outside air
+  Grain grain{};
   friend bool operator==(const Gloss&, const Gloss&) = default;
 };
 
@@ -318,5 +328,10 @@ int bounces_of(const Scene& scene);
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
 /// Whether a shape's mesh has to have UVs.
 bool needs_uvs(const Scene& scene, const Shape& shape);
+/// Of a shape whose boundary is rough and has one; else null.
+const Grain* grain_of(const Scene& scene, const Shape& shape);
+
+enum class MeshUvs { unread, if_any, required };
+MeshUvs uvs_of(const Scene& scene, const Shape& shape);
 
 }  // namespace opaline

@@ -9,15 +9,27 @@
 
 namespace opaline {
 
-/// Directions are local, unit, z along the normal, away from the surface. Light that facets would reflect twice goes
-/// below instead, as most of it does at a dielectric.
+/// GGX's alpha along the tangent, where facets are tilted most, and across it.
+struct FacetAlphas {
+  float along, across;
+  friend bool operator==(const FacetAlphas&, const FacetAlphas&) = default;
+};
+
+/// in    roughness: [0, 1], alpha is its square; anisotropy: [0, 1], 0: the same all around
+/// from  OpenPBR Surface 1.1, specular_roughness_anisotropy
+FacetAlphas facet_alphas(float roughness, float anisotropy = 0);
+
+/// Directions are local, unit, x along the tangent, z along the normal, away from the surface. Light that facets would
+/// reflect twice goes below instead, as most of it does at a dielectric.
 class RoughBoundary {
  public:
   /// in    roughness: (0, 1], its square is GGX's alpha; eta: inside over outside
   RoughBoundary(double roughness, double eta);
+  /// in    tangent_share: of the directions that reflectance() tells of, cos^2 of the azimuth from the tangent
+  RoughBoundary(const FacetAlphas& alphas, double eta, float tangent_share);
 
-  /// Of GGX: the square of the roughness.
-  float alpha() const { return alpha_; }
+  /// The larger one.
+  float alpha() const { return alphas_.along; }
 
   /// The share of light from a direction that is reflected, to any side; from a table, error below .002.
   float reflectance(float cosine) const;
@@ -38,28 +50,38 @@ class RoughBoundary {
 
  private:
   friend class RoughnessRange;
+  bool is_isotropic() const { return alphas_.along == alphas_.across; }
   float smith(const Vec3f& direction) const;  ///< share of facets that are seen from there, G1
   float facets(const Vec3f& normal) const;    ///< their distribution, D
 
   static constexpr std::size_t kCosines = 33;
-  float alpha_, eta_;
+  FacetAlphas alphas_;
+  float eta_;
   using Table = std::array<float, kCosines>;
   static float value_of(const Table& table, float cosine);
   Table reflectances_{}, once_{};
 };
 
-/// Boundaries of one index and any roughness, whose tables lie between those of a few.
+/// Boundaries of one index seen from any side, whose tables lie between those of a few.
 class RoughnessRange {
  public:
-  explicit RoughnessRange(double eta);
+  /// Of any roughness.
+  explicit RoughnessRange(double eta, float anisotropy = 0)
+      : RoughnessRange(eta, anisotropy, kLeast, 1, 17) {}
+  /// Of one.
+  RoughnessRange(double eta, float anisotropy, float roughness)
+      : RoughnessRange(eta, anisotropy, roughness, roughness, 1) {}
 
-  /// in    roughness: [0, 1]; below kLeast it is that
-  RoughBoundary at(float roughness) const;
+  /// in    roughness: [0, 1], bounded to the range; tangent_share: as RoughBoundary's
+  RoughBoundary at(float roughness, float tangent_share = 0) const;
 
  private:
   static constexpr float kLeast = .04f;
-  static constexpr std::size_t kSteps = 16;
-  std::vector<RoughBoundary> boundaries_;
+  RoughnessRange(double eta, float anisotropy, float least, float most, std::size_t steps);
+
+  float anisotropy_, least_, most_;
+  std::size_t steps_, sides_;  // of roughness, and of azimuths, evenly by the alpha that is seen from there
+  std::vector<RoughBoundary> boundaries_;  // for each roughness those of all sides
 };
 
 }  // namespace opaline

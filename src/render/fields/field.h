@@ -23,6 +23,8 @@ struct Pass {
   bool is_seen = true;    ///< false: by rays that spread light; no near fields are looked into for them
   /// `direct`: what surfaces send to places where light enters is found by a ray from each; null: lights alone.
   const Shader* gathers = nullptr;
+  /// That of what is seen in mirrors; null: the same.
+  const Pass* in_mirrors = nullptr;
 };
 
 /// The hits of a batch of camera rays that one field answers for, one entry a hit in each array.

@@ -14,8 +14,8 @@ const kForms = {
 const kNumbers = ["number", "whole_number", "length"], kThrees = ["point", "triple"];
 const kColours = ["color", "number_or_triple"];
 // Shown where the scene has them.
-const kOptional = ["tint", "texture_mix", "thickness"];
-const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_weight"];
+const kOptional = ["specular_anisotropy", "specular_rotation", "tint", "texture_mix", "thickness"];
+const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_weight", "specular_anisotropy", "specular_rotation"];
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};
 const kWidestLinear = 1000, kDecade = 1;
 
@@ -114,7 +114,7 @@ export class Knobs {
     select.onchange = () => this.set({[path]: this.converted(name, select.value)}, newStroke());
     const ior = "eta" in medium ? "eta" : "specular_ior";
     return [make("label", {className: "knob"}, make("span", {className: "name", textContent: "given by"}), select),
-      ...[...kForms[form].keys, ior, "specular_roughness", "profile", ...kOptional.filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
+      ...[...kForms[form].keys, ior, "specular_roughness", "specular_weight", "profile", ...kOptional.filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
   }
 
   // The same medium in another form, or where there is no telling one to start from.

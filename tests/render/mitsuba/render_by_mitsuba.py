@@ -33,8 +33,15 @@ def surface(shape):
     base = colour(shape.pop("reflectance", 0.5))
     if "specular_roughness" not in shape:
         return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": base}}
-    return {"type": "roughplastic", "distribution": "ggx", "alpha": shape.pop("specular_roughness") ** 2, "int_ior": 1.5,
-            "diffuse_reflectance": base, "nonlinear": True}
+    alpha, ratio = shape.pop("specular_roughness") ** 2, 1 - shape.pop("specular_anisotropy", 0)
+    if shape.pop("metalness", 0) == 1:
+        along = alpha * (2 / (1 + ratio ** 2)) ** 0.5
+        return {"type": "roughconductor", "distribution": "ggx", "alpha_u": along, "alpha_v": ratio * along,
+                "material": "none", "specular_reflectance": base}
+    if ratio != 1:
+        raise SystemExit("anisotropy of a coat: not compared")
+    return {"type": "roughplastic", "distribution": "ggx", "alpha": alpha, "int_ior": 1.5, "diffuse_reflectance": base,
+            "nonlinear": True}
 
 
 def shape_of(shape):
