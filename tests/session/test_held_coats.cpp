@@ -37,15 +37,8 @@ struct Edit {
   bool traces = false;  // rays for the picture
 };
 
-// Claim: session.h of what a held view spares. Fails if: what is held lacks something that it depends on, or holds the
-// colours of its time (another picture), or is found again without need (rays; near fields look for shadow edges again).
-void expect_edits(bool near_field) {
-  Scene scene = satin_room();
-  scene.settings.near_field = near_field;
-  Session session;
-  session.hold_view(true);
-  EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
-  const std::vector<Edit> edits{
+std::vector<Edit> edits_of_a_room() {
+  return {
       {"nothing", [](Scene&) {}},
       {"point's colour",
        [](Scene& s) {
@@ -104,7 +97,17 @@ void expect_edits(bool near_field) {
        },
        true},
   };
-  for (const Edit& edit : edits) {
+}
+
+// Claim: session.h of what a held view spares. Fails if: what is held lacks something that it depends on, or holds the
+// colours of its time (another picture), or is found again without need (rays; near fields look for shadow edges again).
+void expect_edits(bool near_field) {
+  Scene scene = satin_room();
+  scene.settings.near_field = near_field;
+  Session session;
+  session.hold_view(true);
+  EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+  for (const Edit& edit : edits_of_a_room()) {
     SCOPED_TRACE(edit.name);
     edit.apply(scene);
     session.edit(scene);
