@@ -13,12 +13,12 @@ root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev libopenexr-dev libpng-dev
   libopenimageio-dev openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhdf5-dev libxxhash-dev
   libtinygltf-dev libpugixml-dev libboost-dev libmurmurhash-dev libturbojpeg0-dev)
+# The pages of the view and of reports are tested in a browser, 98 MB to fetch and 300 MB on the disk.
 # shellcheck disable=SC2034
-test_packages=(libgtest-dev parallel clang-format)
-# The report's page is tested in a browser, 98 MB to fetch and 300 MB on the disk: the slow tier alone needs it.
+test_packages=(libgtest-dev parallel clang-format chromium-headless-shell)
 # Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. python3-venv: for Mitsuba.
 # shellcheck disable=SC2034
-long_test_packages=(chromium-headless-shell assimp-testmodels python3-venv)
+long_test_packages=(assimp-testmodels python3-venv)
 
 say() { printf 'opaline: %s\n' "$*"; }
 

@@ -75,8 +75,8 @@ Examples:
 Exit codes: 0 done, 2 the asset is broken, 3 the scene file cannot be written.)";
 
 inline constexpr const char* kViewNotes =
-    R"(Prints a URL, and opens it in the browser of the desktop where there is one (by xdg-open). Open it on this machine
-in as many windows as you like: all see and edit the same. Nothing is installed or loaded from elsewhere. Every change
+    R"(Prints a URL, and on a terminal of a desktop opens it in the browser (by xdg-open). Open it on this machine in as many
+windows as you like: all see and edit the same. Nothing is installed or loaded from elsewhere. Every change
 shows a coarse picture at once, then a sharper one, and then the final one, with the bits of opaline render; a newer
 change cancels it. Ctrl-C ends the view.
 

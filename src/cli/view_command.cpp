@@ -32,9 +32,14 @@ void render_file(const ViewArguments& arguments, const std::vector<std::string>&
   if (!child.failure.empty()) throw run_failed({}, child.failure);
 }
 
-/// In its browser, where there is a desktop. Nothing is said where that fails: the URL is printed.
+/// Whether a person at a desktop reads the output.
+bool is_at_desktop() {
+  return (std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr) &&
+         ::isatty(STDOUT_FILENO) == 1;
+}
+
+/// In the desktop's browser. Nothing is said where that fails: the URL is printed.
 void open_on_desktop(std::string url) {
-  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   posix_spawn_file_actions_t silent;
   ::posix_spawn_file_actions_init(&silent);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -72,7 +77,7 @@ void view_command(const ViewArguments& arguments) {
                     hooks);
   print_event(arguments.log, "view", {{"url", server.url()}});
   if (arguments.log.format == LogFormat::text) write_line(stdout, "view        " + server.url());
-  if (arguments.opens_browser) open_on_desktop(server.url());
+  if (arguments.opens_browser && is_at_desktop()) open_on_desktop(server.url());
   server.run(monitor);
 }
 

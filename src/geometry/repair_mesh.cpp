@@ -21,7 +21,9 @@ using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 using HalfedgeMesh = OpenMesh::TriMesh;  // coordinates in double
 using Halfedge = OpenMesh::HalfedgeHandle;
 
-constexpr std::size_t largest_cubic_hole = 500;  // its search takes time cubic in the number of edges
+// Of a hole up to this many edges all triangulations are compared, in time cubic in their number. Of those within a
+// Delaunay tetrahedrization, which take less, the one that is found hangs on addresses where some are as good.
+constexpr std::size_t largest_cubic_hole = 500;
 
 class HoleFiller {
  public:
@@ -100,7 +102,8 @@ class HoleFiller {
     std::vector<OpenMesh::FaceHandle> patch;
     try {
       pmp::triangulate_hole(mesh_, border, std::back_inserter(patch),
-                            CGAL::parameters::do_not_use_cubic_algorithm(edges > largest_cubic_hole));
+                            CGAL::parameters::use_delaunay_triangulation(edges > largest_cubic_hole)
+                                .do_not_use_cubic_algorithm(edges > largest_cubic_hole));
     } catch (const std::exception&) {
       patch.clear();  // CGAL's answer to degenerate holes: an assertion
     }

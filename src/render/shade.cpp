@@ -76,12 +76,15 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
       textures_(input.scene, input.world),
       pixel_spread_(camera_ray_spread(input.scene)),
       fields_(make_fields(input, textures_, entry_samplers)) {
+  for (const Light& light : lights_) emitted_.emplace_back(emission(light));
   for (const Light& light : lights_)
     if (is_visible(light)) (extent(light).center ? emitters_ : surroundings_).push_back(light);
   for (const Shape& shape : input.scene.shapes) appearances_.push_back(mesh_appearance(input.scene, shape));
   // The samples of a pixel share the rays: their average has as many.
   const int spp = input.scene.film.samples_per_pixel;
   light_samples_ = (input.scene.settings.light_samples + spp - 1) / spp;
+  if (input.view != nullptr && can_hold_coats())
+    for (const Light& light : lights_) unit_lights_.push_back(with_emission(light, {1, 1, 1}));
 }
 
 std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
@@ -92,7 +95,8 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
     if (all_hits[f].points.empty()) continue;
     const float eta = fields_.all[f]->eta();
-    if (eta > 0 && eta != 1) add_specular(all_hits[f], {rays, keys, out, pixel_spread_}, pass);
+    HeldView::Surface* const known = held != nullptr ? &held->surfaces[f] : nullptr;
+    if (eta > 0 && eta != 1) add_specular(all_hits[f], {rays, keys, out, pixel_spread_}, pass, known);
     if (fields_.all[f]->asks_samples()) queries += all_hits[f].points.size();
   }
   return queries;

@@ -75,13 +75,18 @@ class Shader {
   void write(const SurfaceHits& hits, const LeavingLight& light, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;
   // What boundaries mirror: shade_specular.cpp.
-  void add_specular(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const;
+  void add_specular(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass,
+                    HeldView::Surface* held) const;
   void add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const;
-  void add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const;
-  void add_highlights(const GlossyHits& glossy) const;
-  void add_reflections(const GlossyHits& glossy, const Pass& pass) const;
+  bool can_hold_coats() const;
+  void add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass,
+                  HeldView::Surface* held) const;
+  void add_held_coat(HeldView::Coat& coat, const RayBatch& batch, const Pass& pass) const;
+  void add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) const;
+  void add_reflections(const GlossyHits& glossy, const Pass& pass, HeldView::Coat* coat) const;
   std::vector<PixelSample> seen_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                                      const Cones& cones, const Pass& pass, int mirrors) const;
+                                      const Cones& cones, const Pass& pass, int mirrors,
+                                      HeldView::Batch* held = nullptr) const;
   /// What boundaries mirror where no ray follows it: the irradiance there, as if it came evenly from all sides.
   void add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch) const;
   float width_at(const RayBatch& batch, std::size_t ray) const;
@@ -90,8 +95,10 @@ class Shader {
 
   const RenderInput& input_;
   std::vector<Light> lights_;            // recentred
+  std::vector<RgbF> emitted_;            // one a light
   std::vector<Light> emitters_;          // those with an area
   std::vector<Light> surroundings_;      // those all around
+  std::vector<Light> unit_lights_;       // all, with an emission of 1, where coats can be held
   std::vector<Appearance> appearances_;  // one a mesh
   SurfaceTextures textures_;
   float pixel_spread_ = 0;  // of camera rays

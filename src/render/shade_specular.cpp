@@ -57,30 +57,37 @@ void add_hit(const SurfaceHits& hits, std::size_t i, SurfaceHits& to) {
   if (!hits.textures.empty()) to.textures.push_back(hits.textures[i]);
 }
 
+// Of a light that has an area; is_free: the ray meets no surface.
+RgbF seen_radiance(const Light& light, const Ray& ray, bool is_free) {
+  const EmitterHit emitter = intersect_emitter(light, ray.origin, ray.direction, ray.far);
+  return emitter.hit ? emitter.radiance : is_free ? background(light, ray.direction) : RgbF{};
+}
+
 float balance(float own, float other) {
   return own > 0 ? own / (own + other) : 0;
 }
 
 }  // namespace
 
-void Shader::add_specular(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const {
+void Shader::add_specular(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass,
+                          HeldView::Surface* held) const {
   SurfaceHits smooth, rough;
   for (std::size_t i = 0; i < hits.rays.size(); ++i) {
     const Appearance& appearance = appearances_[hits.hits[i].mesh];
     add_hit(hits, i, appearance.rough || appearance.roughnesses ? rough : smooth);
   }
   if (!smooth.rays.empty() && mirrors_surfaces()) add_mirrored(smooth, batch, pass);
-  if (!rough.rays.empty()) add_glossy(rough, batch, pass);
+  if (!rough.rays.empty()) add_glossy(rough, batch, pass, held);
 }
 
 std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
                                             std::span<const std::uint64_t> keys, const Cones& cones,
-                                            const Pass& pass, int mirrors) const {
+                                            const Pass& pass, int mirrors, HeldView::Batch* held) const {
   std::vector<PixelSample> seen(rays.size());
   const RayBatch batch{rays, keys, seen, cones.spread, cones.widths, mirrors};
   const Pass& mirrored = pass.in_mirrors != nullptr ? *pass.in_mirrors : pass;
   for (const SurfaceHits& hits :
-       shade_diffuse(batch, std::max(1, light_samples_ / kFewerInMirrors), mirrored, nullptr)) {
+       shade_diffuse(batch, std::max(1, light_samples_ / kFewerInMirrors), mirrored, held)) {
     SurfaceHits followed, last;
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
       const Appearance& plain = appearances_[hits.hits[i].mesh];
@@ -88,7 +95,7 @@ std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
       const float metalness = (hits.textures.empty() ? plain : appearance_of(hits, i)).metalness;
       add_hit(hits, i, mirrors < (metalness > 0 ? kMostMirrors : kMostCoats) ? followed : last);
     }
-    if (!followed.rays.empty()) add_specular(followed, batch, mirrored);
+    if (!followed.rays.empty()) add_specular(followed, batch, mirrored, nullptr);
     add_evenly_mirrored(last, batch);
   }
   return seen;
@@ -210,18 +217,47 @@ struct Shader::GlossyHits {
   }
 };
 
-void Shader::add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const {
+// Lights whose radiance is their emission times what does not depend on it, to the last bit; no metals, whose colour is
+// in what they mirror.
+bool Shader::can_hold_coats() const {
+  const auto has_plain_radiance = [](const Light& light) {
+    return is_delta(light) || std::holds_alternative<EnvironmentLight>(light.source) ||
+           std::holds_alternative<QuadLight>(light.source) ||
+           std::holds_alternative<SphereLight>(light.source) ||
+           std::holds_alternative<Surroundings>(light.source);
+  };
+  return textures_.empty() && std::ranges::all_of(lights_, has_plain_radiance) &&
+         std::ranges::none_of(appearances_, [](const Appearance& a) { return a.metalness > 0; });
+}
+
+void Shader::add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass,
+                        HeldView::Surface* held) const {
+  const bool may_hold = held != nullptr && !unit_lights_.empty();
+  if (may_hold && held->coat != nullptr) return add_held_coat(*held->coat, batch, pass);
   const GlossyHits glossy(*this, hits, batch);
-  add_highlights(glossy);
-  if (mirrors_surfaces()) add_reflections(glossy, pass);
+  std::unique_ptr<HeldView::Coat> coat;
+  if (may_hold && *input_.view->coat_bytes < kMostCoatBytes) coat = std::make_unique<HeldView::Coat>();
+  add_highlights(glossy, coat.get());
+  if (mirrors_surfaces()) add_reflections(glossy, pass, coat.get());
+  if (coat == nullptr) return;
+  *input_.view->coat_bytes += coat->bytes();
+  held->coat = std::move(coat);
+}
+
+// The same sums in the same order.
+void Shader::add_held_coat(HeldView::Coat& coat, const RayBatch& batch, const Pass& pass) const {
+  for (const auto& [ray, light, unit, weight] : coat.lights)
+    batch.out[ray].specular += emitted_[light] * unit * weight;
+  const std::vector<PixelSample> seen =
+      seen_along(coat.mirrored, coat.keys, {kGlossySpread, {}}, pass, batch.mirrors + 1, &coat.seen);
+  for (std::size_t m = 0; m < seen.size(); ++m)
+    batch.out[coat.rays[m]].specular += (seen[m].diffuse + seen[m].specular) * coat.shares[m];
 }
 
 // By directions to the lights.
-void Shader::add_highlights(const GlossyHits& glossy) const {
+void Shader::add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) const {
   const PointIrradianceInput lighting{input_.rays, glossy.hits.points, glossy.keys, lights_,
                                       0,           glossy.to_lights,   glossy.seed};
-  std::vector<RgbF> emitted;
-  for (const Light& light : lights_) emitted.emplace_back(emission(light));
   for_each_ray(
       lighting,
       [&](std::size_t l, std::size_t i, const Vec3f& towards, float irradiance) {
@@ -230,13 +266,15 @@ void Shader::add_highlights(const GlossyHits& glossy) const {
         const float share =
             is_delta(light) ? 1 : balance(glossy.of_light(i, light, towards), glossy.of_lobe(i, towards));
         const float value = glossy.boundary(i).value(glossy.frames[i].view, local) / local.z;
-        glossy.specular(i) += emitted[l] * glossy.color(i, local) * (irradiance * value * share);
+        const float weight = irradiance * value * share;
+        glossy.specular(i) += emitted_[l] * glossy.color(i, local) * weight;
+        if (coat != nullptr) coat->lights.push_back({glossy.hits.rays[i], std::uint32_t(l), 1, weight});
       },
       glossy.lobes);
 }
 
 // By directions of the lobe.
-void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
+void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldView::Coat* coat) const {
   struct Met {
     float weight;  // of all rays that met surfaces
     RgbF share;    // these, each in its colour
@@ -255,16 +293,19 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
     const auto& [ray, mesh_hit] = rays[r];
     const auto& [weight, color, i] = drawn[r];
     const bool is_free = mesh_hit.mesh == Hit::kMiss;
-    for (const Light& light : lights_) {
+    for (std::size_t l = 0; l < lights_.size(); ++l) {
+      const Light& light = lights_[l];
       if (is_delta(light)) continue;
-      const EmitterHit emitter = intersect_emitter(light, ray.origin, ray.direction, ray.far);
-      const RgbF radiance = emitter.hit ? emitter.radiance
-                            : is_free   ? background(light, ray.direction)
-                                        : RgbF{};
+      RgbF radiance = seen_radiance(coat != nullptr ? unit_lights_[l] : light, ray, is_free);
       if (radiance == RgbF{}) continue;
-      glossy.specular(i) +=
-          radiance * color *
-          (weight * balance(glossy.of_lobe(i, ray.direction), glossy.of_light(i, light, ray.direction)));
+      const float balanced =
+          weight * balance(glossy.of_lobe(i, ray.direction), glossy.of_light(i, light, ray.direction));
+      if (coat != nullptr) {
+        const float unit = max_component(radiance);
+        coat->lights.push_back({glossy.hits.rays[i], std::uint32_t(l), unit, balanced});
+        radiance = emitted_[l] * unit;
+      }
+      glossy.specular(i) += radiance * color * balanced;
     }
     if (is_free) continue;
     if (met.empty() || met.back().hit != i) {
@@ -278,9 +319,17 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass) const {
     const double chance = unit_double(hash_bits(glossy.seed + r, glossy.hits.keys[i]));
     if (chance * double(met.back().weight) < double(weight)) met_rays.back() = rays[r];
   }
-  const std::vector<PixelSample> seen = seen_along(met_rays, met_keys, cones, pass, glossy.batch.mirrors + 1);
+  const std::vector<PixelSample> seen = seen_along(met_rays, met_keys, cones, pass, glossy.batch.mirrors + 1,
+                                                   coat != nullptr ? &coat->seen : nullptr);
   for (std::size_t m = 0; m < met.size(); ++m)
     glossy.specular(met[m].hit) += (seen[m].diffuse + seen[m].specular) * met[m].share;
+  if (coat == nullptr) return;
+  for (const Met& one : met) {
+    coat->rays.push_back(glossy.hits.rays[one.hit]);
+    coat->shares.push_back(one.share);
+  }
+  coat->mirrored = std::move(met_rays);
+  coat->keys = std::move(met_keys);
 }
 
 }  // namespace opaline

@@ -240,6 +240,9 @@ HeldView* Session::State::held_view() {
   const bool sees_the_same = key == view_key_ && surfaces_key == view_surfaces_key_;
   if (key != view_key_) view_ = {};
   if (!sees_the_same) view_.forget_surfaces();
+  const StageKey coats_key = view_coats_key(scene_);
+  if (coats_key != view_coats_key_) view_.forget_coats();
+  view_coats_key_ = coats_key;
   if (light_keys != view_light_keys_) {
     std::vector<std::optional<std::size_t>> before;
     for (const StageKey& light : light_keys) {

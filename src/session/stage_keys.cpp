@@ -126,6 +126,19 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
   return key.key();
 }
 
+StageKey view_coats_key(const Scene& scene) {
+  KeyBuilder key("coats of the view", 1);
+  for (const Shape& shape : scene.shapes) {
+    if (shape.medium) {
+      const Medium& medium = scene.media[*shape.medium];
+      key.add(medium.specular_roughness).add(medium.grain.anisotropy).add(medium.grain.rotation);
+    }
+    if (shape.gloss)
+      key.add(shape.gloss->roughness).add(shape.gloss->grain.anisotropy).add(shape.gloss->grain.rotation);
+  }
+  return key.key();
+}
+
 StageKey view_light_key(const Light& light) {
   KeyBuilder key("light of the view", 1);
   key.add(std::uint64_t(light.source.index())).add(light_seed(0, light));

@@ -12,6 +12,7 @@
 #include "opaline/render/direct.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/walk_warnings.h"
+#include "view/lit_anew.h"
 
 namespace opaline {
 namespace {
@@ -144,16 +145,27 @@ void ViewRenderer::draw(const Wanted& wanted) {
   Spent& spent = spent_[change];
   const bool is_direct = wanted.scene.settings.method == Method::direct;
   const bool is_quick = spent.prepare < kFrame && !is_direct;
-  if (!is_quick) publish(wanted, PictureStep::moving, session_->first_light());
+  const bool is_shown = !(is_quick && spent.final < kKnob) && show_lit_anew(wanted);
+  if (!is_quick && !is_shown) publish(wanted, PictureStep::moving, session_->first_light());
   const Clock::time_point start = Clock::now();
   session_->prepare(is_quick ? nullptr : &monitor_);
   spent.prepare = seconds_since(start);
   prepared_ = wanted.scene;
   if (is_direct) return draw_direct(wanted);
+  if (is_shown) return draw_final(wanted, spent, &monitor_);
   if (is_quick && spent.final < (change == camera ? kFrame : kKnob))
     return draw_final(wanted, spent, nullptr);
   draw_draft(wanted, draft_stride(wanted.scene.film), PictureStep::moving, nullptr);
   refine(wanted, spent);
+}
+
+/// The last final picture in the light of the scene, where that tells it; false: it does not.
+bool ViewRenderer::show_lit_anew(const Wanted& wanted) {
+  if (final_ == nullptr || wanted.scene.settings.method == Method::direct) return false;
+  std::optional<Image> lit = lit_anew(final_->image, *final_scene_, wanted.scene);
+  if (!lit) return false;
+  publish(wanted, PictureStep::sharper, std::move(*lit));
+  return true;
 }
 
 void ViewRenderer::refine(const Wanted& wanted, Spent& spent) {
@@ -191,6 +203,8 @@ void ViewRenderer::draw_final(const Wanted& wanted, Spent& spent, Monitor* monit
   StageCost shading = watch.cost("shading");
   const auto picture =
       publish(wanted, PictureStep::final, std::move(result.image), std::move(result.translucent));
+  final_ = picture;
+  final_scene_ = wanted.scene;
   report(wanted, picture->image, estimated_relative_error(picture->image, picture->translucent),
          std::move(shading));
 }

@@ -20,8 +20,9 @@
 
 namespace opaline {
 
-/// moving: whatever is there within a thirtieth of a second; sharper: more pixels, the same samples; final: the bits
-/// of `opaline render`. reference: of another method, for comparison (view_background.h).
+/// moving: whatever is there within a thirtieth of a second; sharper: more pixels, the same samples, or the last final
+/// picture in other light (lit_anew.h); final: the bits of `opaline render`. reference: of another method, for
+/// comparison (view_background.h).
 enum class PictureStep : std::uint32_t { moving, sharper, final, reference };
 
 struct ViewPicture {
@@ -88,6 +89,7 @@ class ViewRenderer {
   std::optional<Wanted> next();
   void draw(const Wanted& wanted);
   void anchor(const Wanted& wanted);
+  bool show_lit_anew(const Wanted& wanted);
   void refine(const Wanted& wanted, Spent& spent);
   void draw_final(const Wanted& wanted, Spent& spent, Monitor* monitor);
   void draw_direct(const Wanted& wanted);
@@ -101,6 +103,8 @@ class ViewRenderer {
   std::unique_ptr<Session> session_;
   std::optional<Scene> prepared_;
   std::optional<Scene> anchor_;  ///< that the session is anchored at, without what samples do not depend on
+  std::shared_ptr<const ViewPicture> final_;  ///< the last one, of final_scene_
+  std::optional<Scene> final_scene_;
   std::array<Spent, kChanges> spent_;
   double seconds_per_pixel_ = 2e-6;  // of drafts
   Monitor monitor_;

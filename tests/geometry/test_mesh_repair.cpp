@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is wrong with a mesh is mended or said: winding, doubles, triangles without area, holes.
+#include <malloc.h>
+
 #include <algorithm>
 #include <set>
 
@@ -218,6 +220,21 @@ TEST(MeshRepair, HolesBesideNonManifoldPlacesAreFilled) {
   EXPECT_EQ(mesh.report.holes_filled, 2u);
   EXPECT_EQ(mesh.report.open_edges, 2u);
   EXPECT_EQ(mesh.mesh.triangles.size(), 25u);
+}
+
+// Claim: a hole with several fillings as good as each other has the same one wherever memory lies. Source: the fuzzer's
+// "the same mesh". Tolerance: none. Fails if: CGAL looks among the triangles of a Delaunay tetrahedrization, whose order is
+// that of addresses.
+TEST(MeshRepair, TiesAreBrokenTheSameWay) {
+  Soup soup;
+  soup.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  soup.triangles = {{0, 3, 2}, {0, 2, 1}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5},
+                    {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 4, 7}};
+  const CheckedMesh one = load(soup, true);
+  ::mallopt(M_MMAP_THRESHOLD, 0);  // each block far from the others
+  const CheckedMesh other = load(soup, true);
+  ::mallopt(M_MMAP_THRESHOLD, 128 * 1024);  // the library's default
+  EXPECT_EQ(one.mesh.triangles, other.mesh.triangles);
 }
 
 // Claim: vertices that no triangle uses do not survive, and do not count for fit_size. Source: make_mesh.cpp.

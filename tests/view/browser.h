@@ -45,14 +45,15 @@ class Browser {
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
 
-  /// A tab that shows an address.
-  Tab open(const std::string& url, int width = 1280, int height = 720) {
+  /// A tab that shows an address. script: is run before the page's own
+  Tab open(const std::string& url, int width = 1280, int height = 720, const std::string& script = "") {
     Tab tab;
     tab.target = call({}, "Target.createTarget", {{"url", "about:blank"}}).at("targetId");
     tab.session =
         call({}, "Target.attachToTarget", {{"targetId", tab.target}, {"flatten", true}}).at("sessionId");
     for (const char* domain : {"Runtime", "Log", "Page"}) call(tab, std::string(domain) + ".enable", {});
     resize(tab, width, height);
+    if (!script.empty()) call(tab, "Page.addScriptToEvaluateOnNewDocument", {{"source", script}});
     call(tab, "Page.navigate", {{"url", url}});
     return tab;
   }

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The program as a user meets it: a URL, files that are those of `opaline render`, an end by Ctrl-C.
-#include "../cli/run_program.h"
-#include "view_client.h"
+#include <pty.h>
+
+#include "view_program.h"
 
 namespace opaline {
 namespace {
 
 using namespace test;
-
-/// One that was free a moment ago.
-std::uint16_t free_port() {
-  asio::io_context io;
-  return Tcp::acceptor(io, Tcp::endpoint(asio::ip::make_address("127.0.0.1"), 0)).local_endpoint().port();
-}
-
-ViewClient page_of(std::uint16_t port) {
-  const std::string host = "127.0.0.1:" + std::to_string(port);
-  return ViewClient({asio::ip::make_address("127.0.0.1"), port}, host, "/" + std::string(kToken) + "/socket",
-                    "http://" + host);
-}
 
 // Claim: the URL is printed, a refused request is a line on stderr, a file rendered from the page has the bytes of the
 // command that the page copies, and Ctrl-C ends all with exit code 0, a rendering that has not ended too.
@@ -56,37 +45,102 @@ TEST(ViewProgram, ServesUntilCtrlC) {
   EXPECT_EQ(folder.entries(), 3u);
 }
 
-// Claim: the URL is opened where there is a desktop, unless --no-open says not to, and nowhere else. Source: the help of
-// view. Fails if: no desktop is asked for, or the flag is not looked at.
-TEST(ViewProgram, OpensItsUrlOnADesktop) {
-  const ViewFolder folder;
-  const std::string opener = folder.file("xdg-open"), opened = folder.file("opened");
-  put_bytes(opener, "#!/bin/sh\necho $1 >> " + opened + "\n");
-  std::filesystem::permissions(opener, std::filesystem::perms::owner_all);
-  const std::string path = std::getenv("PATH");
-  const auto urls_opened = [&](const char* desktop, const std::vector<std::string>& more) {
-    ::setenv("PATH", (folder.path.string() + ":" + path).c_str(), 1);
-    ::setenv("DISPLAY", desktop, 1);
-    if (*desktop == '\0') ::unsetenv("DISPLAY");
-    std::vector<std::string> words{"view", folder.scene, "--token", kToken};
-    words.insert(words.end(), more.begin(), more.end());
-    Child view(words);
+/// `opaline view` on a terminal of its own.
+class ViewOnTerminal {
+ public:
+  explicit ViewOnTerminal(const std::vector<std::string>& arguments) {
+    std::vector<std::string> words{OPALINE_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    pid_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
+    if (pid_ < 0) throw std::runtime_error("no child process");
+    if (pid_ > 0) return;
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  ~ViewOnTerminal() { ::close(terminal_); }
+  ViewOnTerminal(const ViewOnTerminal&) = delete;
+  ViewOnTerminal& operator=(const ViewOnTerminal&) = delete;
+
+  /// Reads until it has printed the text; false where it ends before.
+  bool prints(const std::string& text) {
+    std::array<char, 256> part;
+    for (ssize_t count = 0; out_.find(text) == std::string::npos;
+         out_.append(part.data(), std::size_t(count)))
+      if (count = ::read(terminal_, part.data(), part.size()); count <= 0) return false;
+    return true;
+  }
+  /// Its exit code after Ctrl-C.
+  int interrupted() {
+    ::kill(pid_, SIGINT);
+    int status = 0;
+    ::waitpid(pid_, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  pid_t pid_ = -1;
+  int terminal_ = -1;
+  std::string out_;
+};
+
+/// A folder whose xdg-open notes what it is to open, found before the machine's while the object lives.
+struct FakeDesktop : ScratchFolder {
+  std::string opened = file("opened"), path = std::getenv("PATH");
+
+  FakeDesktop() {
+    const std::string opener = file("xdg-open");
+    put_bytes(opener,
+              "#!/bin/sh\necho $1 > " + file("part") + " && mv " + file("part") + " " + opened + "\n");
+    std::filesystem::permissions(opener, std::filesystem::perms::owner_all);
+    ::setenv("PATH", (this->ScratchFolder::path.string() + ":" + path).c_str(), 1);
+    for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) ::unsetenv(name);
+  }
+  ~FakeDesktop() {
     ::setenv("PATH", path.c_str(), 1);
-    ::unsetenv("DISPLAY");
-    EXPECT_TRUE(view.prints(std::string(kToken) + "/\n"));
-    if (*desktop != '\0' && more.empty())
-      for (int i = 0; i < 500 && !std::filesystem::exists(opened); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    view.send(SIGINT);
-    EXPECT_EQ(view.wait(20).exit_code, 0);
-    std::string url = std::filesystem::exists(opened) ? bytes_of(opened) : "";
+    for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) ::unsetenv(name);
+  }
+
+  /// What was opened within some time, and forgets it.
+  std::string url(int milliseconds) const {
+    for (int i = 0; i < milliseconds / 10 && !std::filesystem::exists(opened); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const std::string url = std::filesystem::exists(opened) ? bytes_of(opened) : "";
     std::filesystem::remove(opened);
     return url;
+  }
+};
+
+// Claim: the URL is opened where a person at a desktop, X11's or Wayland's, reads it on a terminal, unless --no-open says
+// not to, and nowhere else. Source: the help of view. Fails if: any of the conditions is not looked at.
+TEST(ViewProgram, OpensItsUrlOnADesktop) {
+  constexpr int kLong = 20000, kMoment = 300;  // ms
+  const ViewFolder folder;
+  const FakeDesktop desktop;
+  const auto url_from_terminal = [&](const char* display, const std::vector<std::string>& more, int time) {
+    if (*display != '\0') ::setenv(display, ":7", 1);
+    std::vector<std::string> words{"view", folder.scene, "--token", kToken};
+    words.insert(words.end(), more.begin(), more.end());
+    ViewOnTerminal view(words);
+    if (*display != '\0') ::unsetenv(display);
+    EXPECT_TRUE(view.prints(std::string(kToken) + "/"));
+    const std::string url = desktop.url(time);
+    EXPECT_EQ(view.interrupted(), 0);
+    return url;
   };
-  const std::string url = urls_opened(":7", {});
-  EXPECT_TRUE(url.starts_with("http://127.0.0.1:") && url.ends_with(std::string(kToken) + "/\n")) << url;
-  EXPECT_EQ(urls_opened(":7", {"--no-open"}), "");
-  EXPECT_EQ(urls_opened("", {}), "");
+  for (const char* display : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    const std::string url = url_from_terminal(display, {}, kLong);
+    EXPECT_TRUE(url.starts_with("http://127.0.0.1:") && url.ends_with(std::string(kToken) + "/\n")) << url;
+    EXPECT_EQ(url_from_terminal(display, {"--no-open"}, kMoment), "");
+  }
+  EXPECT_EQ(url_from_terminal("", {}, kMoment), "");
+  ::setenv("DISPLAY", ":7", 1);
+  const Child into_file({"view", folder.scene, "--token", kToken});
+  EXPECT_TRUE(into_file.prints(std::string(kToken) + "/\n"));
+  EXPECT_EQ(desktop.url(kMoment), "");
+  into_file.send(SIGINT);
 }
 
 // Claim: what cannot be is said in one line, with the exit codes of all commands.

@@ -122,6 +122,25 @@ TEST(ViewServer, ANewerChangeCancels) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
+// Claim: a page that turns to a layer and back, and shows the last of the frames alone, goes on to get pictures. Fails if:
+// what is shown is told by numbers that rise: that of a layer that was packed before is lower.
+TEST(ViewServer, ALayerAndBackLeaveTheLineOpen) {
+  const ViewFolder folder;
+  const RunningView view(folder.scene);
+  ViewClient page(view);
+  ASSERT_TRUE(page.read_final());
+  page.answers_frames = false;
+  for (const char* layer : {"N", ""}) {
+    const std::size_t before = page.frames;
+    page.send({{"do", "layer"}, {"name", layer}});
+    ASSERT_TRUE(page.read_until([&] { return page.frames > before; }));
+  }
+  page.send({{"do", "shown"}, {"frame", page.frame.number}});
+  page.answers_frames = true;
+  page.set({{"film.resolution", {20, 10}}});
+  EXPECT_TRUE(page.read_final(2));
+}
+
 // Claim: frames bring the layer that a page chose, with the picture's values; the plan, the costs and the error are
 // told beside them.
 TEST(ViewServer, LayersAndReports) {

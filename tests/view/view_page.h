@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A view, and a tab of the browser that shows it.
+// The page in a tab of the browser: what a person does there.
 #pragma once
 
 #include <cmath>
@@ -15,30 +15,10 @@ inline const std::string kIsFinal =
     "document.getElementById('step')?.dataset.step === 'final' && "
     "Number(document.getElementById('step').dataset.revision) === ";
 
-/// A view, and a tab of the browser that shows it.
-struct LongViewPage : ::testing::Test {
-  ViewFolder folder;
-  std::optional<RunningView> view{std::in_place, folder.scene};
+/// What a person does at a page, and sees there.
+struct PageHands {
   Browser browser;
-  Tab tab = browser.open(view->url());
-
-  void TearDown() override {
-    for (const std::string& problem : browser.problems) {
-      const bool is_of_lost_server = problem.find("ERR_CONNECTION_REFUSED") != std::string::npos;
-      EXPECT_TRUE(is_of_lost_server && loses_server) << problem;
-    }
-  }
-  bool loses_server = false;
-
-  /// The edits once the picture of all of them is there: known by another page, which speaks for the server.
-  std::vector<std::string> final_edits(std::uint32_t least_revision = 1) {
-    ViewClient page(*view);
-    EXPECT_TRUE(page.read_final(least_revision));
-    EXPECT_TRUE(browser.comes_true(tab, kIsFinal + std::to_string(page.revision())));
-    revision = page.revision();
-    return page.texts.at("scene").at("edits").get<std::vector<std::string>>();
-  }
-  std::uint32_t revision = 0;
+  Tab tab;
 
   /// Types a value into the field of a knob.
   void type(const std::string& path, const std::string& label, const std::string& value) {
@@ -85,6 +65,32 @@ struct LongViewPage : ::testing::Test {
     }
     EXPECT_LE(worst, .51);
   }
+};
+
+/// A view, and a tab of the browser that shows it.
+struct LongViewPage : ::testing::Test, PageHands {
+  ViewFolder folder;
+  std::optional<RunningView> view{std::in_place, folder.scene};
+
+  LongViewPage() { tab = browser.open(view->url()); }
+
+  void TearDown() override {
+    for (const std::string& problem : browser.problems) {
+      const bool is_of_lost_server = problem.find("ERR_CONNECTION_REFUSED") != std::string::npos;
+      EXPECT_TRUE(is_of_lost_server && loses_server) << problem;
+    }
+  }
+  bool loses_server = false;
+
+  /// The edits once the picture of all of them is there: known by another page, which speaks for the server.
+  std::vector<std::string> final_edits(std::uint32_t least_revision = 1) {
+    ViewClient page(*view);
+    EXPECT_TRUE(page.read_final(least_revision));
+    EXPECT_TRUE(browser.comes_true(tab, kIsFinal + std::to_string(page.revision())));
+    revision = page.revision();
+    return page.texts.at("scene").at("edits").get<std::vector<std::string>>();
+  }
+  std::uint32_t revision = 0;
 };
 
 }  // namespace opaline::test

@@ -28,16 +28,18 @@ inline std::size_t chunk_count(std::size_t n, std::size_t chunk) {
 }
 
 /// Calls body(begin, end, chunk index) over [0, n) cut into chunks of the given size, in parallel, each with
-/// denormals flushed. The cut depends on n and chunk alone; bodies write to places of their own.
+/// denormals flushed. The cut depends on n and chunk alone; bodies write to places of their own. A body that throws ends
+/// the loop, but none within other bodies that are running: whoever called those takes their results for whole.
 template <class Body>
 void parallel_chunks(std::size_t n, std::size_t chunk, const Body& body) {
+  tbb::task_group_context alone(tbb::task_group_context::isolated);
   tbb::parallel_for(
       std::size_t(0), chunk_count(n, chunk),
       [&](std::size_t c) {
         const FlushDenormals mode;
         body(c * chunk, std::min(n, (c + 1) * chunk), c);
       },
-      tbb::simple_partitioner());
+      tbb::simple_partitioner(), alone);
 }
 
 }  // namespace opaline

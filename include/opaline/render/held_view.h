@@ -3,20 +3,25 @@
 // colour and no medium.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "opaline/exitance/evaluate.h"
+#include "opaline/geometry/ray_scene.h"
 #include "opaline/irradiance/irradiance.h"
 
 namespace opaline {
 
 /// Kept from one picture to the next by Session::hold_view: 20 bytes a camera ray, and where the ray met a
-/// surface 4, 4 a light (8 where the light's error is estimated, too), and 40 where there is room for them.
+/// surface 4, 4 a light (8 where the light's error is estimated, too), and 40 where there is room for them; where a rough
+/// coat mirrors lights and surfaces some 100 more, up to kMostCoatBytes in all.
 struct HeldView {
+  struct Coat;
   struct CameraHit {
     std::uint32_t mesh, triangle;  ///< Hit::kMiss: none
     float u, v, far;
@@ -25,6 +30,7 @@ struct HeldView {
   struct Surface {
     std::vector<PointTransfers> lights;  ///< one a light, without weights where it is to be traced
     QueryPackets packets;
+    std::unique_ptr<Coat> coat;  ///< null: what it mirrors is to be found
   };
   /// One camera ray of each pixel of a tile.
   struct Batch {
@@ -33,17 +39,48 @@ struct HeldView {
     std::vector<SurfacePoint> points;  ///< of those that hit, in their order; empty: to be found
     std::vector<Surface> surfaces;     ///< by kind; empty: not known
   };
+  /// What a rough coat of one eta and roughness mirrors, but for the colours of lights and of what stands around.
+  struct Coat {
+    /// Adds emission of the light * unit * weight to what a camera ray sees.
+    struct OfLight {
+      std::uint32_t ray, light;
+      float unit, weight;
+    };
+    std::vector<OfLight> lights;
+    std::vector<TracedRay> mirrored;  ///< rays that met surfaces
+    std::vector<std::uint32_t> rays;  ///< of the camera, one a mirrored ray
+    std::vector<RgbF> shares;         ///< of what it sees
+    std::vector<std::uint64_t> keys;  ///< for its light samples
+    Batch seen;                       ///< where the mirrored rays met surfaces; its hits are theirs
+
+    std::size_t bytes() const {
+      return lights.size() * sizeof(OfLight) +
+             mirrored.size() *
+                 (sizeof(TracedRay) + sizeof(RgbF) + sizeof(std::uint32_t) + sizeof(std::uint64_t));
+    }
+  };
   std::vector<std::vector<Batch>> tiles;  ///< one batch a sample of the pixels
   bool has_room = false;                  ///< for the points
+  std::unique_ptr<std::atomic<std::size_t>> coat_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 
   /// Lets go of all that depends on which surfaces are of which kind.
   void forget_surfaces() {
     for (std::vector<Batch>& tile : tiles)
       for (Batch& batch : tile) batch.surfaces.clear();
+    *coat_bytes = 0;
+  }
+
+  /// Lets go of what coats mirror.
+  void forget_coats() {
+    for (std::vector<Batch>& tile : tiles)
+      for (Batch& batch : tile)
+        for (Surface& surface : batch.surfaces) surface.coat.reset();
+    *coat_bytes = 0;
   }
 
   /// Takes over other lights. before: which of those held each of them is; none: it is to be traced
   void set_lights(std::span<const std::optional<std::size_t>> before) {
+    forget_coats();
     for (std::vector<Batch>& tile : tiles)
       for (Batch& batch : tile)
         for (Surface& surface : batch.surfaces) {

@@ -45,6 +45,7 @@ struct RenderInput {
 
 /// A larger view is not held, bytes.
 inline constexpr std::size_t kMostHeldBytes = std::size_t(256) << 20;
+inline constexpr std::size_t kMostCoatBytes = std::size_t(256) << 20;  ///< besides, of HeldView::Coat
 
 struct RenderResult {
   Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2

@@ -96,7 +96,8 @@ class Session {
   void expect_pictures(std::size_t pictures);
 
   /// Whether to keep what the camera sees, and how the lights reach it, for later pictures. After an edit of
-  /// colours or media neither is then traced again, but what boundaries mirror is. Costs memory (HeldView). Off by default.
+  /// colours or media neither is then traced again, nor what rough coats mirror where nothing is textured or a metal; what
+  /// smooth boundaries mirror is. Costs memory (HeldView). Off by default.
   void hold_view(bool hold);
 
   /// Whether each picture has the bits of a new session's. Samples are then placed anew wherever a new session

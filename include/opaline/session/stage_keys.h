@@ -57,6 +57,8 @@ StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes
 /// random numbers that lights are sampled with there.
 /// in    lights: recentred
 StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights);
+/// Besides that, of what coats mirror.
+StageKey view_coats_key(const Scene& scene);
 
 /// Of how one light reaches them: where it is and how large, but not its colour.
 /// in    light: recentred

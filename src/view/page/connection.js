@@ -52,7 +52,9 @@ export class Connection {
     this.handlers.text(message);
   }
 
+  // After the values that wait, whatever it is.
   send(message) {
+    this.flush();
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 

@@ -226,22 +226,30 @@ export class Knobs {
     return this.presets.get(medium.preset)?.specular_ior ?? 1.3;
   }
 
-  numbers(row, names, change) {
-    return names.map((name) => make("input", {type: "number", step: "any", ariaLabel: `${row.key} ${name}`, title: name, onchange: change}));
+  // One field a number; set(values): with the one that was typed and the others as the scene has them, `now()`, or as
+  // they stand in their fields where it has none, once all are there.
+  numbers(row, names, now, set) {
+    const inputs = names.map((name, typed) => make("input", {type: "number", step: "any", ariaLabel: `${row.key} ${name}`, title: name,
+      onchange: () => {
+        const known = now() ?? [];
+        const values = inputs.map((input, i) => i === typed || known[i] === undefined ? input.value : known[i]);
+        if (values.every((value) => value !== "")) set(values.map(Number));
+      }}));
+    return inputs;
   }
 
   colour(knob, box, set) {
     const {row} = knob;
-    let now = [0, 0, 0];
-    const inputs = this.numbers(row, ["red", "green", "blue"], () => set(inputs.map((i) => Number(i.value))));
-    const top = () => Math.max(...now) || 1;
+    const colourNow = () => threeOf(knob.value(this.scene) ?? defaultOf(row) ?? 0);
+    const inputs = this.numbers(row, ["red", "green", "blue"], () => rounded(colourNow()), set);
+    const top = () => Math.max(...colourNow()) || 1;
     const slider = this.slider({...row, type: "number"}, top, (value, stroke, base) => {
-      slider.from ||= now;
+      slider.from ||= colourNow();
       set(rounded(slider.from.map((x) => base === 1e-3 ? value : x * value / Math.max(...slider.from))), stroke);
     });
     slider.input.addEventListener("change", () => { slider.from = null; });
-    knob.show = (value) => {
-      now = threeOf(value ?? defaultOf(row) ?? 0);
+    knob.show = () => {
+      const now = colourNow();
       now.forEach((x, i) => { inputs[i].value = rounded(x); });
       slider.show(top());
       if (row.type === "color") swatch.value = toHex(now.map((x) => x / Math.max(row.range[1] <= 1 ? 1 : top(), 1e-30)));
@@ -254,11 +262,10 @@ export class Knobs {
   }
 
   list(knob, box, set, names) {
-    const inputs = this.numbers(knob.row, names, () => {
-      if (inputs.every((i) => i.value !== "")) set(inputs.map((i) => Number(i.value)));
-    });
-    knob.show = (value) => {
-      const now = value ?? defaultOf(knob.row) ?? [];
+    const listNow = () => knob.value(this.scene) ?? defaultOf(knob.row);
+    const inputs = this.numbers(knob.row, names, listNow, set);
+    knob.show = () => {
+      const now = listNow() ?? [];
       inputs.forEach((input, i) => { input.value = now[i] ?? ""; });
     };
     box.append(make("span", {className: "three"}, ...inputs));

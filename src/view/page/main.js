@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: what the server tells goes to the picture, the knobs and the lines below; what a person does goes back.
+import {Ahead} from "./ahead.js";
 import {cameraOf, cameraValues, dolly, orbit, pan, turnedLight} from "./camera.js";
-import {Connection, kPause, newStroke, pausedStroke} from "./connection.js";
+import {Connection, newStroke, pausedStroke} from "./connection.js";
 import {FrameReader} from "./frames.js";
 import {Knobs} from "./knobs.js";
 import {Overlay} from "./overlay.js";
@@ -92,20 +93,32 @@ function inspect() {
 
 // ---- what a person does -------------------------------------------------------------------------------------
 
-// Its own camera goes before the server's until a moment after the last turn: what comes in may be older.
-let isTurning = false, turnEnd = 0;
-function turn(change, stroke) {
-  state.camera = change(state.camera);
-  isTurning = true;
-  clearTimeout(turnEnd);
-  turnEnd = setTimeout(() => {
-    isTurning = false;
-    state.camera = cameraOf(state.scene);
-    overlay.update();
-  }, kPause);
-  connection.set(cameraValues(state.camera), stroke);
+let serverScene = null;
+const ahead = new Ahead(() => {
+  takeValues();
+  knobs.update(state.scene, state.edits);
+  overlay.update();
+});
+
+function takeValues() {
+  state.scene = knobs.scene = ahead.of(serverScene);
+  state.camera = cameraOf(state.scene);
+}
+
+function set(values, stroke) {
+  connection.set(values, stroke);
+  ahead.add(values);
+  takeValues();
   overlay.update();
 }
+
+// Undo and what else makes the scene another: what this page has changed is no longer ahead of it.
+function step(message) {
+  connection.send(message);
+  ahead.clear();
+}
+
+const turn = (change, stroke) => set(cameraValues(change(state.camera)), stroke);
 
 // The room, and with it the sun. from: the lights before.
 function turnLights(from, angle, stroke) {
@@ -113,7 +126,7 @@ function turnLights(from, angle, stroke) {
   from.forEach((light, index) => Object.entries(turnedLight(light, angle) || {}).forEach(([key, value]) => {
     values[`${knobs.pathOf("lights", index)}.${key}`] = value;
   }));
-  if (Object.keys(values).length) connection.set(values, stroke);
+  if (Object.keys(values).length) set(values, stroke);
 }
 
 function dragCamera(event) {
@@ -194,15 +207,16 @@ function askBehind(change) {
 
 function takePoint(point) {
   const isNew = (state.scene.settings?.method || "hierarchical") !== point.method;
-  connection.set({...(isNew ? {"settings.method": point.method} : {}), ...point.values}, newStroke());
+  set({...(isNew ? {"settings.method": point.method} : {}), ...point.values}, newStroke());
 }
 
 // ---- what the server tells ------------------------------------------------------------------------------------
 
 function takeScene(message) {
   const isFirst = !state.scene;
-  Object.assign(state, {scene: message.scene, revision: message.revision, edits: message.edits, command: message.command});
-  if (!isTurning) state.camera = cameraOf(message.scene);
+  serverScene = message.scene;
+  Object.assign(state, {revision: message.revision, edits: message.edits, command: message.command});
+  takeValues();
   takeFilm();
   document.title = `${message.file} · opaline view`;
   one("file").textContent = message.file;
@@ -216,7 +230,7 @@ function takeScene(message) {
   one("reset").disabled = !message.edits.length;
   one("failed").hidden = true;
   takeFrames(message);
-  knobs.update(message.scene, message.edits);
+  knobs.update(state.scene, state.edits);
   fit();
 }
 
@@ -316,7 +330,6 @@ const connection = new Connection({
     if (behind.trade || behind.reference) askBehind({});
   },
 });
-const set = (values, stroke) => connection.set(values, stroke);
 const knobs = new Knobs(one("panel"), set, (text) => { one("help").textContent = text; one("told").textContent = ""; });
 const overlay = new Overlay(one("overlay"), state, set, (name, index) => knobs.pathOf(name, index));
 
@@ -327,7 +340,7 @@ function setExposure(stops) {
   one("stops").textContent = stops;
 }
 
-for (const word of ["undo", "redo", "reset"]) one(word).onclick = () => connection.send({do: word});
+for (const word of ["undo", "redo", "reset"]) one(word).onclick = () => step({do: word});
 one("copy").onclick = copyCommand;
 one("save").onclick = () => connection.send({do: "save", name: one("name").value + ".json"});
 one("render").onclick = () => connection.send({do: "render", name: one("name").value + ".exr"});
@@ -342,7 +355,7 @@ one("exposure").oninput = () => { setExposure(Number(one("exposure").value)); re
 one("transform").onchange = () => { display.transform = one("transform").value; redraw(); };
 one("channel").onchange = chooseChannel;
 one("wipe").oninput = redraw;
-one("playhead").oninput = () => connection.send({do: "frame", frame: state.frames[Number(one("playhead").value)]});
+one("playhead").oninput = () => step({do: "frame", frame: state.frames[Number(one("playhead").value)]});
 for (const id of ["x", "y"]) one(id).oninput = inspect;
 const canvas = one("picture");
 canvas.addEventListener("pointerdown", dragCamera);
@@ -358,6 +371,6 @@ canvas.addEventListener("pointermove", (event) => {
 addEventListener("keydown", (event) => {
   if (!event.ctrlKey || event.key.toLowerCase() !== "z" || event.target.matches("input[type=number], #name")) return;
   event.preventDefault();
-  connection.send({do: event.shiftKey ? "redo" : "undo"});
+  step({do: event.shiftKey ? "redo" : "undo"});
 });
 new ResizeObserver(fit).observe(one("stage"));

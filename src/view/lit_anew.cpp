@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "view/lit_anew.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "opaline/core/parallel.h"
+#include "opaline/lights/light.h"
+
+namespace opaline {
+namespace {
+
+constexpr double kSame = 1e-6;  // relative difference of factors, from values with few digits
+
+bool differ_in_emission_alone(Scene before, const Scene& now) {
+  if (before.lights.size() != now.lights.size()) return false;
+  const auto unit = [](const Light& light) { return with_emission(light, {1, 1, 1}); };
+  if (!std::ranges::equal(before.lights, now.lights, {}, unit, unit)) return false;
+  before.lights = now.lights;
+  before.film.exposure = now.film.exposure;
+  return before == now;
+}
+
+/// By which each channel of all lights differs; none: not by one factor.
+std::optional<Rgb> common_factor(const Scene& before, const Scene& now) {
+  Rgb factor{1, 1, 1};
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::optional<double> known;
+    for (std::size_t l = 0; l < now.lights.size(); ++l) {
+      const double was = emission(before.lights[l])[c], is = emission(now.lights[l])[c];
+      if (was == is && was == 0) continue;
+      if (!(was > 0)) return {};
+      const double own = is / was;
+      if (known && std::abs(own - *known) > kSame * *known) return {};
+      known = own;
+    }
+    factor[c] = known.value_or(1);
+  }
+  return factor;
+}
+
+/// For each channel of a picture the one of the light that it goes with; none: it does not.
+std::vector<std::optional<std::size_t>> lit_channels(const std::vector<std::string>& names) {
+  constexpr std::array<std::string_view, 5> kLit{"", "diffuse.", "specular.", "irradiance.", "error."};
+  std::vector<std::optional<std::size_t>> channels;
+  for (const std::string_view name : names) {
+    const std::size_t place = std::string_view("RGB").find(name.back());
+    const std::string_view layer = name.substr(0, name.size() - 1);
+    const bool is_lit = place != std::string_view::npos && std::ranges::find(kLit, layer) != kLit.end();
+    channels.push_back(is_lit ? std::optional(place) : std::nullopt);
+  }
+  return channels;
+}
+
+}  // namespace
+
+std::optional<Image> lit_anew(const Image& picture, const Scene& before, const Scene& now) {
+  if (!differ_in_emission_alone(before, now)) return {};
+  const std::optional<Rgb> factor = common_factor(before, now);
+  if (!factor) return {};
+  Image lit = picture;
+  const std::vector<std::optional<std::size_t>> channels = lit_channels(lit.channels);
+  const std::size_t count = channels.size();
+  std::vector<float> factors(count, 1.0f);
+  for (std::size_t c = 0; c < count; ++c)
+    if (channels[c]) factors[c] = float((*factor)[*channels[c]]);
+  parallel_chunks(lit.pixels.size() / count, 1 << 14, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t p = begin; p < end; ++p)
+      for (std::size_t c = 0; c < count; ++c) lit.pixels[p * count + c] *= factors[c];
+  });
+  return lit;
+}
+
+}  // namespace opaline

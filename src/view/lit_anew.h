@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A picture in lights that are all brighter or of another colour by the same factor: it is known without a ray.
+#pragma once
+
+#include <optional>
+
+#include "opaline/image/image.h"
+#include "opaline/scene/scene.h"
+
+namespace opaline {
+
+/// The final picture of a scene made of that of another: light adds up, and channel by channel it goes with what lamps
+/// emit. None where the scenes differ in more than that, or lamps by different factors.
+/// in    picture: of `before`, with the layers of a method without noise that is estimated (not `direct`)
+/// out   within the rounding of halves; error layers, which are estimates, within some percent where channels have different
+///       factors (test_lit_anew)
+std::optional<Image> lit_anew(const Image& picture, const Scene& before, const Scene& now);
+
+}  // namespace opaline

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What this page has changed goes before the scene that the server tells of until a moment after the last change: what
+// comes in may be older, and the next change starts from here.
+import {kPause} from "./connection.js";
+
+// A copy of a scene, or of a part of it, with the value at a path as `--set` takes it.
+function withValue(owner, [key, ...rest], value) {
+  const copy = Array.isArray(owner) ? [...owner] : {...owner};
+  const named = Array.isArray(owner) ? owner.findIndex((element) => element.name === key) : -1;
+  const at = named < 0 ? key : named;
+  copy[at] = rest.length ? withValue(copy[at], rest, value) : value;
+  return copy;
+}
+
+export class Ahead {
+  // over(): called once the server's scene alone counts again
+  constructor(over) {
+    Object.assign(this, {over, values: {}, end: 0});
+  }
+
+  add(values) {
+    for (const [path, value] of Object.entries(values)) {
+      for (const old of Object.keys(this.values)) if (`${old}.`.startsWith(`${path}.`)) delete this.values[old];
+      this.values[path] = value;
+    }
+    clearTimeout(this.end);
+    this.end = setTimeout(() => {
+      this.clear();
+      this.over();
+    }, kPause);
+  }
+
+  clear() {
+    clearTimeout(this.end);
+    this.values = {};
+  }
+
+  of(scene) {
+    return Object.entries(this.values).reduce((all, [path, value]) => withValue(all, path.split("."), value), scene);
+  }
+}

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A picture in other light without a ray: how near it is to the one that is rendered, and that the view shows it first.
+#include "opaline/lights/light.h"
+#include "view/lit_anew.h"
+#include "view_client.h"
+
+namespace opaline {
+namespace {
+
+using namespace test;
+
+Image picture_of(const Scene& scene) {
+  Session session;
+  session.edit(scene);
+  return session.render().image;
+}
+
+/// All lights as they emit, times a factor.
+Scene in_light(Scene scene, const Rgb& factor) {
+  for (Light& light : scene.lights) light = with_emission(light, emission(light) * factor);
+  return scene;
+}
+
+/// Of all values of a layer (empty: all layers), their difference over the larger of the value and a thousandth of its
+/// channel's largest: what a share of them does not exceed.
+double difference(const Image& a, const Image& b, const std::string& layer, double share) {
+  const std::size_t count = b.channels.size();
+  std::vector<double> differences;
+  for (std::size_t c = 0; c < count; ++c) {
+    if (!b.channels[c].starts_with(layer)) continue;
+    double largest = 0;
+    for (std::size_t i = c; i < b.pixels.size(); i += count) largest = std::max(largest, double(b.pixels[i]));
+    for (std::size_t i = c; i < b.pixels.size() && largest > 0; i += count)
+      differences.push_back(std::abs(double(a.pixels[i]) - double(b.pixels[i])) /
+                            std::max(std::abs(double(b.pixels[i])), 1e-3 * largest));
+  }
+  std::ranges::sort(differences);
+  return differences.at(std::size_t(share * double(differences.size() - 1)));
+}
+
+// Claim: all layers are those of a picture that is rendered in the other light, to the rounding of floats where all
+// channels have one factor; else 99 % of the diffuse light to the tolerance that the tree is asked for. Source: lit_anew.h.
+// Tolerance: 1e-4, of sums of thousands of floats and a solver's steps; settings.tolerance. Fails if: a layer that light
+// is in stays, or one that it is not in is scaled.
+TEST(LitAnew, IsWhatIsRendered) {
+  const ViewFolder folder;
+  for (const char* method : {"hierarchical", "lambert", "volume_diffusion"}) {
+    SCOPED_TRACE(method);
+    const std::vector<std::string> edits{"settings.method=" + std::string(method), "settings.samples=800"};
+    const Scene scene = load_scene(folder.scene, edits);
+    const Image before = picture_of(scene);
+    const Scene brighter = in_light(scene, {1.37, 1.37, 1.37}), tinted = in_light(scene, {.3, 1, 2.5});
+    const Image in_brighter = picture_of(brighter), in_tinted = picture_of(tinted);
+    const std::optional<Image> lit = lit_anew(before, scene, brighter),
+                               coloured = lit_anew(before, scene, tinted);
+    ASSERT_TRUE(lit && coloured);
+    EXPECT_EQ(lit->channels, in_brighter.channels);
+    EXPECT_LE(difference(*lit, in_brighter, "", 1), 1e-4);
+    EXPECT_LE(difference(*coloured, in_tinted, "diffuse", .99), scene.settings.tolerance);
+    EXPECT_GT(difference(before, in_brighter, "diffuse", .5), .2);
+  }
+}
+
+// Claim: it is not known where lights differ by different factors or in more than what they emit, or anything else does.
+TEST(LitAnew, IsOfLightAlone) {
+  const ViewFolder folder;
+  const Scene scene = load_scene(folder.scene);
+  const Image picture = picture_of(scene);
+  for (const char* edit :
+       {"lights.key.intensity=1e4", "lights.key.position=[1, 90, 0]", "media.stone.eta=1.4",
+        "settings.seed=3", "camera.position=[0, 30, 110]", "film.samples_per_pixel=2"})
+    EXPECT_FALSE(lit_anew(picture, scene, load_scene(folder.scene, std::vector<std::string>{edit}))) << edit;
+  const Scene dark = in_light(scene, {});
+  EXPECT_FALSE(lit_anew(picture, dark, scene));
+  EXPECT_TRUE(lit_anew(picture, scene, dark));
+}
+
+// Claim: where the final picture takes its time, the view shows this one first, in all its pixels. Fails if: it is not
+// asked for, or a coarse one comes before.
+TEST(LitAnew, IsShownFirst) {
+  const ViewFolder folder;
+  const RunningView view(folder.scene);
+  ViewClient page(view);
+  page.set({{"lights.1.radiance", 0},
+            {"lights.2.irradiance", 0},
+            {"film.resolution", {256, 192}},
+            {"film.samples_per_pixel", 16}});
+  ASSERT_TRUE(page.read_final(2));
+  page.set({{"lights.key.intensity", {2e4, 2e4, 2e4}}});
+  ASSERT_TRUE(page.read_until([&] { return page.frame.revision == 3; }));
+  EXPECT_EQ(page.frame.step, PictureStep::sharper);
+  EXPECT_EQ(page.frame.width, 256u);
+  const std::vector<std::uint16_t> shown = page.frame.colours;
+  ASSERT_TRUE(page.read_final(3));
+  double worst = 0;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    half was, is;
+    was.setBits(shown[i]);
+    is.setBits(page.frame.colours[i]);
+    worst = std::max(worst, std::abs(double(was) - double(is)) / std::max(1e-3, double(is)));
+  }
+  EXPECT_LE(worst, .005 + 1e-3);  // of settings.tolerance, and of two halves
+}
+
+}  // namespace
+}  // namespace opaline
