@@ -86,8 +86,10 @@ std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
   std::vector<PixelSample> seen(rays.size());
   const RayBatch batch{rays, keys, seen, cones.spread, cones.widths, mirrors};
   const Pass& mirrored = pass.in_mirrors != nullptr ? *pass.in_mirrors : pass;
-  for (const SurfaceHits& hits :
-       shade_diffuse(batch, std::max(1, light_samples_ / kFewerInMirrors), mirrored, held)) {
+  const std::vector<SurfaceHits> all_hits =
+      shade_diffuse(batch, std::max(1, light_samples_ / kFewerInMirrors), mirrored, held);
+  for (std::size_t f = 0; f < all_hits.size(); ++f) {
+    const SurfaceHits& hits = all_hits[f];
     SurfaceHits followed, last;
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
       const Appearance& plain = appearances_[hits.hits[i].mesh];
@@ -95,7 +97,8 @@ std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
       const float metalness = (hits.textures.empty() ? plain : appearance_of(hits, i)).metalness;
       add_hit(hits, i, mirrors < (metalness > 0 ? kMostMirrors : kMostCoats) ? followed : last);
     }
-    if (!followed.rays.empty()) add_specular(followed, batch, mirrored, nullptr);
+    if (!followed.rays.empty())
+      add_specular(followed, batch, mirrored, held != nullptr ? &held->surfaces[f] : nullptr);
     add_evenly_mirrored(last, batch);
   }
   return seen;

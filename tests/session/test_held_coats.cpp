@@ -74,6 +74,8 @@ std::vector<Edit> edits_of_a_room() {
       {"a coat's anisotropy", [](Scene& s) { s.media[1].grain.anisotropy = .8; }, true},
       {"its rotation", [](Scene& s) { s.media[1].grain.rotation = 60; }, true},
       {"floor's anisotropy", [](Scene& s) { s.shapes[2].gloss->grain.anisotropy = .7; }, true},
+      {"no anisotropy, with which nothing is held",
+       [](Scene& s) { s.media[1].grain = s.shapes[2].gloss->grain = {}; }, true},
       {"index", [](Scene& s) { s.media[0].eta = 1.4; }, true},
       {"floor's index", [](Scene& s) { s.shapes[2].gloss->eta = 1.3; }, true},
       {"point moved", [](Scene& s) { std::get<PointLight>(s.lights[0].source).position.x = 9; }, true},
