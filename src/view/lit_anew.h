@@ -12,8 +12,8 @@ namespace opaline {
 /// The final picture of a scene made of that of another: light adds up, and channel by channel it goes with what lamps
 /// emit. None where the scenes differ in more than that, or lamps by different factors.
 /// in    picture: of `before`, with the layers of a method without noise that is estimated (not `direct`)
-/// out   within the rounding of halves; error layers, which are estimates, within some percent where channels have different
-///       factors (test_lit_anew)
+/// out   within 1e-4 where all channels have one factor; else 99 % of the values within settings.tolerance, and the error
+///       layer, which is an estimate, within a tenth
 std::optional<Image> lit_anew(const Image& picture, const Scene& before, const Scene& now);
 
 }  // namespace opaline

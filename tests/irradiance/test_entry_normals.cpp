@@ -12,7 +12,8 @@ using namespace test;
 
 /// W that enter from a distant light, on average over a mesh's samples.
 double entering(const LitWorld& lit, const std::vector<SurfaceSample>& samples, bool geometric_normals) {
-  const std::vector<Light> lights{recentred(light_of(DirectionalLight{{0, -1, 0}, Rgb(1)}), lit.world.origin)};
+  const std::vector<Light> lights{
+      recentred(light_of(DirectionalLight{{0, -1, 0}, Rgb(1)}), lit.world.origin)};
   IrradianceInput input{lit.rays, samples, lights};
   input.geometric_normals = geometric_normals;
   const std::vector<LightTransfer> transfers = compute_irradiance(input);

@@ -38,6 +38,15 @@ struct HeldView {
     std::vector<CameraHit> hits;       ///< empty: all missed
     std::vector<SurfacePoint> points;  ///< of those that hit, in their order; empty: to be found
     std::vector<Surface> surfaces;     ///< by kind; empty: not known
+
+    /// But for what coats in it mirror.
+    std::size_t bytes() const {
+      std::size_t sum = hits.size() * sizeof(CameraHit) + points.size() * sizeof(SurfacePoint);
+      for (const Surface& surface : surfaces)
+        for (const PointTransfers& light : surface.lights)
+          sum += (light.weights.size() + light.deviations.size()) * sizeof(float);
+      return sum;
+    }
   };
   /// What a rough coat of one eta and roughness mirrors, but for the colours of lights and of what stands around.
   struct Coat {
@@ -54,7 +63,7 @@ struct HeldView {
     Batch seen;                       ///< where the mirrored rays met surfaces; its hits are theirs
 
     std::size_t bytes() const {
-      return lights.size() * sizeof(OfLight) +
+      return seen.bytes() + lights.size() * sizeof(OfLight) +
              mirrored.size() *
                  (sizeof(TracedRay) + sizeof(RgbF) + sizeof(std::uint32_t) + sizeof(std::uint64_t));
     }
