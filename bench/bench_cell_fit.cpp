@@ -61,7 +61,7 @@ void measure(const Session& session, std::span<const RgbF> exact, std::size_t ce
     errors.push_back(mean * noise);
     means.push_back(mean * (1 + noise * gauss(engine)));
   }
-  const CellFit fit(coarse.samples, world, means, errors);
+  const CellFit fit(coarse.samples, means, errors);
   double off = 0, foretold = 0, bias = 0, count = 0;
   for (std::size_t i = 0; i < exact.size(); i += 5, ++count) {
     const SurfaceSample& s = body.surface.samples[i];

@@ -48,27 +48,26 @@ float normal_number(std::uint64_t i) {
   return float(std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v));
 }
 
-Patches make_patches(const Session& session) {
-  const Body& body = session.bodies()[0];
-  const SurfaceSamples seeds =
-      sample_surface({.world = session.world(), .meshes = body.plan.meshes, .count = kPatches, .seed = 99});
+Patches make_patches(const Session& session, const std::vector<SurfaceSample>& samples) {
+  const SurfaceSamples seeds = sample_surface(
+      {.world = session.world(), .meshes = session.bodies()[0].plan.meshes, .count = kPatches, .seed = 99});
   const NearestSample nearest(seeds.samples, &session.world());
   Patches patches;
   patches.area.resize(seeds.samples.size());
-  for (const SurfaceSample& s : body.surface.samples) {
+  for (const SurfaceSample& s : samples) {
     patches.of_sample.push_back(nearest.at(s.position, s.normal));
     patches.area[patches.of_sample.back()] += double(s.area);
   }
   return patches;
 }
 
-void print_errors(const std::string& name, const Body& body, const Patches& patches, const Truth& truth,
-                  const std::vector<RgbF>& exitance, double seconds) {
+void print_errors(const std::string& name, const std::vector<SurfaceSample>& samples, const Patches& patches,
+                  const Truth& truth, const std::vector<RgbF>& exitance, double seconds) {
   std::vector<Rgb> difference(patches.area.size()), variance(patches.area.size());
   Rgb mean{}, bias{}, squares{};
   double area = 0;
   for (std::size_t i = 0; i < exitance.size(); ++i) {
-    const double a = double(body.surface.samples[i].area);
+    const double a = double(samples[i].area);
     const std::uint32_t p = patches.of_sample[i];
     difference[p] += (Rgb(exitance[i]) - Rgb(truth.exitance[i])) * a;
     const Rgb error = Rgb(truth.error[i]) * a;
@@ -121,39 +120,34 @@ int main(int argc, char** argv) {
     fmt::print("{} walks, error {:.1f} %\n", body.volume->walks, 100 * body.volume->relative_error);
     write_truth(argv[2], truth);
   }
+  scene.settings.method = Method::hierarchical;
+  session.edit(scene);
+  session.prepare();
+  const std::vector<SurfaceSample> samples = session.bodies()[0].surface.samples;  // the walks'
+  const Patches patches = make_patches(session, samples);
   fmt::print("{:<28}", "rms, bias, p99 in %");
   for (const char* channel : {"red", "green", "blue"}) fmt::print("{:>14}{:>7}", channel, "");
   fmt::print("{:>9}\n", "seconds");
-  const auto measure = [&](const std::string& name, const auto& exitance_of) {
+  const auto measure = [&](const std::string& name) {
     std::vector<RgbF> exitance;
     const double seconds = user_seconds([&] {
       session.edit(scene);
       session.prepare();
-      exitance = exitance_of(session.bodies()[0]);
+      exitance = exitance_at(session, samples);
     });
-    const Body& body = session.bodies()[0];
-    print_errors(name, body, make_patches(session), truth, exitance, seconds);
+    print_errors(name, samples, patches, truth, exitance, seconds);
   };
   const auto print_noise = [&] {
     std::vector<RgbF> noisy = truth.exitance;
     for (std::size_t i = 0; i < noisy.size(); ++i) noisy[i] += truth.error[i] * normal_number(i);
-    print_errors("noise of the walks", session.bodies()[0], make_patches(session), truth, noisy, 0);
+    print_errors("noise of the walks", samples, patches, truth, noisy, 0);
   };
-  scene.settings.method = Method::hierarchical;
   for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind) {
     if (ProfileKind(kind) == ProfileKind::directional_dipole) continue;  // by `direct` alone
     for (Medium& medium : scene.media) medium.profile = ProfileKind(kind);
-    measure(std::string(kProfileNames[kind]), [&](const Body& body) {
-      std::vector<Vec3d> points;
-      std::vector<Vec3f> normals;
-      for (const SurfaceSample& s : body.surface.samples) {
-        points.push_back(out_of_world(session.world(), Vec3d(s.position)));
-        normals.push_back(s.normal);
-      }
-      return radiant_exitance(body, session.world(), points, normals, scene.settings);
-    });
+    measure(std::string(kProfileNames[kind]));
   }
   scene.settings.method = Method::volume_diffusion;
-  measure("volume_diffusion", [](const Body& body) { return body.volume->exitance; });
+  measure("volume_diffusion");
   print_noise();
 }

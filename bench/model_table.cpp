@@ -13,7 +13,6 @@
 
 #include "opaline/core/error.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
 #include "opaline/volume/nearest_sample.h"
 #include "user_seconds.h"
 #include "volume_truth.h"
@@ -23,6 +22,7 @@ namespace {
 
 constexpr std::size_t kCells = 2000;
 constexpr double kUntilError = .035;  // of a cell
+constexpr std::size_t kPointsOfCell = 40;
 
 struct NamedText {
   std::string_view name, text;
@@ -123,17 +123,17 @@ ModelError channel_error(const WalkedCells& cells, const std::vector<Rgb>& means
   return {std::sqrt(std::max(0.0, squares / area)) / mean, bias / area / mean, *p99 / mean};
 }
 
-/// R, G, B.
+/// R, G, B, from the exitance at points all over the surface.
 std::array<ModelError, 3> errors_of(const WalkedCells& cells, const Session& session,
+                                    std::span<const SurfaceSample> points,
                                     const std::vector<RgbF>& exitance) {
   const NearestSample nearest(cells.samples, &session.world());
   std::vector<Rgb> means(cells.samples.size());
   std::vector<double> areas(cells.samples.size());
-  const std::vector<SurfaceSample>& samples = session.bodies()[0].surface.samples;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const std::uint32_t cell = nearest.at(samples[i].position, samples[i].normal);
-    means[cell] += Rgb(exitance[i]) * double(samples[i].area);
-    areas[cell] += double(samples[i].area);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t cell = nearest.at(points[i].position, points[i].normal);
+    means[cell] += Rgb(exitance[i]) * double(points[i].area);
+    areas[cell] += double(points[i].area);
   }
   std::vector<bool> is_known(areas.size());
   for (std::size_t i = 0; i < areas.size(); ++i) {
@@ -165,19 +165,12 @@ Scene with_model(Scene scene, const Model& model, const ChosenProfile& chosen) {
   return scene;
 }
 
-std::array<ModelError, 3> measured_errors(const Scene& scene, const Model& model, const WalkedCells& cells) {
-  Session session;
-  session.edit(scene);
-  session.prepare();
-  const Body& body = session.bodies()[0];
-  if (has_cells(model.method)) return errors_of(cells, session, body.volume->exitance);
-  std::vector<Vec3d> points;
-  std::vector<Vec3f> normals;
-  for (const SurfaceSample& s : body.surface.samples) {
-    points.push_back(out_of_world(session.world(), Vec3d(s.position)));
-    normals.push_back(s.normal);
-  }
-  return errors_of(cells, session, radiant_exitance(body, session.world(), points, normals, scene.settings));
+std::array<ModelError, 3> measured_errors(const Session& session, const WalkedCells& cells) {
+  const SurfaceSamples points = sample_surface({.world = session.world(),
+                                                .meshes = session.bodies()[0].plan.meshes,
+                                                .count = kPointsOfCell * kCells,
+                                                .seed = 99});
+  return errors_of(cells, session, points.samples, exitance_at(session, points.samples));
 }
 
 /// User CPU from the scene to its picture, s: the smaller of two.
@@ -218,6 +211,22 @@ Scene scene_of(const Pair& pair, const std::vector<std::string>& overrides) {
 
 }  // namespace
 
+std::vector<RgbF> exitance_at(const Session& session, std::span<const SurfaceSample> places) {
+  const Body& body = session.bodies()[0];
+  std::vector<RgbF> exitance;
+  if (body.volume_fit != nullptr && has_cells(session.scene().settings.method)) {
+    for (const SurfaceSample& s : places) exitance.push_back(body.volume_fit->at(s.position, s.normal).value);
+    return exitance;
+  }
+  std::vector<Vec3d> points;
+  std::vector<Vec3f> normals;
+  for (const SurfaceSample& s : places) {
+    points.push_back(out_of_world(session.world(), Vec3d(s.position)));
+    normals.push_back(s.normal);
+  }
+  return radiant_exitance(body, session.world(), points, normals, session.scene().settings);
+}
+
 void print_model_table(const std::string& folder) {
   const std::vector<Model> models = all_models();
   std::filesystem::create_directories(folder);
@@ -237,7 +246,10 @@ void print_model_table(const std::string& folder) {
     const double lambert = picture_seconds(with_model(scene, {"", Method::lambert}, chosen));
     for (std::size_t m = 0; m < models.size(); ++m) {
       const Scene modelled = with_model(scene, models[m], chosen);
-      const ModelError error = worst_of(measured_errors(modelled, models[m], cells));
+      Session session;
+      session.edit(modelled);
+      session.prepare();
+      const ModelError error = worst_of(measured_errors(session, cells));
       const bool is_chosen = models[m].method == Method::hierarchical && models[m].profile == chosen.kind;
       const char* mark = is_chosen ? "**" : "";
       fmt::print(" {}{:.1f} / {:+.1f} / {:.0f}{} |", mark, 100 * error.rms, 100 * error.bias, 100 * error.p99,
@@ -269,10 +281,13 @@ void print_model_channels(const std::string& folder, const std::string& name,
     const WalkedCells cells = walked_cells(scene_of(pair, {}), pair.stem + ".truth");
     const Scene scene = scene_of(pair, overrides);
     const Scene modelled = with_model(scene, *model, chosen_profile(scene));
-    std::array<ModelError, 3> errors;
-    const double seconds = user_seconds([&] { errors = measured_errors(modelled, *model, cells); });
+    Session session;
+    const double seconds = user_seconds([&] {
+      session.edit(modelled);
+      session.prepare();
+    });
     fmt::print("{:<30}", title);
-    for (const ModelError& error : errors)
+    for (const ModelError& error : measured_errors(session, cells))
       fmt::print(" {:6.2f} /{:+6.2f} /{:5.1f}  ", 100 * error.rms, 100 * error.bias, 100 * error.p99);
     fmt::print("{:6.2f}\n", seconds);
     std::fflush(stdout);

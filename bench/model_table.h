@@ -2,10 +2,16 @@
 // The models' errors against random walks, by shape and medium.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
+#include "opaline/session/session.h"
+
 namespace opaline {
+
+/// Radiant exitance of a session's only body, prepared, at places of its surface, as its method has it there.
+std::vector<RgbF> exitance_at(const Session& session, std::span<const SurfaceSample> places);
 
 /// Prints the table of models in Markdown. Scenes and truths are made in the folder where they are missing, and kept: a
 /// run that was stopped goes on after the last pair that was complete.

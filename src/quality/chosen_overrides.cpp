@@ -9,10 +9,10 @@ namespace opaline {
 std::vector<std::string> chosen_overrides(const Session& session, std::size_t entry_samples) {
   const Settings& settings = session.scene().settings;
   if (settings.method == Method::direct) return {fmt::format("settings.entry_samples={}", entry_samples)};
+  if (settings.method == Method::volume_diffusion)
+    return {fmt::format("settings.cell_size={}", settings.cell_size)};
   std::vector<std::string> overrides{fmt::format("settings.tolerance={}", settings.tolerance),
                                      fmt::format("settings.evaluator={}", name_of(settings.evaluator))};
-  if (settings.method == Method::volume_diffusion)
-    overrides = {fmt::format("settings.cell_size={}", settings.cell_size)};
   const std::vector<GroupPlan>& groups = session.plan().groups;
   if (groups.size() == 1)
     overrides.push_back(fmt::format("settings.samples={}", groups[0].samples));

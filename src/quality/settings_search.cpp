@@ -57,8 +57,7 @@ Image SettingsSearch::picture_of(double samples) {
   return picture();
 }
 
-Image SettingsSearch::first_picture(double samples) {
-  place(samples);
+Image SettingsSearch::first_picture() {
   for (;; probe_pixels *= 2) {
     Image image = picture();
     if (translucent_points(image) >= enough_points || probe_pixels >= kMostProbePixels) return image;

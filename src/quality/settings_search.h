@@ -36,8 +36,8 @@ struct SettingsSearch {
   Image picture();
   Image picture_of(double samples);
 
-  /// The same with as many pixels from now on as it takes to see enough.
-  Image first_picture(double samples);
+  /// A probe of what is prepared, with as many pixels from now on as it takes to see enough.
+  Image first_picture();
 
   /// Samples that the session's plan has, of all groups.
   std::size_t planned_samples() const;

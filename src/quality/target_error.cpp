@@ -91,7 +91,10 @@ TargetError reach_error(Session& session, Scene scene, double target, Monitor* m
   const double fewest = std::min(kFewestTargetSamples, search.most_samples),
                start = first_guess(search, fewest, target);
   Image first;
-  if (fewest > 0) first = search.first_picture(start);
+  if (fewest > 0) {
+    search.place(start);
+    first = search.first_picture();
+  }
   TargetError result;
   result.sees_translucent = fewest > 0 && translucent_points(first) > 0;
   if (!result.sees_translucent) {

@@ -47,7 +47,9 @@ class VolumeSearch {
       : search_{session, std::move(scene), monitor} {
     search_.probe_pixels = kProbePixels;
     search_.enough_points = kEnoughPoints;
+    const std::optional<std::size_t> samples = search_.scene.settings.samples;
     search_.begin(search_.scene.settings.tolerance);
+    search_.scene.settings.samples = samples;
   }
 
   const Plan& plan() const { return search_.session.plan(); }
@@ -56,16 +58,14 @@ class VolumeSearch {
   double estimated() const { return estimated_; }
   Scene take() { return std::move(search_.scene); }
 
-  /// Cells of this size, and a sample for each at the surface. Whether the plan allows for them.
+  /// Cells of this size. Whether the plan allows for them.
   bool try_cells(double mean_free_paths) {
     Settings& settings = search_.scene.settings;
     settings.cell_size = mean_free_paths;
     search_.session.edit(search_.scene);
     const double planned = smallest_cell(plan());
-    const double samples =
-        std::clamp(search_.area / (planned * planned), std::min(kFewestTargetSamples, search_.most_samples),
-                   search_.most_samples);
-    picture_ = search_.first_picture(samples);
+    search_.prepare();
+    picture_ = search_.first_picture();
     const bool is_finer = planned < .95 * cell_;
     cell_ = std::min(cell_, planned);
     estimated_ = search_.estimated;

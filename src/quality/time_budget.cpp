@@ -94,7 +94,8 @@ class BudgetSearch {
 
 void BudgetSearch::try_first(const FinishPicture& finish) {
   const double samples = std::min(kFewest, search_.most_samples / 4);
-  Image picture = search_.first_picture(samples);
+  search_.place(samples);
+  Image picture = search_.first_picture();
   Tried& first = tried_.emplace_back(tried(search_.session, samples, std::move(picture)));
   shading_.emplace(search_.scene, first.picture);
   const Stopwatch looking;

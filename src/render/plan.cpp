@@ -31,9 +31,6 @@ namespace {
 // preview.
 constexpr double kFewestSamples = 10000;
 constexpr double kSuspiciouslyFew = 100;
-// Of the cells of volume_diffusion, between samples at most: what enters and leaves must be known as finely. Measured on
-// bunnies (src/volume/README.md).
-constexpr double kSpacingInCells = .75;
 
 // As far apart as samples may be. Light that enters at a point leaves within a few mean free paths around it;
 // what is nearer than the spacing comes from the irradiance at the shading point itself (SplitKernel), so
@@ -50,28 +47,38 @@ double widest_spacing(const DiffuseProfile& profile) {
   return widest;
 }
 
+void warn_of_few_samples(const GroupPlan& group, double wanted, std::vector<std::string>& warnings) {
+  if (wanted < kSuspiciouslyFew)
+    warnings.push_back(fmt::format(
+        "{}: the mean free path of {:.4g} mm asks for only {:.1f} samples on {:.4g} mm^2; light crosses the "
+        "whole object and diffusion is a poor model of it; is mm_per_unit right?",
+        group.name, group.smallest_mean_free_path, wanted, group.area));
+}
+
+/// As the settings have it, if they do.
+std::optional<double> set_samples(const Settings& settings, double area) {
+  if (settings.samples) return double(*settings.samples);
+  if (settings.sample_spacing) return area / (*settings.sample_spacing * *settings.sample_spacing);
+  return {};
+}
+
 void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
   const Settings& settings = scene.settings;
   const double mean_free_path = group.smallest_mean_free_path,
                spacing = widest_spacing(make_diffuse_profile(scene.media[group.medium]));
   // Without any mean free path light leaves where it enters, and no number of samples is asked for.
   const double wanted = std::isfinite(spacing) ? group.area / (spacing * spacing) : kFewestSamples;
-  double count = wanted;
-  group.reason = fmt::format("{:.2f} mean free paths of {:.4g} mm", spacing / mean_free_path, mean_free_path);
-  const double of_cells = group.cell > 0 ? group.area / std::pow(kSpacingInCells * group.cell, 2) : 0;
+  double count = set_samples(settings, group.area).value_or(std::max(wanted, kFewestSamples));
   if (settings.samples) {
-    count = double(*settings.samples);
     group.reason = "settings.samples";
   } else if (settings.sample_spacing) {
-    count = group.area / (*settings.sample_spacing * *settings.sample_spacing);
     group.reason = fmt::format("settings.sample_spacing of {:.4g} mm", *settings.sample_spacing);
-  } else if (of_cells > std::max(wanted, kFewestSamples)) {
-    count = of_cells;
-    group.reason = fmt::format("{:.2f} cells of {:.4g} mm", kSpacingInCells, group.cell);
   } else if (wanted < kFewestSamples) {
-    count = kFewestSamples;
     group.reason =
         fmt::format("the least; the mean free path of {:.4g} mm asks for {:.0f}", mean_free_path, wanted);
+  } else {
+    group.reason =
+        fmt::format("{:.2f} mean free paths of {:.4g} mm", spacing / mean_free_path, mean_free_path);
   }
   if (count > double(settings.max_samples)) {
     warnings.push_back(
@@ -82,13 +89,25 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
     count = double(settings.max_samples);
     group.reason = "settings.max_samples";
   }
-  if (wanted < kSuspiciouslyFew)
-    warnings.push_back(fmt::format(
-        "{}: the mean free path of {:.4g} mm asks for only {:.1f} samples on {:.4g} mm^2; light crosses the "
-        "whole object and diffusion is a poor model of it; is mm_per_unit right?",
-        group.name, mean_free_path, wanted, group.area));
+  warn_of_few_samples(group, wanted, warnings);
   group.samples = std::max<std::size_t>(1, std::size_t(std::ceil(count)));
   group.spacing = std::sqrt(group.area / double(group.samples));
+}
+
+// One at least where a cell cuts the surface, in the nearest number of parts of a cell's edge to what is asked for.
+void choose_cut(const Settings& settings, GroupPlan& group, std::vector<std::string>& warnings) {
+  const double whole = kCutSamplesPerFace * group.area / (group.cell * group.cell);
+  const double wanted = set_samples(settings, group.area).value_or(kFewestSamples);
+  const double parts = std::min(std::round(std::sqrt(wanted / whole)),
+                                std::floor(std::sqrt(double(settings.max_samples) / whole)));
+  group.cell_parts = int(std::max(1., parts));
+  group.samples =
+      std::max<std::size_t>(1, std::size_t(std::ceil(whole * group.cell_parts * group.cell_parts)));
+  group.spacing = std::sqrt(group.area / double(group.samples));
+  group.reason =
+      fmt::format("where cubes of {:.4g} mm cut the surface", group.cell / double(group.cell_parts));
+  const double length = group.smallest_mean_free_path;
+  warn_of_few_samples(group, length > 0 ? group.area / (length * length) : kFewestSamples, warnings);
 }
 
 /// The least length over which diffused light fades, of the channels that scatter, mm.
@@ -105,6 +124,7 @@ double shortest_fading(Medium medium) {
 // hold, and several across a thin body.
 void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
   constexpr double kMostCells = 1.2e6, kAcrossThin = 4, kSmallest = .25;
+  constexpr double kFewestFaces = 60;           // of cells, on the surface
   constexpr double kTooWide = 3, kTooThin = 3;  // mean free paths
   constexpr double kPerFading = .45;            // of settings.cell_size: measured, src/volume/README.md
   const double length = group.smallest_mean_free_path;
@@ -112,7 +132,10 @@ void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>
       scene.settings.cell_size * std::min(length, kPerFading * shortest_fading(scene.media[group.medium]));
   if (group.thickness > 0)
     group.cell = std::min(group.cell, std::max(group.thickness / kAcrossThin, kSmallest * group.cell));
-  group.cell = std::max(group.cell, std::sqrt(expected_cells(group.area, 1) / kMostCells));
+  group.cell = std::min(group.cell, std::sqrt(group.area / kFewestFaces));
+  const double most_faces =
+      std::min(kMostCells / expected_cells(1, 1), double(scene.settings.max_samples) / kCutSamplesPerFace);
+  group.cell = std::max(group.cell, std::sqrt(group.area / most_faces));
   if (group.cell > std::max(kTooWide, scene.settings.cell_size) * length)
     warnings.push_back(
         fmt::format("{}: light leaves within {:.3g} mm and cells smaller than {:.3g} mm would be too many; "
@@ -174,8 +197,8 @@ double needle_share(const World& world, const GroupPlan& group) {
   return area > 0 ? needles / area : 0;
 }
 
-// Measured: what a cell of volume_diffusion has beside while all are fitted.
-constexpr std::size_t kBytesOfFit = 165;
+// Measured: where a cell cuts the surface, its exitance and error, while all are fitted.
+constexpr std::size_t kBytesOfCutSample = 400;
 
 // Measured: what finds the cells, their fits and exitance; of each channel counts of a pass's chunks, and of each light
 // sums.
@@ -325,12 +348,14 @@ Plan make_plan(const Scene& scene, const World& world) {
   plan.bytes += texture_bytes(scene);
   std::size_t samples = 0;
   for (GroupPlan& group : plan.groups) {
-    if (scene.settings.method == Method::volume_diffusion) choose_cells(scene, group, plan.warnings);
-    choose_samples(scene, group, plan.warnings);
     if (scene.settings.method == Method::volume_diffusion) {
-      plan.bytes += group.samples * (191 + 4 * lights.size() + 2 * 24 + kBytesOfFit);
+      choose_cells(scene, group, plan.warnings);
+      choose_cut(scene.settings, group, plan.warnings);
+      plan.bytes += group.samples * (kBytesOfCutSample + 4 * lights.size());
       plan.bytes += std::size_t(kBytesOfCell * expected_cells(group.area, group.cell));
+      continue;
     }
+    choose_samples(scene, group, plan.warnings);
     if (scene.settings.method == Method::volume)
       plan.bytes += group.samples *
                     (191 + kBytesOfWalkedCell + 6 * kBytesOfWalkedChannel + lights.size() * kBytesOfWalkSums);

@@ -123,9 +123,13 @@ VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span
   return walks;
 }
 
-VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body) {
-  return VolumeDiffusion({input.world, body.plan.meshes, body.surface.samples, isotropic_media(body.profile),
-                          body.plan.cell / input.world.unit});
+CutSurface cut_surface(const PrecomputeInput& input, const Body& body) {
+  return cut_surface(input.world, body.plan.meshes, body.plan.cell / input.world.unit, body.plan.cell_parts);
+}
+
+VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals) {
+  return VolumeDiffusion({input.world, body.plan.meshes, body.surface.samples, normals,
+                          isotropic_media(body.profile), body.plan.cell / input.world.unit});
 }
 
 std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights) {

@@ -39,6 +39,7 @@ struct BodyKeys {
   std::optional<SurfaceCache> spare_cache;  // kept, though this picture does not use it
 
   std::shared_ptr<const VolumeDiffusion> diffusion;  // its cells
+  std::vector<Vec3f> cut_normals;                    // of the samples, where cells cut the surface
 
   bool is_carried() const { return samples_key != origin.key; }
 };

@@ -117,7 +117,8 @@ World Session::State::loaded_world(const Scene& scene, const std::vector<StageKe
 }
 
 void Session::State::anchor(Scene scene, Monitor* monitor) {
-  const bool places_samples = has_samples(scene.settings.method);
+  const Method method = scene.settings.method;
+  const bool places_samples = has_samples(method) && method != Method::volume_diffusion;
   if (places_samples) scene.settings.method = Method::hierarchical;
   edit(std::move(scene));
   reference_ = plan_.groups;
@@ -135,6 +136,7 @@ void Session::State::keep_spacing() {
   const Settings& settings = scene_.settings;
   if (settings.samples || matches_new_) return;
   for (GroupPlan& group : plan_.groups) {
+    if (group.cell > 0) continue;
     const auto body = std::ranges::find_if(bodies_, [&](const Body& b) { return b.plan.name == group.name; });
     if (body == bodies_.end()) continue;
     const SampleOrigin& origin = keys_[std::size_t(body - bodies_.begin())].origin;

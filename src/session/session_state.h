@@ -34,6 +34,7 @@ struct Session::State {
   void arrange_bodies();
   void update_samples(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group);
   void keep_samples(Body& body, BodyKeys& known);
+  void cut_anew(Body& body, BodyKeys& known, const PrecomputeInput& input);
   void place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
                   const StageKey& key);
   void carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input, const StageKey& key);

@@ -10,8 +10,9 @@ namespace opaline {
 namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
-constexpr std::uint64_t kSamplesVersion = 2, kCarriedVersion = 3, kTransferVersion = 3, kOctreeVersion = 1,
-                        kExitanceVersion = 7, kWalksVersion = 3, kWalkedProfileVersion = 1;
+constexpr std::uint64_t kSamplesVersion = 2, kCutSurfaceVersion = 1, kCarriedVersion = 3,
+                        kTransferVersion = 3, kOctreeVersion = 1, kExitanceVersion = 7, kWalksVersion = 3,
+                        kWalkedProfileVersion = 1;
 
 const char* widest_instructions() {
   if (__builtin_cpu_supports("avx512f")) return "avx512";
@@ -44,6 +45,13 @@ StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> mes
   KeyBuilder key("samples", kSamplesVersion);
   key.add(std::uint64_t(plan.samples)).add(sampling_seed(input.scene.settings, group));
   for (const std::uint32_t m : plan.meshes) key.add(meshes[m].all);
+  return key.key();
+}
+
+StageKey cut_surface_key(const GroupPlan& group, std::span<const MeshKeys> meshes, double unit) {
+  KeyBuilder key("cut surface", kCutSurfaceVersion);
+  key.add(group.cell / unit).add(std::uint64_t(group.cell_parts));
+  for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
   return key.key();
 }
 

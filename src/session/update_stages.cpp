@@ -49,6 +49,7 @@ bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Setti
 
 void Session::State::update_samples(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                     std::size_t group) {
+  if (body.plan.cell > 0) return cut_anew(body, known, input);
   const StageKey anew = samples_key(input, mesh_keys_, group);
   if (anew == known.samples_key) return keep_samples(body, known);
   if (anew == known.origin.key) {  // back where they were placed
@@ -75,6 +76,22 @@ void Session::State::keep_samples(Body& body, BodyKeys& known) {
     known.origin.meshes = known.meshes;
   }
   note_decision(body, fmt::format("{} samples kept", body.surface.samples.size()));
+}
+
+// Next to nothing beside what follows, so that they are not kept in a cache.
+void Session::State::cut_anew(Body& body, BodyKeys& known, const PrecomputeInput& input) {
+  const StageKey key = cut_surface_key(body.plan, mesh_keys_, world_->unit);
+  if (key == known.samples_key) return keep_samples(body, known);
+  if (anchored_ && !known.is_carried()) known.origin.surface = std::move(body.surface);
+  if (!anchored_) known.origin = {};
+  known.samples_key = {};
+  CutSurface cut = cut_surface(input, body);
+  body.surface = std::move(cut.surface);
+  known.cut_normals = std::move(cut.normals);
+  known.meshes = body.plan.meshes;
+  known.samples_key = key;
+  work_.samples_placed += body.surface.samples.size();
+  note_decision(body, fmt::format("{} samples placed anew", body.surface.samples.size()));
 }
 
 void Session::State::place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
@@ -220,8 +237,8 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
   if (key.key() != known.volume_key || !body.volume) {
     known.volume_key = {};
     body.volume = exitance_of(walks, body.walks);
-    body.volume_fit = std::make_shared<const CellFit>(body.surface.samples, *world_, body.volume->exitance,
-                                                      body.volume->error);
+    body.volume_fit =
+        std::make_shared<const CellFit>(body.surface.samples, body.volume->exitance, body.volume->error);
     known.volume_key = key.key();
   }
   note_decision(body, passes > before ? "walked at random" : "random walks kept");
@@ -230,11 +247,11 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
 void Session::State::update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                       const std::vector<Light>& lights) {
   update_tint(body, known);
-  KeyBuilder cells("diffusion cells", 4);
+  KeyBuilder cells("diffusion cells", 5);
   cells.add(known.samples_key).add(body.profile.eta).add(body.plan.cell);
   cells.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
   for (const std::uint32_t mesh : body.plan.meshes) cells.add(mesh_keys_[mesh].shape);
-  KeyBuilder builder("diffusion", 4);
+  KeyBuilder builder("diffusion", 5);
   const StageKey cells_key = cells.key();
   const StageKey key = builder.add(cells_key)
                            .add(octree_key(known.samples_key, known.light_keys, lights, known.tint_key))
@@ -249,15 +266,16 @@ void Session::State::update_diffusion(Body& body, BodyKeys& known, const Precomp
     note_decision(body, "diffusion from the cache");
   } else {
     const bool at_hand = known.diffusion != nullptr && known.diffusion_key == cells_key;
-    if (!at_hand) known.diffusion = std::make_shared<const VolumeDiffusion>(diffusion_of(input, body));
+    if (!at_hand)
+      known.diffusion = std::make_shared<const VolumeDiffusion>(diffusion_of(input, body, known.cut_normals));
     known.diffusion_key = cells_key;
     body.volume = known.diffusion->exitance(lights, body.transfers, body.entering, input.monitor);
     if (cache_ != nullptr) cache_->keep_volume(key, *body.volume);
     note_decision(body, at_hand ? "diffusion solved in the cells at hand" : "diffusion solved");
     if (!edits_) known.diffusion = nullptr;
   }
-  body.volume_fit = std::make_shared<const CellFit>(body.surface.samples, *world_, body.volume->exitance,
-                                                    body.volume->error);
+  body.volume_fit =
+      std::make_shared<const CellFit>(body.surface.samples, body.volume->exitance, body.volume->error);
   known.volume_key = key;
 }
 

@@ -2,11 +2,12 @@
 #include "volume/boundary_elements.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
-#include "opaline/core/parallel.h"
 #include "opaline/geometry/surface_point.h"
-#include "opaline/volume/nearest_sample.h"
 
 namespace opaline {
 namespace {
@@ -29,13 +30,11 @@ class ElementTable {
         bricks_(std::size_t(bricks_of_[0]) * std::size_t(bricks_of_[1]) * std::size_t(bricks_of_[2]), kNone) {
   }
 
-  /// Adds to the element of the cell around a place whose normal agrees, which is made if there is none.
+  /// Adds to the element of the cell around a place whose sheet it is on, which is made if there is none.
   std::uint32_t add(const Vec3d& position, const Vec3d& normal, double area) {
-    constexpr double kLeastAgreement = .9;  // of normals in one element
     std::uint32_t& first = head(lattice_.into(position));
     std::uint32_t found = first;
-    while (found != kNone && dot(sums_[found].normal, normal) < kLeastAgreement * length(sums_[found].normal))
-      found = sums_[found].next;
+    while (found != kNone && !is_of(sums_[found], position, normal)) found = sums_[found].next;
     if (found == kNone) {
       found = std::uint32_t(sums_.size());
       sums_.push_back({{}, {}, 0, first});
@@ -47,7 +46,7 @@ class ElementTable {
     return found;
   }
 
-  std::vector<BoundaryElement> take() const {
+  std::vector<BoundaryElement> elements() const {
     std::vector<BoundaryElement> elements;
     elements.reserve(sums_.size());
     for (const ElementSum& sum : sums_)
@@ -56,6 +55,14 @@ class ElementTable {
   }
 
  private:
+  bool is_of(const ElementSum& sum, const Vec3d& position, const Vec3d& normal) const {
+    constexpr double kLeastAgreement = .9;  // of normals in one element
+    constexpr double kFarthest = .3;        // cells, above or below it
+    const double along = length(sum.normal);
+    if (dot(sum.normal, normal) < kLeastAgreement * along) return false;
+    return std::abs(dot(position - sum.position / sum.area, sum.normal)) <= kFarthest * lattice_.cell * along;
+  }
+
   std::uint32_t& head(const Vec3d& place) {
     const auto at = [](double c, int count) { return std::clamp(int(std::floor(c)), 0, count - 1); };
     const int x = at(place.x, lattice_.nx), y = at(place.y, lattice_.ny), z = at(place.z, lattice_.nz);
@@ -107,16 +114,23 @@ void cut(Polygon polygon, std::size_t axis, const Found& found) {
   found(polygon);
 }
 
+/// What a triangle has of an element.
+struct Part {
+  Vec3f position;  // mean
+  std::uint32_t mesh, triangle, element;
+};
+
 class Cutter {
  public:
-  Cutter(const World& world, std::span<const SurfaceSample> samples, const Lattice& lattice)
-      : world_(world), samples_(samples), lattice_(lattice), table_(lattice) {}
+  Cutter(const World& world, const Lattice& lattice) : world_(world), lattice_(lattice), table_(lattice) {}
 
-  void add(const Mesh& mesh) {
+  void add(std::uint32_t m) {
+    const Mesh& mesh = world_.meshes[m];
     std::vector<Vec3d> corners;
     corners.reserve(mesh.positions.size());
     for (const Vec3d& p : mesh.positions) corners.push_back(lattice_.into(p));
-    for (const auto& [i, j, k] : mesh.triangles) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& [i, j, k] = mesh.triangles[t];
       const Vec3d &a = mesh.positions[i], &b = mesh.positions[j], &c = mesh.positions[k];
       const Vec3d across = cross(b - a, c - a);
       const double doubled = length(across);
@@ -125,35 +139,32 @@ class Cutter {
       Polygon triangle;
       for (const std::uint32_t corner : {i, j, k}) triangle.add(corners[corner]);
       cut(triangle, 0, [&](const Polygon& x) {
-        cut(x, 1, [&](const Polygon& y) { cut(y, 2, [&](const Polygon& part) { add(part, normal); }); });
+        cut(x, 1,
+            [&](const Polygon& y) { cut(y, 2, [&](const Polygon& part) { add(part, normal, m, t); }); });
       });
     }
   }
 
-  Boundary take() {
-    const NearestSample nearest(samples_, &world_);
-    parallel_chunks(normals_.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t i = begin; i < end; ++i)
-        boundary_.pieces[i].sample = nearest.at(boundary_.pieces[i].position, normals_[i]);
-    });
-    std::vector<bool> has_piece(samples_.size());
-    for (const BoundaryPiece& piece : boundary_.pieces) has_piece[piece.sample] = true;
-    for (std::uint32_t i = 0; i < samples_.size(); ++i) {
-      if (has_piece[i]) continue;  // else no part of a triangle is nearest to it
-      const SurfaceSample& s = samples_[i];
-      const float area = kAlmostNothing * s.area;
-      const Vec3f normal = surface_point(world_.meshes[s.mesh], s.triangle, s.u, s.v).geometric;
-      boundary_.pieces.push_back(
-          {s.position, area, i, table_.add(Vec3d(s.position), Vec3d(normal), double(area))});
+  CutSurface take() const {
+    const std::vector<BoundaryElement> elements = table_.elements();
+    const std::vector<const Part*> middles = middles_of(elements);
+    std::vector<std::uint32_t> order(elements.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::sort(order, {},
+                      [&](std::uint32_t i) { return std::tuple(middles[i]->mesh, middles[i]->triangle, i); });
+    CutSurface result;
+    for (const std::uint32_t i : order) {
+      result.surface.samples.push_back(sample_of(elements[i], *middles[i]));
+      result.normals.push_back(elements[i].normal);
+      result.surface.area += double(elements[i].area);
     }
-    boundary_.elements = table_.take();
-    return std::move(boundary_);
+    return result;
   }
 
  private:
-  static constexpr float kAlmostNothing = 1e-3f;  // of a sample's area, which other samples' pieces cover
+  static constexpr double kLeastArea = 1e-9;  // of a cell's face
 
-  void add(const Polygon& part, const Vec3d& normal) {
+  void add(const Polygon& part, const Vec3d& normal, std::uint32_t mesh, std::uint32_t triangle) {
     Vec3d sum{};
     double area = 0;
     for (std::size_t i = 2; i < part.count; ++i) {
@@ -166,37 +177,62 @@ class Cutter {
     if (!(area > kLeastArea)) return;
     const Vec3d position = sum / (6 * area) * lattice_.cell + lattice_.low;
     area *= lattice_.cell * lattice_.cell;
-    const std::uint32_t element = table_.add(position, normal, area);
-    boundary_.pieces.push_back({Vec3f(position), float(area), 0, element});
-    normals_.push_back(Vec3f(normal));
+    parts_.push_back({Vec3f(position), mesh, triangle, table_.add(position, normal, area)});
   }
 
-  static constexpr double kLeastArea = 1e-9;  // of a cell's face
+  // Of each element the part next to its middle.
+  std::vector<const Part*> middles_of(std::span<const BoundaryElement> elements) const {
+    std::vector<const Part*> middles(elements.size());
+    std::vector<float> distances(elements.size(), INFINITY);
+    for (const Part& part : parts_) {
+      const Vec3f apart = part.position - elements[part.element].position;
+      const float distance = dot(apart, apart);
+      if (!(distance < distances[part.element])) continue;
+      distances[part.element] = distance;
+      middles[part.element] = &part;
+    }
+    return middles;
+  }
+
+  // On the part's triangle: under the element's middle, or in that of the part.
+  SurfaceSample sample_of(const BoundaryElement& element, const Part& part) const {
+    const Mesh& mesh = world_.meshes[part.mesh];
+    const auto& [i, j, k] = mesh.triangles[part.triangle];
+    const Vec3d corner = mesh.positions[i], b = mesh.positions[j] - corner, c = mesh.positions[k] - corner;
+    const Vec3d normal = cross(b, c);
+    float u = 0, v = 0;
+    for (const Vec3f& place : {element.position, part.position}) {
+      const Vec3d apart = Vec3d(place) - corner;
+      u = float(dot(cross(apart, c), normal) / dot(normal, normal));
+      v = float(dot(cross(b, apart), normal) / dot(normal, normal));
+      if (u >= 0 && v >= 0 && u + v <= 1) break;
+    }
+    u = std::clamp(u, 0.f, 1.f);
+    v = std::clamp(v, 0.f, 1 - u);
+    const SurfacePoint point = surface_point(mesh, part.triangle, u, v);
+    return {part.mesh, part.triangle, u, v, point.position, point.normal, element.area, element.position};
+  }
 
   const World& world_;
-  std::span<const SurfaceSample> samples_;
   const Lattice& lattice_;
   ElementTable table_;
-  Boundary boundary_;
-  std::vector<Vec3f> normals_;  // of the pieces
+  std::vector<Part> parts_;
 };
 
 }  // namespace
 
-Boundary cut_boundary(const World& world, std::span<const std::uint32_t> meshes,
-                      std::span<const SurfaceSample> samples, const Lattice& lattice) {
-  Cutter cutter(world, samples, lattice);
-  for (const std::uint32_t m : meshes) cutter.add(world.meshes[m]);
+CutSurface cut_by_lattice(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice) {
+  Cutter cutter(world, lattice);
+  for (const std::uint32_t m : meshes) cutter.add(m);
   return cutter.take();
 }
 
-Boundary coarsened(const Boundary& boundary, const Lattice& doubled) {
-  ElementTable table(doubled);
-  std::vector<std::uint32_t> places;
-  for (const BoundaryElement& element : boundary.elements)
-    places.push_back(table.add(Vec3d(element.position), Vec3d(element.normal), double(element.area)));
-  Boundary result{table.take(), boundary.pieces};
-  for (BoundaryPiece& piece : result.pieces) piece.element = places[piece.element];
+Boundary merged(std::span<const BoundaryElement> samples, const Lattice& lattice) {
+  ElementTable table(lattice);
+  Boundary result;
+  for (const BoundaryElement& sample : samples)
+    result.of_sample.push_back(table.add(Vec3d(sample.position), Vec3d(sample.normal), double(sample.area)));
+  result.elements = table.elements();
   return result;
 }
 

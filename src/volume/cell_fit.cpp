@@ -30,9 +30,11 @@ double alike(const Vec3f& a, const Vec3f& b) {
 }
 
 /// Falls from 1 to 0 at the radius.
-double bump(const Vec3f& apart, double radius) {
-  const double t2 = double(dot(apart, apart)) / (radius * radius);
-  return t2 < 1 ? (1 - t2) * (1 - t2) : 0;
+double bump(const Vec3f& apart, float radius) {
+  const float distance2 = dot(apart, apart), radius2 = radius * radius;
+  if (!(distance2 < radius2)) return 0;
+  const double left = 1 - double(distance2) / double(radius2);
+  return left * left;
 }
 
 /// Symmetric and positive.
@@ -77,6 +79,12 @@ struct Neighbour {
   Terms terms;  ///< means over its cell
 };
 
+std::vector<SurfaceSample> at_centroids(std::span<const SurfaceSample> samples) {
+  std::vector<SurfaceSample> moved(samples.begin(), samples.end());
+  for (SurfaceSample& s : moved) s.position = s.centroid;
+  return moved;
+}
+
 double product(const Terms& a, const Terms& b) {
   double sum = 0;
   for (std::size_t t = 0; t < kTerms; ++t) sum += a[t] * b[t];
@@ -85,31 +93,33 @@ double product(const Terms& a, const Terms& b) {
 
 }  // namespace
 
-/// Calls use(cell, weight) for the cells within so many spacings whose normals are alike.
+/// Calls use(member, weight) for the cells within so many spacings whose normals are alike.
 template <class Use>
 void CellFit::for_alike(const Vec3f& position, const Vec3f& normal, float spacings, const Use& use) const {
   const float radius = spacings * spacing_;
-  cells_.for_near(position, radius, [&](const NearestSample::Member& member) {
-    const double near = bump(centers_[member.sample] - position, double(radius));
+  middles_.for_near(position, radius, [&](const NearestSample::Member& member) {
+    const double near = bump(member.position - position, radius);
     if (!(near > 0)) return;
-    const double weight = near * alike(normals_[member.sample], normal);
-    if (weight > 0) use(member.sample, weight);
+    const double weight = near * alike(member.normal, normal);
+    if (weight > 0) use(member, weight);
   });
 }
 
-CellFit::CellFit(std::span<const SurfaceSample> samples, const World& world, std::span<const RgbF> means,
+CellFit::CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> means,
                  std::span<const RgbF> errors)
-    : cells_(samples, &world, kCube), fits_(samples.size()) {
+    : middles_(at_centroids(samples), nullptr, kCube), fits_(samples.size()) {
   double area = 0;
-  for (const SurfaceSample& s : samples) area += double(s.area);
-  if (area > 0) spacing_ = float(std::sqrt(area / double(samples.size())));
-  for (const SurfaceSample& s : samples) {
-    centers_.push_back(s.centroid);
-    normals_.push_back(s.normal);
+  std::vector<Cell> cells;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    area += double(samples[i].area);
+    cells.push_back({means[i], errors[i], samples[i].area});
   }
+  if (area > 0) spacing_ = float(std::sqrt(area / double(samples.size())));
   std::vector<Surprise> surprises(samples.size());
-  parallel_chunks(samples.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i) fits_[i] = fitted(i, samples, means, errors, surprises[i]);
+  const std::span<const NearestSample::Member> members = middles_.members();  // near each other: in the cache
+  parallel_chunks(members.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (const NearestSample::Member& member : members.subspan(begin, end - begin))
+      fits_[member.sample] = fitted(member, cells, surprises[member.sample]);
   });
   // That of one cell is mostly chance. Means of means reach as far as a wide one, past fewer cells.
   std::vector<Rgb> smoothed(surprises.size());
@@ -134,46 +144,48 @@ CellFit::CellFit(std::span<const SurfaceSample> samples, const World& world, std
 
 // Least squares, neighbours weighted by area. The surprise is the square of what the fit's mean over the cell misses of
 // the cell's mean, less what the means' errors make of it on average.
-CellFit::Fit CellFit::fitted(std::size_t i, std::span<const SurfaceSample> samples,
-                             std::span<const RgbF> means, std::span<const RgbF> errors,
+CellFit::Fit CellFit::fitted(const NearestSample::Member& own, std::span<const Cell> cells,
                              Surprise& surprise) const {
-  const SurfaceSample& own = samples[i];
+  const Cell& own_cell = cells[own.sample];
   const double scale = 1 / double(spacing_);
-  Fit fit{own.centroid, own.normal, {}, errors[i], {}};
+  Fit fit{own.position, own.normal, {}, own_cell.error, {}};
   Vec3f along_u, along_v;
   tangent_frame(own.normal, along_u, along_v);
-  const auto moment_of = [&](const SurfaceSample& s) { return kCellMoment * double(s.area) * scale * scale; };
+  const auto moment_of = [&](const Cell& cell) { return kCellMoment * double(cell.area) * scale * scale; };
   std::vector<Neighbour> near;
   near.reserve(32);
   surprise.near.reserve(24);
   NormalEquations equations;
   double weights = 0;
-  for_alike(own.centroid, own.normal, kFitRadius, [&](std::uint32_t other, double weight) {
-    const SurfaceSample& s = samples[other];
-    weight *= double(s.area);
-    const Vec3f apart = s.centroid - own.centroid;
-    if (const double close = bump(apart, double(kSurpriseRadius * spacing_)); close > 0)
-      surprise.near.push_back({other, float(close * alike(s.normal, own.normal))});
-    const double u = double(dot(apart, along_u)) * scale, v = double(dot(apart, along_v)) * scale;
-    near.push_back({other, weight, {1, u, v, u * u + moment_of(s), u * v, v * v + moment_of(s)}});
+  for_alike(own.position, own.normal, kFitRadius, [&](const NearestSample::Member& member, double weight) {
+    const Cell& cell = cells[member.sample];
+    weight *= double(cell.area);
+    const Vec3f apart = member.position - own.position;
+    if (const double close = bump(apart, kSurpriseRadius * spacing_); close > 0)
+      surprise.near.push_back({member.sample, float(close * alike(member.normal, own.normal))});
+    const double u = double(dot(apart, along_u)) * scale, v = double(dot(apart, along_v)) * scale,
+                 moment = moment_of(cell);
+    near.push_back({member.sample, weight, {1, u, v, u * u + moment, u * v, v * v + moment}});
     weights += weight;
   });
   if (!(weights > 0)) {
-    fit.terms[0] = means[i];
+    fit.terms[0] = own_cell.mean;
     return fit;
   }
   for (Neighbour& n : near) equations.add(n.terms, n.weight /= weights);
   equations.factor();
+  const double own_moment = moment_of(own_cell);
   const Terms at_center = equations.solve({1}),
-              over_cell = equations.solve({1, 0, 0, moment_of(own), 0, moment_of(own)});
+              over_cell = equations.solve({1, 0, 0, own_moment, 0, own_moment});
   std::array<Terms, 3> sums{};
   Rgb noise2{}, missed{}, missed_noise2{};
   for (const Neighbour& n : near) {
-    const Rgb mean(means[n.sample]), error2 = Rgb(errors[n.sample]) * Rgb(errors[n.sample]);
+    const Cell& cell = cells[n.sample];
+    const Rgb mean(cell.mean), error2 = Rgb(cell.error) * Rgb(cell.error);
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t t = 0; t < kTerms; ++t) sums[c][t] += n.weight * mean[c] * n.terms[t];
     const double share = n.weight * product(at_center, n.terms),
-                 miss = (n.sample == i ? 1 : 0) - n.weight * product(over_cell, n.terms);
+                 miss = (n.sample == own.sample ? 1 : 0) - n.weight * product(over_cell, n.terms);
     noise2 += error2 * (share * share);
     missed += mean * miss;
     missed_noise2 += error2 * (miss * miss);
@@ -199,8 +211,8 @@ RgbF CellFit::value_of(const Fit& fit, const Vec3f& position) const {
 CellFit::Value CellFit::at(const Vec3f& position, const Vec3f& normal) const {
   Value value;
   float weights = 0;
-  for_alike(position, normal, kBlendRadius, [&](std::uint32_t sample, double w) {
-    const Fit& fit = fits_[sample];
+  for_alike(position, normal, kBlendRadius, [&](const NearestSample::Member& member, double w) {
+    const Fit& fit = fits_[member.sample];
     const auto weight = float(w);
     value.value += value_of(fit, position) * weight;
     value.noise += fit.noise * weight;
@@ -210,7 +222,7 @@ CellFit::Value CellFit::at(const Vec3f& position, const Vec3f& normal) const {
   if (weights > 0) {
     value = {value.value / weights, value.noise * (kBlendedNoise / weights), value.shape / weights};
   } else if (!fits_.empty()) {
-    const Fit& fit = fits_[cells_.at(position, normal)];
+    const Fit& fit = fits_[middles_.at(position, normal)];
     value = {fit.terms[0], fit.noise, fit.shape};
   }
   value.value = component_max(value.value, RgbF{});

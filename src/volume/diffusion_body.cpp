@@ -41,13 +41,12 @@ Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes
 }
 
 DiffusionBody::DiffusionBody(const World& world, std::span<const std::uint32_t> meshes,
-                             std::span<const float> sample_areas,
-                             const std::array<CalibratedMedium, 3>& media, const Lattice& lattice,
-                             Boundary boundary)
-    : sample_areas_(sample_areas),
+                             std::span<const BoundaryElement> samples,
+                             const std::array<CalibratedMedium, 3>& media, const Lattice& lattice)
+    : samples_(samples),
       media_(media),
       lattice_(lattice),
-      boundary_(std::move(boundary)),
+      boundary_(merged(samples, lattice)),
       grid_(make_grid(world, meshes, lattice_, boundary_)) {
   attach();
 }
@@ -82,8 +81,8 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
   return solution;
 }
 
-// The fluence beside a piece, under it as deep as the cell's centre, through the resistances from there to the outside.
-// All pieces together let out what all cells lose.
+// The fluence beside a sample, under it as deep as the cell's centre, through the resistances from there to the outside.
+// All samples together let out what all cells lose.
 std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
                                       std::span<const RgbF> leaving) const {
   struct Plane {
@@ -106,21 +105,17 @@ std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
       }
     }
   });
-  std::vector<Rgb> diffused(sample_areas_.size()), at_once(sample_areas_.size());
-  std::vector<double> areas(sample_areas_.size());
-  for (const BoundaryPiece& piece : boundary_.pieces) {
-    const Plane& plane = planes[piece.element];
-    const Vec3f apart = piece.position - boundary_.elements[piece.element].position;
-    for (std::size_t c = 0; c < 3; ++c)
-      diffused[piece.sample][c] +=
-          double(piece.area * std::max(0.f, plane.value[c] + dot(plane.slope[c], apart)));
-    at_once[piece.sample] += Rgb(leaving[piece.element]) * double(piece.area);
-    areas[piece.sample] += double(piece.area);
-  }
+  std::vector<RgbF> exitance;
+  exitance.reserve(samples_.size());
   Rgb lost{}, found{};
-  for (std::size_t s = 0; s < areas.size(); ++s) {
-    diffused[s] = diffused[s] / areas[s];
-    found += (diffused[s] + at_once[s] / areas[s]) * double(sample_areas_[s]);
+  for (std::size_t s = 0; s < samples_.size(); ++s) {
+    const std::uint32_t i = boundary_.of_sample[s];
+    const Vec3f apart = samples_[s].position - boundary_.elements[i].position;
+    RgbF leaves = leaving[i];
+    for (std::size_t c = 0; c < 3; ++c)
+      leaves[c] += std::max(0.f, planes[i].value[c] + dot(planes[i].slope[c], apart));
+    found += Rgb(leaves) * double(samples_[s].area);
+    exitance.push_back(leaves);
   }
   for (std::size_t i = 0; i < attached_.size(); ++i) {
     const auto& [cell, depth] = attached_[i];
@@ -131,9 +126,7 @@ std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
           double(boundary_.elements[i].area) * double(fluence[cell].c[c]) * media_[c].conductance(depth);
   }
   for (std::size_t c = 0; c < 3; ++c) lost[c] = found[c] > 0 ? lost[c] / found[c] : 0;
-  std::vector<RgbF> exitance;
-  for (std::size_t s = 0; s < areas.size(); ++s)
-    exitance.push_back(RgbF((diffused[s] + at_once[s] / areas[s]) * lost));
+  for (RgbF& leaves : exitance) leaves = RgbF(Rgb(leaves) * lost);
   return exitance;
 }
 

@@ -14,13 +14,13 @@ namespace opaline {
 /// cell: their edge, world units
 Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell);
 
-/// Cells of one size at the surface. Holds on to `sample_areas` and `media`.
+/// Cells of one size at the surface. Holds on to `samples` and `media`.
 class DiffusionBody {
  public:
-  /// boundary: cut by the lattice
+  /// in    samples: elements of this lattice's cells, or of cells that divide them
   DiffusionBody(const World& world, std::span<const std::uint32_t> meshes,
-                std::span<const float> sample_areas, const std::array<CalibratedMedium, 3>& media,
-                const Lattice& lattice, Boundary boundary);
+                std::span<const BoundaryElement> samples, const std::array<CalibratedMedium, 3>& media,
+                const Lattice& lattice);
 
   /// The fluence in the cells, and what leaves at the samples, W per square of the world's unit.
   struct Solution {
@@ -34,15 +34,14 @@ class DiffusionBody {
   std::vector<Channels> carried(const Solution& solution, const DiffusionBody& to) const;
 
   const DiffusionGrid& grid() const { return grid_; }
-  const Boundary& boundary() const { return boundary_; }
 
  private:
-  DiffusionSpace space() const { return {lattice_, grid_, media_, boundary_, sample_areas_, attached_}; }
+  DiffusionSpace space() const { return {lattice_, grid_, media_, boundary_, samples_, attached_}; }
   void attach();
   std::vector<Channels> losses() const;
   std::vector<RgbF> read(std::span<const Channels> fluence, std::span<const RgbF> leaving) const;
 
-  std::span<const float> sample_areas_;
+  std::span<const BoundaryElement> samples_;
   const std::array<CalibratedMedium, 3>& media_;
   Lattice lattice_;
   Boundary boundary_;

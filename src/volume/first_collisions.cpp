@@ -292,22 +292,14 @@ void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) 
       leave(way, *exit, i, c, entering[c] * std::exp(-exit->length * space_.media[c].extinction));
 }
 
-// What enters of a light at each element, W: together what enters at the samples.
+// What enters of a light at each element, W: all that enters at the samples.
 std::vector<Rgb> entering_flux(const DiffusionSpace& space, const EnteringLight& light, std::size_t l) {
-  const auto entering = [&](std::uint32_t sample, float area) {
-    const Rgb flux = emission(light.lights[l]) * (double(area) * double(light.transfers[l].weights[sample]));
-    return light.tints.empty() ? flux : flux * Rgb(light.tints[sample]);
-  };
   std::vector<Rgb> flux(space.boundary.elements.size());
-  Rgb found{}, whole{};
-  for (const BoundaryPiece& piece : space.boundary.pieces) {
-    const Rgb of_piece = entering(piece.sample, piece.area);
-    flux[piece.element] += of_piece;
-    found += of_piece;
+  for (std::size_t s = 0; s < space.samples.size(); ++s) {
+    const double entering = double(space.samples[s].area) * double(light.transfers[l].weights[s]);
+    const Rgb tint = light.tints.empty() ? Rgb(1) : Rgb(light.tints[s]);
+    flux[space.boundary.of_sample[s]] += emission(light.lights[l]) * tint * entering;
   }
-  for (std::uint32_t s = 0; s < space.sample_areas.size(); ++s) whole += entering(s, space.sample_areas[s]);
-  for (std::size_t c = 0; c < 3; ++c) whole[c] = found[c] > 0 ? whole[c] / found[c] : 1;
-  for (Rgb& of_element : flux) of_element = of_element * whole;
   return flux;
 }
 

@@ -33,7 +33,7 @@ struct DiffusionSpace {
   const DiffusionGrid& grid;
   const std::array<CalibratedMedium, 3>& media;
   const Boundary& boundary;
-  std::span<const float> sample_areas;
+  std::span<const BoundaryElement> samples;
   std::span<const AttachedElement> attached;  ///< one an element
 
   Vec3d in_lattice(const Vec3f& position) const { return lattice.into(Vec3d(position)); }

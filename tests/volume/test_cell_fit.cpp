@@ -70,7 +70,7 @@ TEST(CellFit, QuadraticsComeOut) {
   const FieldOf field = [](const Vec3d& p) {
     return 300 + 3 * p.x + p.z + 1.5 * p.x * p.x - p.x * p.z - .5 * p.z * p.z;
   };
-  const CellFit fit(sampled.surface.samples, sampled.world, sampled.means(field), sampled.no_errors());
+  const CellFit fit(sampled.surface.samples, sampled.means(field), sampled.no_errors());
   double worst = 0;
   for (std::size_t i = 0; i < sampled.pieces.size(); i += 7) {
     const Piece& piece = sampled.pieces[i];
@@ -97,7 +97,7 @@ TEST(CellFit, NoiseIsForetold) {
   for (int draw = 0; draw < 300; ++draw) {
     std::vector<RgbF> noisy = means;
     for (RgbF& mean : noisy) mean += RgbF(gauss(engine));
-    const CellFit fit(sampled.surface.samples, sampled.world, noisy, errors);
+    const CellFit fit(sampled.surface.samples, noisy, errors);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const Piece& piece = sampled.pieces[i * sampled.pieces.size() / values.size()];
       const CellFit::Value found = fit.at(Vec3f(piece.position), piece.geometric);
@@ -126,7 +126,7 @@ TEST(CellFit, ShapeIsForetold) {
     const FieldOf field = [](const Vec3d& p) {
       return std::exp(2 * std::sin(.7 * p.x) + std::sin(.8 * p.y));
     };
-    const CellFit fit(sampled.surface.samples, sampled.world, sampled.means(field), sampled.no_errors());
+    const CellFit fit(sampled.surface.samples, sampled.means(field), sampled.no_errors());
     double off = 0, foretold = 0, whole = 0;
     for (std::size_t i = 0; i < sampled.pieces.size(); i += 7) {
       const Piece& piece = sampled.pieces[i];
@@ -152,7 +152,7 @@ TEST(CellFit, Extremes) {
   SurfaceSamples all = samples_on(world, 50);
   for (const std::size_t count : {0, 1, 2, 3}) {
     std::vector<SurfaceSample> samples(all.samples.begin(), all.samples.begin() + std::ptrdiff_t(count));
-    const CellFit fit(samples, world, std::vector<RgbF>(count, RgbF(3)), std::vector<RgbF>(count, RgbF(1)));
+    const CellFit fit(samples, std::vector<RgbF>(count, RgbF(3)), std::vector<RgbF>(count, RgbF(1)));
     for (const Vec3f& at : {Vec3f{0, 0, 0}, Vec3f{1e6f, 0, 0}}) {
       const CellFit::Value found = fit.at(at, {0, 1, 0});
       EXPECT_TRUE(is_finite(found.value) && is_finite(found.noise) && is_finite(found.shape)) << count;
@@ -160,7 +160,7 @@ TEST(CellFit, Extremes) {
     }
   }
   std::vector<SurfaceSample> same(9, all.samples[0]);
-  const CellFit fit(same, world, std::vector<RgbF>(9, RgbF(3)), std::vector<RgbF>(9, RgbF(1)));
+  const CellFit fit(same, std::vector<RgbF>(9, RgbF(3)), std::vector<RgbF>(9, RgbF(1)));
   EXPECT_NEAR(fit.at(same[0].position, {0, 1, 0}).value.x, 3, .01);
 }
 

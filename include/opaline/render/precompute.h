@@ -73,8 +73,12 @@ std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 /// in    lights: recentred; they and the body outlive the result
 VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span<const Light> lights);
 
-/// The cells of a body with its samples, for the diffusion equation inside of it; media as for walks.
-VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body);
+/// A body's surface where the cells of its plan cut it.
+CutSurface cut_surface(const PrecomputeInput& input, const Body& body);
+/// Those cells, for the diffusion equation inside of it; media as for walks.
+/// in    body: with the samples of its cut surface
+///       normals: of that
+VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals);
 
 /// Irradiance at each body's samples from surfaces, translucent ones as their trees have it and opaque ones as lights
 /// alone light them; one list a body.

@@ -25,6 +25,10 @@ std::vector<MeshKeys> mesh_keys(const World& world);
 /// Of a group's samples placed anew: its meshes, their count and random numbers.
 StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group);
 
+/// Of a group's samples where cells cut its meshes.
+/// in    unit: of the world, mm
+StageKey cut_surface_key(const GroupPlan& group, std::span<const MeshKeys> meshes, double unit);
+
 /// Of the samples of key `from`, carried along to the group's meshes as they are now.
 /// in    unit: of the world they come from over that of this one
 StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes,

@@ -16,8 +16,7 @@ namespace opaline {
 class CellFit {
  public:
   /// in    means, errors: of the samples' cells, one each; errors: standard, independent of each other
-  CellFit(std::span<const SurfaceSample> samples, const World& world, std::span<const RgbF> means,
-          std::span<const RgbF> errors);
+  CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> means, std::span<const RgbF> errors);
 
   struct Value {
     RgbF value;  ///< >= 0
@@ -39,19 +38,21 @@ class CellFit {
     float weight;
   };
   /// What is known of a cell beside its fit while that of all is made.
+  struct Cell {
+    RgbF mean, error;
+    float area;
+  };
   struct Surprise {
     Rgb square{};
     std::vector<Share> near;  ///< the cells over which it is averaged
   };
   template <class Use>
   void for_alike(const Vec3f& position, const Vec3f& normal, float spacings, const Use& use) const;
-  Fit fitted(std::size_t sample, std::span<const SurfaceSample> samples, std::span<const RgbF> means,
-             std::span<const RgbF> errors, Surprise& surprise) const;
+  Fit fitted(const NearestSample::Member& own, std::span<const Cell> cells, Surprise& surprise) const;
   RgbF value_of(const Fit& fit, const Vec3f& position) const;
 
-  NearestSample cells_;
-  std::vector<Vec3f> centers_, normals_;  ///< of the cells
-  std::vector<Fit> fits_;
+  NearestSample middles_;  ///< of the cells
+  std::vector<Fit> fits_;  ///< one a cell
   float spacing_ = 1;
 };
 

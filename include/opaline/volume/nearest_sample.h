@@ -27,6 +27,9 @@ class NearestSample {
   /// Index of the nearest sample of the sheet; of any sheet where none of the point's is near.
   std::uint32_t at(const Vec3f& position, const Vec3f& normal) const;
 
+  /// Cube by cube.
+  std::span<const Member> members() const { return members_; }
+
   /// Calls visit(member) for all samples, of any sheet, in the cubes that the ball around a position meets.
   template <class Visit>
   void for_near(const Vec3f& position, float radius, const Visit& visit) const {

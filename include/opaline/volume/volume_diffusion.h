@@ -10,6 +10,7 @@
 #include "opaline/geometry/world.h"
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/transport/medium.h"
+#include "opaline/volume/cut_surface.h"
 #include "opaline/volume/volume_exitance.h"
 
 namespace opaline {
@@ -17,7 +18,8 @@ namespace opaline {
 struct VolumeDiffusionInput {
   const World& world;
   std::span<const std::uint32_t> meshes;   ///< the body's
-  std::span<const SurfaceSample> samples;  ///< of the body
+  std::span<const SurfaceSample> samples;  ///< of its cut_surface with these cells
+  std::span<const Vec3f> normals;          ///< of that, too
   std::array<HomogeneousMedium, 3> media;  ///< R G B, isotropic, in the world's unit of length
   double cell = 1;                         ///< edge of the cells at the surface, world units
 };
