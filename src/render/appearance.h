@@ -10,6 +10,7 @@
 
 #include "opaline/geometry/surface_point.h"
 #include "opaline/scene/scene.h"
+#include "opaline/transport/angular_exit.h"
 #include "opaline/transport/fresnel.h"
 #include "opaline/transport/rough_boundary.h"
 #include "render/hit_textures.h"
@@ -27,6 +28,8 @@ struct Appearance {
   /// Of a boundary whose roughness is a texture, or that is anisotropic.
   std::shared_ptr<const RoughnessRange> roughnesses = {};
   float roughness = 0;  ///< where it is no texture
+  std::shared_ptr<const AngularExit> exit =
+      {};  ///< of light that was followed inside; none: as a boundary lets it
 
   /// The same at a point whose textures are known.
   Appearance at(const HitTextures& textures) const {
@@ -43,11 +46,12 @@ struct Appearance {
     return rough ? rough->reflectance(cosine) : fresnel_reflectance(cosine, eta);
   }
   /// Radiance towards a direction over the exitance: what is not mirrored. In a furnace both are 1 together.
-  float radiance_of_exitance(float cosine) const {
+  RgbF radiance_of_exitance(float cosine) const {
     constexpr float kInversePi = std::numbers::inv_pi_v<float>;
-    if (!has_boundary) return kInversePi;
+    if (!has_boundary) return RgbF(kInversePi);
     const float entered = kInversePi * (1 - reflectance(cosine)) / (1 - average_reflectance);
-    return metalness > 0 ? entered * (1 - metalness) : entered;
+    const RgbF left(metalness > 0 ? entered * (1 - metalness) : entered);
+    return exit ? left * exit->at(cosine) : left;
   }
   bool mirrors() const { return has_boundary && eta != 1; }
   /// The share of even light that is mirrored towards a direction.

@@ -198,7 +198,7 @@ double needle_share(const World& world, const GroupPlan& group) {
 }
 
 // Measured: where a cell cuts the surface, its exitance and error, while all are fitted.
-constexpr std::size_t kBytesOfCutSample = 400;
+constexpr std::size_t kBytesOfCutSample = 640;
 
 // Measured: what finds the cells, their fits and exitance; of each channel counts of a pass's chunks, and of each light
 // sums.

@@ -50,6 +50,20 @@ std::vector<Light> recentred_lights(const Scene& scene, const World& world) {
   return with_trees(std::move(lights));
 }
 
+Rgb reduced_absorption(Medium medium) {
+  if (auto* artist = std::get_if<ArtistMedium>(&medium.coefficients))
+    for (std::size_t c = 0; c < 3; ++c)  // the colour alone decides; no radius would hide it
+      if (!(artist->subsurface_radius[c] > 0)) artist->subsurface_radius[c] = 1;
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  Rgb absorbed{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double decay =
+        profile.mean_free_path[c] / profile.diffuse_mean_free_path[c];  // its square is 3 (1 - alpha')
+    absorbed[c] = std::min(1.0, decay * decay / 3);
+  }
+  return absorbed;
+}
+
 namespace {
 
 /// In the world's unit.
@@ -68,21 +82,6 @@ std::array<HomogeneousMedium, 3> isotropic_media(const DiffuseProfile& profile) 
 
 constexpr double kMostAnisotropy = .95;
 constexpr double kLeastOffsets = 16;  // in a mean free path, of a ray's origin from the surface
-
-/// One minus the reduced albedo, of each channel.
-Rgb reduced_absorption(Medium medium) {
-  if (auto* artist = std::get_if<ArtistMedium>(&medium.coefficients))
-    for (std::size_t c = 0; c < 3; ++c)  // the colour alone decides; no radius would hide it
-      if (!(artist->subsurface_radius[c] > 0)) artist->subsurface_radius[c] = 1;
-  const DiffuseProfile profile = make_diffuse_profile(medium);
-  Rgb absorbed{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double decay =
-        profile.mean_free_path[c] / profile.diffuse_mean_free_path[c];  // its square is 3 (1 - alpha')
-    absorbed[c] = std::min(1.0, decay * decay / 3);
-  }
-  return absorbed;
-}
 
 double anisotropy_of(const Medium& medium) {
   const auto* artist = std::get_if<ArtistMedium>(&medium.coefficients);

@@ -43,6 +43,8 @@ Appearance mesh_appearance(const Scene& scene, const Shape& shape) {
                         true};
   roughen(appearance, medium.specular_roughness, medium.roughness_texture.has_value(), medium.grain,
           medium.eta);
+  if (has_cells(scene.settings.method))
+    appearance.exit = std::make_shared<const AngularExit>(reduced_absorption(medium), medium.eta);
   return appearance;
 }
 
@@ -233,7 +235,7 @@ void Shader::write(const SurfaceHits& hits, const LeavingLight& light, std::span
     const Appearance& appearance = is_plain ? appearances_[hit.mesh] : textured;
     const SurfacePoint& point = hits.points[i];
     PixelSample& sample = out[hits.rays[i]];
-    RgbF radiance(appearance.radiance_of_exitance(cos_view(point, ray.direction)));
+    RgbF radiance = appearance.radiance_of_exitance(cos_view(point, ray.direction));
     if (!is_plain) radiance = radiance * hits.textures[i].tint.leaving;
     sample.diffuse = light.exitance[i] * radiance;
     sample.coverage = 1;

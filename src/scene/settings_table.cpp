@@ -215,8 +215,10 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::sample_spacing>("sample_spacing", length, "", kFiniteNumber,
                                         "from the medium's mean free path",
                                         "distance between samples, sqrt(area / samples)"),
-      member<&Settings::samples>("samples", whole_number, "", {1, kMostSamples}, "from the spacing",
-                                 "number of samples for each group; goes before `sample_spacing`"),
+      member<&Settings::samples>(
+          "samples", whole_number, "", {1, kMostSamples}, "from the spacing",
+          "number of samples for each group; goes before `sample_spacing`; volume_diffusion has one "
+          "at least where a cell cuts the surface"),
       member<&Settings::max_samples>("max_samples", whole_number, "", {1, kMostSamples}, "",
                                      "never more than this for each group"),
       member<&Settings::light_samples>("light_samples", whole_number, "", {1, 65536}, "",

@@ -66,6 +66,9 @@ std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size
 /// The scene's lights in the world's space and unit; where they are many, trees of them (ManyLights).
 std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 
+/// One minus the albedo of R G B, by reduced coefficients.
+Rgb reduced_absorption(Medium medium);
+
 /// For random walks inside a body with its samples. Media are walked with their mean cosine g (at most .95: to what is
 /// nearer to 1 walks of the same reduced coefficients come close) and sigma_s = sigma_s' / (1 - g). Mean free paths
 /// that rays cannot resolve, below about 1e-4 of the body, are taken longer: on such a body's scale light leaves where

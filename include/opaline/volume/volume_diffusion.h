@@ -27,7 +27,7 @@ struct VolumeDiffusionInput {
 /// About how many cells a body has, and the bytes that they and its surface take: from area and edge of a cell.
 double expected_cells(double area, double cell);
 /// Measured: 400 a cell, with both grids and the solver's vectors.
-inline constexpr double kBytesOfCell = 400;
+inline constexpr double kBytesOfCell = 200;
 
 /// Light collides for the first time along the refracted rays and spreads by diffusion from there, on cells that
 /// grow inwards. Linear in the lights; the cells do not depend on them. Theory and measurements: src/volume/README.md.
