@@ -38,7 +38,7 @@ struct ErrorPlane {
 };
 // Fitted to the table of bench_volume_models.
 constexpr ErrorPlane kErrorOfBodies{.05, .9, .5}, kErrorOfPlates{.07, .25, .55},
-    kErrorOfDiffusion{.028, 0, .13};
+    kErrorOfDiffusion{.0254, 0, .143};
 
 MediumExtremes extremes_of(Medium medium) {
   medium.profile = kOfBodies;

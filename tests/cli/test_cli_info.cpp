@@ -76,7 +76,7 @@ TEST(CliInfo, ModelAndItsError) {
   EXPECT_EQ(named["profile"], "better_dipole");
   EXPECT_EQ(named["is_chosen"], false);
   EXPECT_FALSE(named.contains("expected_error"));
-  EXPECT_TRUE(contains(run_program({"info", plate, "--method", "volume_diffusion"}).out, "about 3."))
+  EXPECT_TRUE(contains(run_program({"info", plate, "--method", "volume_diffusion"}).out, "about 2.7 %"))
       << text.out;
 }
 
