@@ -12,10 +12,11 @@
 namespace opaline {
 namespace {
 
-constexpr double kLeastCosine = 1e-3;  // of light inside: against division by 0 where eta < 1
-constexpr double kLeastExit = .25;  // of a cell's face: at a smaller element less than all that comes leaves
-constexpr double kFarthest = 5;     // free paths; what goes farther ends there
-constexpr double kStep = .4;        // cells
+constexpr double kLeastCosine = 1e-3;   // of light inside: against division by 0 where eta < 1
+constexpr double kSpread = 1.2;         // cells around an exit
+constexpr double kLeastAgreement = .5;  // of normals of one sheet
+constexpr double kFarthest = 5;         // free paths; what goes farther ends there
+constexpr double kStep = .4;            // cells
 
 // Evenly over [0, 1).
 double golden_point(std::size_t i) {
@@ -123,12 +124,18 @@ class Depositor {
   void deposit(const Collided& collided, const Vec3d& about, std::uint32_t fallback);
   void deposit(const Vec3d& place, std::uint32_t fallback, std::size_t channel, double flux);
   void deposit(const Way& way, double start, const Stretch& stretch, std::uint32_t fallback, Rgb& flux);
-  void leave(const Way& way, const Exit& exit, std::size_t i, std::size_t channel, double flux);
+  void spread(const Vec3d& at, const Exit& exit);
+  void leave(const Way& way, const Exit& exit, std::size_t i, const Rgb& flux);
 
   const DiffusionSpace& space_;
   ElementsOfCells elements_of_;
-  double longest_ = 0;  // free path
-  Stretch step_;        // in the smallest cells
+  struct Share {
+    std::uint32_t element;
+    double per_area;
+  };
+  std::vector<Share> spread_;  // of the exit at hand
+  double longest_ = 0;         // free path
+  Stretch step_;               // in the smallest cells
   FirstCollisions result_;
 };
 
@@ -244,22 +251,45 @@ void Depositor::deposit(const Vec3d& place, std::uint32_t fallback, std::size_t 
   deposit(collided, place, fallback);
 }
 
-// What the boundary reflects collides on its further way, which is taken to be inside. Where the element is small beside
-// the ray, which stands for those through a cell's face, the cell takes the rest: it leaves around.
-void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, std::size_t channel, double flux) {
-  const BoundaryElement& point = space_.boundary.elements[exit.element];
-  const CalibratedMedium& medium = space_.media[channel];
-  const Vec3d normal(point.normal);
-  const double reflected =
-      flux * inside_reflectance(std::clamp(dot(way.along, normal), kLeastCosine, 1.), medium.eta);
-  const double least = kLeastExit * space_.lattice.cell * space_.lattice.cell;
-  const double leaves = (flux - reflected) / std::max(least, double(point.area));
-  result_.leaving[exit.element][channel] += float(leaves);
-  const double stays = flux - reflected - leaves * double(point.area);
-  result_.source[exit.cell].c[channel] += float(stays);
-  const Way back{at(way, exit.length), mirrored(way.along, normal)};
-  const double collided = -std::log1p(-golden_point(i)) / medium.extinction;
-  deposit(at(back, collided), exit.cell, channel, reflected * medium.albedo);
+// The elements around a way's exit, each with its share per area of what leaves: a ray stands for those through a cell's
+// face.
+void Depositor::spread(const Vec3d& at, const Exit& exit) {
+  spread_.clear();
+  const Vec3f normal = space_.boundary.elements[exit.element].normal;
+  double sum = 0;
+  const auto add = [&](std::uint32_t cell) {
+    for (const std::uint32_t e : elements_of_.of(cell)) {
+      const BoundaryElement& element = space_.boundary.elements[e];
+      const Vec3d apart = space_.in_lattice(element.position) - at;
+      const double near = 1 - dot(apart, apart) / (kSpread * kSpread);
+      if (!(near > 0 && dot(element.normal, normal) > kLeastAgreement)) continue;
+      spread_.push_back({e, near});
+      sum += near * double(element.area);
+    }
+  };
+  add(exit.cell);
+  for (const DiffusionGrid::Link& link : space_.grid.links(exit.cell)) add(link.to);
+  if (spread_.empty()) {
+    spread_.push_back({exit.element, 1});
+    sum = double(space_.boundary.elements[exit.element].area);
+  }
+  for (Share& share : spread_) share.per_area /= sum;
+}
+
+// What the boundary reflects collides on its further way, which is taken to be inside.
+void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, const Rgb& flux) {
+  const Vec3d normal(space_.boundary.elements[exit.element].normal), place = at(way, exit.length);
+  const double reflectance =
+      inside_reflectance(std::clamp(dot(way.along, normal), kLeastCosine, 1.), space_.media[0].eta);
+  spread(place, exit);
+  for (const auto& [element, per_area] : spread_)
+    result_.leaving[element] += RgbF(flux * ((1 - reflectance) * per_area));
+  const Way back{place, mirrored(way.along, normal)};
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (!(flux[c] > 0)) continue;
+    const double collided = -std::log1p(-golden_point(i)) / space_.media[c].extinction;
+    deposit(at(back, collided), exit.cell, c, flux[c] * reflectance * space_.media[c].albedo);
+  }
 }
 
 // Light that enters at an element from one direction: what collides between the element and the centre of its cell leaves in
@@ -287,9 +317,12 @@ void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) 
     colliding[c] = enters * passed;
   }
   const std::optional<Exit> exit = collide(way, path, attached.cell, colliding);
-  for (std::size_t c = 0; exit && c < 3; ++c)
+  if (!exit) return;
+  Rgb arriving{};
+  for (std::size_t c = 0; c < 3; ++c)
     if (space_.media[c].albedo > 0)
-      leave(way, *exit, i, c, entering[c] * std::exp(-exit->length * space_.media[c].extinction));
+      arriving[c] = entering[c] * std::exp(-exit->length * space_.media[c].extinction);
+  leave(way, *exit, i, arriving);
 }
 
 // What enters of a light at each element, W: all that enters at the samples.
