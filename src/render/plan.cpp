@@ -94,12 +94,16 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
   group.spacing = std::sqrt(group.area / double(group.samples));
 }
 
+constexpr double kPartsOfThickness = 8;
+
 // One at least where a cell cuts the surface, in the nearest number of parts of a cell's edge to what is asked for.
 void choose_cut(const Settings& settings, GroupPlan& group, std::vector<std::string>& warnings) {
   const double whole = kCutSamplesPerFace * group.area / (group.cell * group.cell);
   const double wanted = set_samples(settings, group.area).value_or(kFewestSamples);
-  const double parts = std::min(std::round(std::sqrt(wanted / whole)),
-                                std::floor(std::sqrt(double(settings.max_samples) / whole)));
+  double parts = std::min(std::round(std::sqrt(wanted / whole)),
+                          std::floor(std::sqrt(double(settings.max_samples) / whole)));
+  // A thread meets as many cells as it is long: finer ones are many, and tell nothing.
+  if (group.thickness > 0) parts = std::min(parts, kPartsOfThickness * group.thickness / group.cell);
   group.cell_parts = int(std::max(1., parts));
   group.samples =
       std::max<std::size_t>(1, std::size_t(std::ceil(whole * group.cell_parts * group.cell_parts)));
@@ -351,7 +355,10 @@ Plan make_plan(const Scene& scene, const World& world) {
     if (scene.settings.method == Method::volume_diffusion) {
       choose_cells(scene, group, plan.warnings);
       choose_cut(scene.settings, group, plan.warnings);
-      plan.bytes += group.samples * (kBytesOfCutSample + 4 * lights.size());
+      const double in_threads =
+          group.thickness > 0 ? 2 * needle_share(world, group) * group.cell / group.thickness : 0;
+      plan.bytes +=
+          std::size_t((1 + in_threads) * double(group.samples)) * (kBytesOfCutSample + 4 * lights.size());
       plan.bytes += std::size_t(kBytesOfCell * expected_cells(group.area, group.cell));
       continue;
     }
