@@ -356,9 +356,9 @@ Plan make_plan(const Scene& scene, const World& world) {
       choose_cells(scene, group, plan.warnings);
       choose_cut(scene.settings, group, plan.warnings);
       const double in_threads =
-          group.thickness > 0 ? 2 * needle_share(world, group) * group.cell / group.thickness : 0;
-      plan.bytes +=
-          std::size_t((1 + in_threads) * double(group.samples)) * (kBytesOfCutSample + 4 * lights.size());
+          group.thickness > 0 ? 1.2 * needle_share(world, group) * group.cell / group.thickness : 0;
+      plan.bytes += std::size_t(std::max(1., in_threads) * double(group.samples)) *
+                    (kBytesOfCutSample + 4 * lights.size());
       plan.bytes += std::size_t(kBytesOfCell * expected_cells(group.area, group.cell));
       continue;
     }
