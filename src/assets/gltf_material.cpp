@@ -103,6 +103,7 @@ class MaterialTranslator {
     if (std::optional<Json> normals = texture(of(material_.normalTexture), "normalTexture")) {
       (*normals)["scale"] = std::max(material_.normalTexture.scale, 0.);
       surface.keys["normal_map"] = std::move(*normals);
+      translated("normalTexture: " + tangents());
     }
     tell_losses(!surface.medium.is_null());
     return surface;
@@ -132,6 +133,12 @@ class MaterialTranslator {
       not_carried(std::string(name) + ": " + failure.message);
       return {};
     }
+  }
+
+  std::string tangents() const {
+    if (use_.has_tangents) return "around the mesh's TANGENT";
+    return use_.has_uvs ? "around tangents of its UVs, not MikkTSpace's: its mesh has no TANGENT"
+                        : "about y, for its mesh has no TEXCOORD_0";
   }
 
   /// A colour or number times its texture.
@@ -179,9 +186,8 @@ class MaterialTranslator {
     if (degrees != 0) keys["specular_rotation"] = degrees;
     translated(
         fmt::format("anisotropyStrength {:.3g}, anisotropyRotation {:.3g}, roughnessFactor {:.3g} -> "
-                    "specular_anisotropy {:.3g}, specular_rotation {:.4g}, specular_roughness {:.3g}{}",
-                    strength, rotation, roughness, anisotropy, degrees, mean,
-                    use_.has_uvs ? "" : "; about y, for its mesh has no TEXCOORD_0"));
+                    "specular_anisotropy {:.3g}, specular_rotation {:.4g}, specular_roughness {:.3g}; {}",
+                    strength, rotation, roughness, anisotropy, degrees, mean, tangents()));
     if (material_.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0)
       not_carried(
           "anisotropyStrength where the roughness is not roughnessFactor: both alphas follow the texture");

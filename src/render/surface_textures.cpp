@@ -74,13 +74,47 @@ struct TangentFrame {
   Vec3f tangent{}, bitangent{};
 };
 
-TangentFrame frame_of(const SurfaceUv& uv, const SurfacePoint& point) {
-  const Vec3f across_v = cross(uv.gradient_v, point.geometric);
-  const float side = dot(uv.gradient_u, across_v);
+/// By the mesh's tangent where it has one: its handedness is about the side that is outside.
+TangentFrame frame_of(const SurfaceTextures::Place& place, const SurfacePoint& point) {
+  const auto& [direction, handedness] = place.tangent;
+  const Vec3f own = normalized(direction - point.normal * dot(direction, point.normal));
+  if (own != Vec3f{}) return {own, cross(point.normal, own) * (place.from_behind ? -handedness : handedness)};
+  if (!place.uv) return {};
+  const Vec3f across_v = cross(place.uv->gradient_v, point.geometric);
+  const float side = dot(place.uv->gradient_u, across_v);
   if (!(std::abs(side) > 0)) return {};
   const Vec3f along = across_v * (side > 0 ? 1.0f : -1.0f);
   const Vec3f tangent = normalized(along - point.normal * dot(along, point.normal));
   return {tangent, cross(point.normal, tangent) * (side > 0 ? 1.0f : -1.0f)};
+}
+
+/// Of what leans on a surface: 1, or -1 where it is seen from behind.
+float outward(const SurfaceTextures::Place& place) {
+  return place.from_behind ? -1.0f : 1.0f;
+}
+
+void map_normal(const Texture& texture, const SurfaceTextures::Place& place, SurfacePoint& point) {
+  const std::array<float, 4> texel = looked_up(texture, place);
+  const float strength = float(texture.scale.x) * outward(place);
+  const float x = slope_of(texel[0]) * strength, y = slope_of(texel[1]) * strength;
+  if (x == 0 && y == 0) return;
+  const auto [tangent, bitangent] = frame_of(place, point);
+  if (tangent == Vec3f{}) return;
+  point.normal =
+      normalized(tangent * x + bitangent * y + point.normal * std::max(2 * texel[2] - 1, 1.0f / 255));
+}
+
+/// Of the height over the surface, mm per world unit.
+Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& place) {
+  const auto [along_u, along_v] =
+      texture.file->slope(texture_place(texture, *place.uv, place.footprint), texture.channel);
+  // Of the picture's u and v, by the mesh's.
+  const double angle = texture.uv_rotation * std::numbers::pi / 180;
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  const Vec3f x = place.uv->gradient_u * float(texture.uv_scale[0]),
+              y = place.uv->gradient_v * float(-texture.uv_scale[1]);
+  const Vec3f of_u = x * float(cosine) + y * float(sine), of_v = y * float(cosine) - x * float(sine);
+  return (of_u * along_u + of_v * along_v) * float(texture.scale.x);
 }
 
 /// Around +y, as turned on a lathe; where the normal is +y itself, along x.
@@ -102,6 +136,7 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
     const Shape& shape = scene.shapes[m];
     OfMesh& own = of_mesh_.emplace_back();
     own.normals = pointer_to(shape.normal_map);
+    own.heights = pointer_to(shape.bump_map);
     if (shape.medium) {
       const Medium& medium = scene.media[*shape.medium];
       own.tint = pointer_to(medium.tint_texture);
@@ -119,6 +154,7 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
     own.has_tint = own.tint != nullptr || own.factor != Rgb(1);
     own.grain = grain_of(scene, shape);
     own.has_uv = uvs_of(scene, shape) != MeshUvs::unread && !world.meshes[m].uvs.empty();
+    own.has_tangents = !world.meshes[m].tangents.empty();
     is_empty_ = is_empty_ && !own.has_tint && !needs_uvs(scene, shape) && own.grain == nullptr;
     for (const Texture* texture : textures_of(scene, shape))
       check_tiles(*texture, world.meshes[m], shape.name);
@@ -133,6 +169,7 @@ SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t 
                                               const Footprint& footprint) const {
   Place place{mesh, {}, footprint};
   if (of_mesh_[mesh].has_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
+  if (of_mesh_[mesh].has_tangents) place.tangent = surface_tangent(world_.meshes[mesh], triangle, u, v);
   return place;
 }
 
@@ -165,23 +202,19 @@ std::optional<float> SurfaceTextures::metalness(const Place& place) const {
 Vec3f SurfaceTextures::tangent(const Place& place, const SurfacePoint& point) const {
   const Grain* const grain = of_mesh_[place.mesh].grain;
   if (grain == nullptr) return {};
-  TangentFrame frame = place.uv ? frame_of(*place.uv, point) : TangentFrame{};
+  TangentFrame frame = frame_of(place, point);
   if (frame.tangent == Vec3f{}) frame = level_frame(point.normal);
   const double angle = grain->rotation * std::numbers::pi / 180;
   return frame.tangent * float(std::cos(angle)) + frame.bitangent * float(std::sin(angle));
 }
 
 void SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
-  const Texture* const texture = of_mesh_[place.mesh].normals;
-  if (texture == nullptr) return;
-  const std::array<float, 4> texel = looked_up(*texture, place);
-  const float x = slope_of(texel[0]) * float(texture->scale.x),
-              y = slope_of(texel[1]) * float(texture->scale.x);
-  if (x == 0 && y == 0) return;
-  const auto [tangent, bitangent] = frame_of(*place.uv, point);
-  if (tangent == Vec3f{}) return;
-  point.normal =
-      normalized(tangent * x + bitangent * y + point.normal * std::max(2 * texel[2] - 1, 1.0f / 255));
+  const OfMesh& own = of_mesh_[place.mesh];
+  if (own.normals != nullptr) map_normal(*own.normals, place, point);
+  if (own.heights == nullptr) return;
+  const Vec3f rise = height_gradient(*own.heights, place) * float(1 / world_.unit),
+              along = rise - point.normal * dot(rise, point.normal);
+  if (along != Vec3f{}) point.normal = normalized(point.normal - along * outward(place));
 }
 
 std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples) {
@@ -196,6 +229,11 @@ std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<cons
     tints.push_back(textures.tint(textures.place(s.mesh, s.triangle, s.u, s.v, footprint)).entering);
   }
   return tints;
+}
+
+void add_coordinates(KeyBuilder& key, const Mesh& mesh) {
+  key.add_array(std::span(mesh.uvs));
+  if (!mesh.tangents.empty()) key.add_array(std::span(mesh.tangents));
 }
 
 void add_to_key(KeyBuilder& key, const Texture& texture) {

@@ -200,6 +200,10 @@ std::vector<KeyInfo> shape_rows() {
                    "normals of the file's details, around the mesh's own: red to the right, green up, blue "
                    "out, 0 to 1 "
                    "for -1 to 1; `scale` is of its slopes")),
+      textured(
+          row("shape", "bump_map", object, "", kFiniteNumber, "none",
+              "heights of the file's details over the mesh: its numbers times `scale`, in scene units "
+              "whatever the `transform`; they turn normals, around those of `normal_map`, and move nothing")),
       row("shape", "group", text, "", kFiniteNumber, "alone",
           "translucent shapes with the same group blend as one object, others never bleed into each other; a "
           "group has one medium"),

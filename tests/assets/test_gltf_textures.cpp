@@ -170,5 +170,31 @@ TEST(ObjTextures, AreTakenFromLibraries) {
   EXPECT_TRUE(has(import_asset(folder.file("a.obj"), "a.obj").not_carried, "map_Kd '-s 2 2 2 p.png'"));
 }
 
+// Claim: OBJ's bump maps are heights in the OBJ's lengths, times -bm, under any of their names; one that is blue, as maps
+// of normals are, is one of normals. Other options, and pictures that are not there, are said. Fails if -bm is taken for
+// the name, or a map of normals for heights.
+TEST(ObjTextures, OfHeightsAreBumps) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("h.png"), png_of(128));
+  test::put_png(folder.file("a normal.png"), 4, 2, [](int x, int) { return test::Bytes{120 + x, 128, 255}; });
+  put_bytes(folder.file("a.mtl"),
+            "newmtl a\nmap_Bump -bm 0.25 h.png\nnewmtl b\nbump a normal.png\nnewmtl c\nmap_bump h.png\n"
+            "newmtl d\nbump -s 2 2 2 h.png\nnewmtl e\nbump -bm 2 gone.png\n");
+  std::string text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n";
+  for (const char* name : {"a", "b", "c", "d", "e"})
+    text += std::string("usemtl ") + name + "\nf 1/1 2/2 3/3\n";
+  put_bytes(folder.file("a.obj"), text);
+  const Scene scene = load_scene(folder.file("a.obj"));
+  EXPECT_EQ(scene.shapes.at(0).bump_map.value().scale.x, .25);
+  EXPECT_TRUE(scene.shapes.at(1).normal_map && !scene.shapes[1].bump_map);
+  EXPECT_EQ(scene.shapes.at(2).bump_map.value().scale.x, 1);
+  EXPECT_FALSE(scene.shapes.at(3).bump_map || scene.shapes.at(4).bump_map);
+  const ImportedAsset import = import_asset(folder.file("a.obj"), "a.obj");
+  EXPECT_TRUE(has(import.translated, "map_Bump -> bump_map h.png, white 0.25 mm high"));
+  EXPECT_TRUE(has(import.translated, "bump -> normal_map a normal.png, for it is blue"));
+  EXPECT_TRUE(has(import.not_carried, "bump '-s 2 2 2 h.png'"));
+  EXPECT_TRUE(has(import.not_carried, "bump '-bm 2 gone.png'"));
+}
+
 }  // namespace
 }  // namespace opaline::asset_test

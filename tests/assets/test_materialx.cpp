@@ -176,6 +176,37 @@ TEST(MaterialX, AnisotropyIsThatOfTheModel) {
   EXPECT_EQ(standard.grain.rotation, 90);
 }
 
+// Claim: a bump of an image that the surface's normal is connected to, directly or through a graph, is a bump map of its
+// scale in the asset's unit, laid by its tiling from the lower left; other connections are said. Source: MaterialX 1.39, bump.
+// Fails if the scale is in mm, or the prefix of files is dropped.
+TEST(MaterialX, BumpsAreBumpMaps) {
+  const std::string graph = R"(<nodegraph name="NG" fileprefix="maps/">
+      <tiledimage name="h" type="float"><input name="file" type="filename" value="h.png"/>
+        <input name="uvtiling" type="vector2" value="2, 2.5"/></tiledimage>
+      <bump name="b" type="vector3"><input name="height" type="float" nodename="h"/>
+        <input name="scale" type="float" value="0.002"/></bump>
+      <output name="out" type="vector3" nodename="b"/></nodegraph>)";
+  const auto import = [&](const std::string& normal, const std::string& more = "") {
+    const MaterialFolder folder("<materialx>" + graph + more + "<standard_surface name=\"s\">" + normal +
+                                "</standard_surface></materialx>");
+    std::filesystem::create_directory(folder.path / "maps");
+    put_bytes(folder.file("maps/h.png"), "");
+    return folder.import("cube.glb");
+  };
+  const ImportedAsset bumped = import(R"(<input name="normal" nodegraph="NG" output="out"/>)");
+  EXPECT_TRUE(has(bumped.translated, "bump of maps/h.png -> bump_map, white 2 mm high"));
+  EXPECT_FALSE(has(bumped.not_carried, "normal"));
+  EXPECT_NE(bumped.text.find("maps/h.png"), std::string::npos);
+  EXPECT_NE(bumped.text.find("\"uv_scale\": [2.0, 2.5]"), std::string::npos) << bumped.text;
+  EXPECT_NE(bumped.text.find("\"uv_offset\": [0, -1.5]"), std::string::npos) << bumped.text;
+  EXPECT_TRUE(has(import(R"(<input name="normal" nodename="n"/>)", R"(<normalmap name="n"/>)").not_carried,
+                  "normal: it is connected to no bump node"));
+  EXPECT_TRUE(has(import(R"(<input name="normal" nodename="n"/>)",
+                         R"(<bump name="n"><input name="height" value="1"/></bump>)")
+                      .not_carried,
+                  "normal: its heights are no image"));
+}
+
 // Claim: what is wrong is named by file, surface and input. Fails if a broken value becomes 0.
 TEST(MaterialX, MistakesAreNamed) {
   const auto surface = [](const std::string& input) {

@@ -111,6 +111,7 @@ std::vector<Change> changes() {
        "shapes.floor.specular_rotation=40",
        {kGloss, "shapes.floor.specular_anisotropy=0.8"}},
       {"shape.normal_map", kMap},
+      {"shape.bump_map", R"(shapes.ball.bump_map={"texture": "cells.png", "scale": 2})"},
       {"shape.group", "shapes.ring.group=pair", {"shapes.ball.group=pair", "shapes.ring.medium=stone"}},
       {"texture.texture", R"(shapes.floor.reflectance.texture=other.png)"},
       {"texture.color_space", texture(R"("color_space": "linear")")},

@@ -178,6 +178,7 @@ struct Shape {
   SourcePlace place{};                           ///< of its source
   std::optional<Texture> reflectance_texture{};  ///< times the reflectance
   std::optional<Texture> normal_map{};           ///< its scale is of the slopes
+  std::optional<Texture> bump_map{};             ///< heights; its scale is mm
   std::optional<Gloss> gloss{};                  ///< of an opaque shape; none: matte
   friend bool operator==(const Shape&, const Shape&) = default;
 };
@@ -331,7 +332,13 @@ bool needs_uvs(const Scene& scene, const Shape& shape);
 /// Of a shape whose boundary is rough and has one; else null.
 const Grain* grain_of(const Scene& scene, const Shape& shape);
 
-enum class MeshUvs { unread, if_any, required };
+/// What a mesh is read with, by which its surface is described: UVs, and tangents where the file has them.
+enum class MeshUvs {
+  unread,
+  if_any,        ///< both
+  required,      ///< UVs alone
+  with_tangents  ///< UVs required
+};
 MeshUvs uvs_of(const Scene& scene, const Shape& shape);
 
 }  // namespace opaline
