@@ -76,11 +76,13 @@ class SurfaceReader {
     const double weight = number(model_.weight, 0, 0, 1);
     if (weight > 0) {
       surface.medium = make_medium();
-      if (weight < 1)
-        scene_.not_carried.push_back(
-            fmt::format("{}: {} {:.3g}: the body is translucent as a whole, without its base "
-                        "colour",
-                        label_, model_.weight, weight));
+      if (weight < 1) {
+        surface.medium["subsurface_weight"] = weight;
+        surface.medium["base_color"] = triple_json(base);
+        scene_.translated.push_back(
+            fmt::format("{}: {} {:.3g} -> subsurface_weight; base colour -> base_color {} of the rest",
+                        label_, model_.weight, weight, short_triple(base)));
+      }
     } else {
       surface.reflectance = base;
       scene_.translated.push_back(fmt::format("{}: {} 0, base colour -> reflectance {} (opaque)", label_,

@@ -31,7 +31,7 @@ struct Appearance {
   /// The same at a point whose textures are known.
   Appearance at(const HitTextures& textures) const {
     Appearance here = *this;
-    here.albedo = albedo * textures.tint.entering * textures.tint.leaving;
+    here.albedo = albedo * textures.tint.entering * textures.tint.leaving + textures.reflected;
     if (roughnesses)
       here.rough = roughnesses->at(textures.roughness.value_or(roughness), textures.tangent_share);
     if (textures.metalness) here.metalness = *textures.metalness;

@@ -10,6 +10,7 @@ namespace opaline {
 
 struct HitTextures {
   SurfaceTint tint;
+  RgbF reflected{};                           ///< SurfaceTextures::reflected
   std::optional<float> roughness, metalness;  ///< none: the surface's own
   bool is_bent = false;                       ///< maps have turned the shading normal
   Vec3f tangent{};                            ///< SurfaceTextures::tangent

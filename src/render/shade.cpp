@@ -220,7 +220,8 @@ void Shader::add_textures(const RayBatch& batch, std::size_t ray, bool from_behi
   textures_.bend(place, point);
   const bool is_bent = point.normal != unbent;
   if (is_bent) keep_mirrored_outside(point, traced.direction);
-  HitTextures here{textures_.tint(place), textures_.roughness(place), textures_.metalness(place)};
+  HitTextures here{textures_.tint(place), textures_.reflected(place), textures_.roughness(place),
+                   textures_.metalness(place)};
   here.is_bent = is_bent;
   here.tangent = textures_.tangent(place, point);
   if (here.tangent != Vec3f{}) {
@@ -250,7 +251,7 @@ void Shader::write(const SurfaceHits& hits, const LeavingLight& light, std::span
     const SurfacePoint& point = hits.points[i];
     PixelSample& sample = out[hits.rays[i]];
     RgbF radiance(appearance.radiance_of_exitance(cos_view(point, ray.direction)));
-    if (!is_plain) radiance = radiance * hits.textures[i].tint.leaving;
+    if (!is_plain && !light.is_tinted) radiance = radiance * hits.textures[i].tint.leaving;
     sample.diffuse = light.exitance[i] * radiance;
     sample.coverage = 1;
     sample.albedo = appearance.albedo;

@@ -37,6 +37,16 @@ float number_of(const Texture& texture, const SurfaceTextures::Place& place) {
   return std::clamp(looked_up(texture, place)[texture.channel] * float(texture.scale.x), 0.0f, 1.0f);
 }
 
+RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
+  const std::array<float, 4> texel = looked_up(texture, place);
+  RgbF color;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float value = std::max(0.0f, texel[c]) * float(texture.scale[c]);
+    color[c] = texture.is_relative ? value : std::min(value, 1.0f);
+  }
+  return color;
+}
+
 // A whole number of 8 bits has no middle of the range: both beside it are as good.
 float slope_of(float value) {
   const float slope = 2 * value - 1;
@@ -142,6 +152,11 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
       own.tint = pointer_to(medium.tint_texture);
       own.roughness = pointer_to(medium.roughness_texture);
       own.factor = medium.tint;
+      if (is_partly_opaque(medium)) {
+        own.partly_opaque = &medium;
+        own.weight = pointer_to(medium.weight_texture);
+        own.base = pointer_to(medium.base_texture);
+      }
       own.at_entry = medium.texture_mix == TextureMix::pre    ? 1
                      : medium.texture_mix == TextureMix::post ? 0
                                                               : .5;
@@ -151,11 +166,12 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
       if (shape.gloss) own.roughness = pointer_to(shape.gloss->roughness_texture);
       if (shape.gloss) own.metalness = pointer_to(shape.gloss->metalness_texture);
     }
-    own.has_tint = own.tint != nullptr || own.factor != Rgb(1);
+    own.has_tint = own.tint != nullptr || own.factor != Rgb(1) || own.weight != nullptr;
     own.grain = grain_of(scene, shape);
     own.has_uv = uvs_of(scene, shape) != MeshUvs::unread && !world.meshes[m].uvs.empty();
     own.has_tangents = !world.meshes[m].tangents.empty();
-    is_empty_ = is_empty_ && !own.has_tint && !needs_uvs(scene, shape) && own.grain == nullptr;
+    is_empty_ = is_empty_ && !own.has_tint && !needs_uvs(scene, shape) && own.grain == nullptr &&
+                own.partly_opaque == nullptr;
     for (const Texture* texture : textures_of(scene, shape))
       check_tiles(*texture, world.meshes[m], shape.name);
   }
@@ -175,16 +191,26 @@ SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t 
 
 SurfaceTint SurfaceTextures::tint(const Place& place) const {
   const OfMesh& own = of_mesh_[place.mesh];
-  if (!own.has_tint) return {};
+  const float weight = own.partly_opaque == nullptr ? 1 : float(own.partly_opaque->subsurface_weight);
+  if (!own.has_tint) return {.leaving = RgbF(weight)};
   RgbF tint(own.factor);
   if (own.tint != nullptr) {
-    const std::array<float, 4> texel = looked_up(*own.tint, place);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float value = std::max(0.0f, texel[c]) * float(own.tint->scale[c]);
-      tint[c] *= own.tint->is_relative ? value : std::min(value, 1.0f);
-    }
+    tint = tint * color_of(*own.tint, place);
   }
-  return {powered(tint, own.at_entry), powered(tint, own.at_exit)};
+  if (own.weight != nullptr) tint *= number_of(*own.weight, place);
+  SurfaceTint result{powered(tint, own.at_entry), powered(tint, own.at_exit)};
+  if (weight < 1) result.leaving *= weight;
+  return result;
+}
+
+RgbF SurfaceTextures::reflected(const Place& place) const {
+  const OfMesh& own = of_mesh_[place.mesh];
+  if (own.partly_opaque == nullptr) return {};
+  const float scattered =
+      own.weight != nullptr ? number_of(*own.weight, place) : float(own.partly_opaque->subsurface_weight);
+  RgbF base(own.partly_opaque->base_color);
+  if (own.base != nullptr) base = base * color_of(*own.base, place);
+  return base * (1 - scattered);
 }
 
 std::optional<float> SurfaceTextures::roughness(const Place& place) const {
@@ -246,11 +272,13 @@ void add_to_key(KeyBuilder& key, const Texture& texture) {
 
 StageKey tint_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes,
                   const StageKey& samples) {
-  if (medium.texture_mix == TextureMix::post || (medium.tint == Rgb(1) && !medium.tint_texture)) return {};
+  const bool has_tint = medium.tint != Rgb(1) || medium.tint_texture || medium.weight_texture;
+  if (medium.texture_mix == TextureMix::post || !has_tint) return {};
   KeyBuilder key("entering tint", 1);
   key.add(samples).add(medium.tint).add(medium.texture_mix);
-  if (!medium.tint_texture) return key.key();
-  add_to_key(key, *medium.tint_texture);
+  if (!medium.tint_texture && !medium.weight_texture) return key.key();
+  if (medium.tint_texture) add_to_key(key, *medium.tint_texture);
+  if (medium.weight_texture) add_to_key(key.add(std::string("weight")), *medium.weight_texture);
   for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
   return key.key();
 }

@@ -98,6 +98,9 @@ std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) 
   if (!shape.medium) return textures;
   add(scene.media[*shape.medium].tint_texture);
   add(scene.media[*shape.medium].roughness_texture);
+  if (!is_partly_opaque(scene.media[*shape.medium])) return textures;
+  add(scene.media[*shape.medium].weight_texture);
+  add(scene.media[*shape.medium].base_texture);
   return textures;
 }
 

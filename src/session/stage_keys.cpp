@@ -83,6 +83,7 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
       const Medium& medium = input.scene.media[*shape.medium];
       key.add(medium.tint).add(medium.texture_mix).add(medium.eta).add(medium.specular_roughness);
       key.add(medium.grain.anisotropy).add(medium.grain.rotation);
+      if (is_partly_opaque(medium)) key.add(medium.subsurface_weight).add(medium.base_color);
     } else {
       key.add(shape.reflectance).add(shape.gloss.has_value());
       if (const auto& gloss = shape.gloss) {
@@ -119,7 +120,10 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];
     key.add(shape.medium.has_value());
-    if (shape.medium) key.add(input.scene.media[*shape.medium].eta);
+    if (shape.medium) {
+      const Medium& medium = input.scene.media[*shape.medium];
+      key.add(medium.eta).add(is_partly_opaque(medium));
+    }
     if (shape.gloss) key.add(shape.gloss->eta);
     for (const auto& map : {&shape.normal_map, &shape.bump_map})
       if (*map) add_to_key(key, **map);

@@ -131,6 +131,44 @@ TEST(GltfTextures, BecomeTheScenes) {
   EXPECT_FALSE(scene.shapes.at(0).gloss);
 }
 
+// Claim: light that is transmitted, clearly or diffusely, is the share that scatters inside: t + (1 - t) d; the rest is
+// reflected in the base colour, and what is transmitted diffusely alone is tinted by its own colour. A texture of the one
+// that there is is one of weights, red or alpha. Source: KHR_materials_transmission, KHR_materials_diffuse_transmission.
+// Fails if the shares add up, or the base colour tints what enters diffusely.
+TEST(GltfTextures, WeighWhatIsTransmitted) {
+  const Json image = {{"uri", "data:image/png;base64," + base64(png_of(200))}};
+  const auto medium = [&](const Json& clear, const Json& diffuse) {
+    const Json material = {
+        {"pbrMetallicRoughness", {{"baseColorFactor", {.5, .6, .7, 1}}}},
+        {"extensions",
+         {{"KHR_materials_volume",
+           {{"thicknessFactor", 1}, {"attenuationDistance", .01}, {"attenuationColor", {.5, .4, .3}}}},
+          {"KHR_materials_volume_scatter", {{"multiscatterColor", {.8, .6, .4}}}},
+          {"KHR_materials_transmission", clear},
+          {"KHR_materials_diffuse_transmission", diffuse}}}};
+    const Asset asset = textured_triangle(material, image);
+    EXPECT_TRUE(imported(asset).not_carried.empty()) << imported(asset).not_carried.at(0);
+    return scene_of(asset.glb(), "a.glb").media.at(0);
+  };
+  const Json none = Json::object();
+  const Medium both = medium({{"transmissionFactor", .5}}, {{"diffuseTransmissionFactor", .2}});
+  EXPECT_NEAR(both.subsurface_weight, .6, 1e-12);
+  EXPECT_EQ(both.base_color, Rgb(.5, .6, .7));
+  EXPECT_EQ(both.tint, Rgb(.5, .6, .7));
+  const Medium diffuse = medium(none, {{"diffuseTransmissionFactor", .25},
+                                       {"diffuseTransmissionTexture", {{"index", 0}}},
+                                       {"diffuseTransmissionColorFactor", {1, .9, .8}}});
+  EXPECT_EQ(diffuse.tint, Rgb(1, .9, .8));
+  EXPECT_EQ(diffuse.weight_texture.value().scale.x, .25);
+  EXPECT_EQ(diffuse.weight_texture->channel, 3u);
+  const Medium clear = medium({{"transmissionFactor", .5}, {"transmissionTexture", {{"index", 0}}}}, none);
+  EXPECT_EQ(clear.weight_texture.value().scale.x, .5);
+  EXPECT_EQ(clear.weight_texture->channel, 0u);
+  const Medium all = medium({{"transmissionFactor", 1}}, none);
+  EXPECT_FALSE(is_partly_opaque(all));
+  EXPECT_EQ(all.tint, Rgb(.5, .6, .7));
+}
+
 // Claim: a texture that cannot be had leaves its factor, and is said; the rest of the asset is read. Fails if it is an
 // error, or goes unsaid.
 TEST(GltfTextures, ThatCannotBeHadAreSaid) {

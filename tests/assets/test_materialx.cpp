@@ -100,7 +100,7 @@ TEST(MaterialX, PartsOfAnObjAreOneBody) {
 }
 
 // Claim: a standard surface, found by its material's name, has a radius of a colour times a scale; a weight between 0
-// and 1 and what is connected to an input are said. Source: Autodesk Standard Surface 1.0.1. Fails if a name leads to
+// and 1 leaves the rest to the base colour; what is connected to an input is said. Source: Autodesk Standard Surface 1.0.1. Fails if a name leads to
 // the first surface.
 TEST(MaterialX, StandardSurfaceIsFoundByName) {
   const MaterialFolder folder;
@@ -108,7 +108,10 @@ TEST(MaterialX, StandardSurfaceIsFoundByName) {
     const ImportedAsset import = folder.import("tetrahedron.obj", name);
     expect_artist(parse_scene(import.text, "a.json").media.at(0), {1, 1, 1}, {.3, .2, .1}, 0, 1.5);
     EXPECT_TRUE(has(import.not_carried, "what subsurface_color is connected to: its default is taken"));
-    EXPECT_TRUE(has(import.not_carried, "subsurface 0.5: the body is translucent as a whole"));
+    EXPECT_TRUE(has(import.translated, "subsurface 0.5 -> subsurface_weight; base colour -> base_color 0.8"));
+    const Medium& medium = parse_scene(import.text, "a.json").media.at(0);
+    EXPECT_EQ(medium.subsurface_weight, .5);
+    EXPECT_EQ(medium.base_color, Rgb(.8));
   }
 }
 

@@ -86,6 +86,8 @@ std::vector<Change> changes() {
        "media.stone.specular_rotation=40",
        {kRough, "media.stone.specular_anisotropy=0.8"}},
       {"medium.tint", "media.stone.tint=[0.5, 0.7, 0.9]"},
+      {"medium.subsurface_weight", "media.stone.subsurface_weight=0.5"},
+      {"medium.base_color", "media.stone.base_color=[0.1, 0.2, 0.3]", {"media.stone.subsurface_weight=0.5"}},
       {"medium.texture_mix", "media.stone.texture_mix=pre", {R"(media.stone.tint={"texture": "cells.png"})"}},
       {"medium.thickness", "media.stone.thickness=3", {"media.stone.profile=multipole"}},
       {"medium.profile", "media.stone.profile=dipole"},

@@ -46,8 +46,11 @@ class SurfaceTextures {
   };
   Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
 
-  /// Of an opaque surface what leaves is times the texture of its reflectance.
+  /// Of an opaque surface what leaves is times the texture of its reflectance. Of a body's light that scatters, its
+  /// weight is in it, once.
   SurfaceTint tint(const Place& place) const;
+  /// Share of the light entering a body that it reflects diffusely at its surface instead.
+  RgbF reflected(const Place& place) const;
   /// None: the surface's own.
   std::optional<float> roughness(const Place& place) const;
   std::optional<float> metalness(const Place& place) const;
@@ -59,11 +62,12 @@ class SurfaceTextures {
  private:
   struct OfMesh {
     const Texture *tint = nullptr, *roughness = nullptr, *metalness = nullptr, *normals = nullptr,
-                  *heights = nullptr;
+                  *heights = nullptr, *weight = nullptr, *base = nullptr;
     Rgb factor{1, 1, 1};               ///< times the tint's texture
     double at_entry = 0, at_exit = 1;  ///< exponents of the tint
     bool has_tint = false, has_uv = false, has_tangents = false;
     const Grain* grain = nullptr;
+    const Medium* partly_opaque = nullptr;
   };
 
   const World& world_;

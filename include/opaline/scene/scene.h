@@ -96,10 +96,19 @@ struct Medium {
   Rgb tint{1, 1, 1};
   std::optional<Texture> tint_texture{}, roughness_texture{};
   TextureMix texture_mix = TextureMix::split;
-  ChosenProfile chosen{};  ///< where profile is none
-  Grain grain{};           ///< of the boundary
+  /// Share of the light that scatters inside, [0, 1]; the rest is reflected diffusely at the surface, by base_color.
+  double subsurface_weight = 1;
+  Rgb base_color{.8, .8, .8};
+  std::optional<Texture> weight_texture{}, base_texture{};  ///< times these
+  ChosenProfile chosen{};                                   ///< where profile is none
+  Grain grain{};                                            ///< of the boundary
   friend bool operator==(const Medium&, const Medium&) = default;
 };
+
+/// Whether some of its light is reflected diffusely at its surface.
+inline bool is_partly_opaque(const Medium& medium) {
+  return medium.subsurface_weight < 1 || medium.weight_texture;
+}
 
 inline ProfileKind profile_kind(const Medium& medium) {
   return medium.profile.value_or(medium.chosen.kind);
