@@ -28,4 +28,13 @@ std::string read_asset_bytes(const std::string& path) {
   return bytes;
 }
 
+std::string scene_name_of(const std::filesystem::path& file, const std::string& path,
+                          const std::string& mesh_path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path from_asset =
+      fs::relative(fs::absolute(file), fs::absolute(fs::path(path)).parent_path(), error);
+  return (fs::path(mesh_path).parent_path() / (error || from_asset.empty() ? file : from_asset)).string();
+}
+
 }  // namespace opaline

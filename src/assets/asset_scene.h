@@ -36,11 +36,17 @@ struct SurfaceTranslation {
   Vec3d reflectance{1, 1, 1};
 };
 
+/// Where an asset is, and how the scene file calls it.
+struct AssetPlace {
+  std::string path, mesh_path;
+};
+
 /// A surface of a MaterialX file.
 /// in    file_and_name: "skin.mtlx", or "skin.mtlx#name" of a surface or material in it; scene: whose unit its lengths
 ///       are in, and which is told what became of the values
 /// error Error{bad_input} naming the file: no XML, no such surface, a value that is not of its type
-SurfaceTranslation translate_materialx(const std::string& file_and_name, AssetScene& scene);
+SurfaceTranslation translate_materialx(const std::string& file_and_name, const AssetPlace& asset,
+                                       AssetScene& scene);
 
 AssetScene import_gltf(const std::string& path, const std::string& mesh_path);
 AssetScene import_obj(const std::string& path, const std::string& mesh_path);

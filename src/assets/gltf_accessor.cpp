@@ -56,7 +56,7 @@ double number(const unsigned char* bytes, int type, bool normalized) {
   }
 }
 
-/// One accessor with its checks; `components` 1 of a scalar, 2 or 3 of a vector.
+/// One accessor with its checks; `components` 1 of a scalar, 2 to 4 of a vector.
 class AccessorReader {
  public:
   AccessorReader(const GltfModel& gltf, int index)
@@ -81,8 +81,9 @@ class AccessorReader {
   }
 
   void check_type(std::size_t components) const {
-    constexpr std::array<int, 3> types{TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3};
-    constexpr std::array<const char*, 3> names{"SCALAR", "VEC2", "VEC3"};
+    constexpr std::array<int, 4> types{TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3,
+                                       TINYGLTF_TYPE_VEC4};
+    constexpr std::array<const char*, 4> names{"SCALAR", "VEC2", "VEC3", "VEC4"};
     if (accessor_.type != types[components - 1])
       fail("is of the wrong type", names[components - 1],
            std::to_string(tinygltf::GetNumComponentsInType(std::uint32_t(accessor_.type))) + " components");
@@ -162,6 +163,15 @@ std::vector<Vec3d> read_vectors(const GltfModel& gltf, int index) {
   for (std::size_t i = 0; i < numbers.size(); i += 3)
     vectors.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
   return vectors;
+}
+
+std::vector<std::array<double, 4>> read_quadruples(const GltfModel& gltf, int index) {
+  const std::vector<double> numbers = AccessorReader(gltf, index).run(4);
+  std::vector<std::array<double, 4>> quadruples;
+  quadruples.reserve(numbers.size() / 4);
+  for (std::size_t i = 0; i < numbers.size(); i += 4)
+    quadruples.push_back({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]});
+  return quadruples;
 }
 
 std::vector<std::array<float, 2>> read_pairs(const GltfModel& gltf, int index) {

@@ -16,6 +16,9 @@ namespace opaline {
 /// error Error{bad_input}: it is no VEC3, or reaches beyond its buffer view
 std::vector<Vec3d> read_vectors(const GltfModel& gltf, int index);
 
+/// The same of VEC4.
+std::vector<std::array<double, 4>> read_quadruples(const GltfModel& gltf, int index);
+
 /// The same of VEC2.
 std::vector<std::array<float, 2>> read_pairs(const GltfModel& gltf, int index);
 

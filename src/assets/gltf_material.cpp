@@ -9,8 +9,10 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "assets/gltf_extension.h"
 #include "assets/gltf_texture.h"
 
 namespace opaline {
@@ -21,45 +23,6 @@ constexpr double kMillimetres = 1000;  // in glTF's metre
 constexpr double kDarkest = 1e-6, kClearest = .999;
 constexpr double kMostAnisotropy = .99;
 constexpr double kLeastIor = .1, kMostIor = 10, kGltfIor = 1.5;
-
-/// The values of one extension of a material; those that are not there have defaults.
-class ExtensionValues {
- public:
-  ExtensionValues(const GltfModel& gltf, std::string place, const tinygltf::Value& values)
-      : gltf_(gltf), place_(std::move(place)), values_(values) {}
-
-  double number(const char* key, double otherwise) const {
-    if (!values_.Has(key)) return otherwise;
-    const tinygltf::Value& value = values_.Get(key);
-    if (!value.IsNumber()) fail_at(gltf_.path, place_ + '.' + key, "is of the wrong type", "a number");
-    return value.GetNumberAsDouble();
-  }
-
-  Vec3d color(const char* key, const Vec3d& otherwise) const {
-    if (!values_.Has(key)) return otherwise;
-    const tinygltf::Value& value = values_.Get(key);
-    Vec3d color;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (value.ArrayLen() != 3 || !value.Get(int(i)).IsNumber())
-        fail_at(gltf_.path, place_ + '.' + key, "is of the wrong type", "three numbers");
-      color[i] = std::clamp(value.Get(int(i)).GetNumberAsDouble(), 0., 1.);
-    }
-    return color;
-  }
-
-  /// The names of its textures.
-  std::vector<std::string> textures() const {
-    std::vector<std::string> names;
-    for (const std::string& key : values_.Keys())
-      if (key.ends_with("Texture")) names.push_back(key);
-    return names;
-  }
-
- private:
-  const GltfModel& gltf_;
-  std::string place_;
-  const tinygltf::Value& values_;
-};
 
 /// How light scatters in a volume, in either spelling of the draft.
 struct Scatter {
@@ -99,10 +62,11 @@ class MaterialTranslator {
     if (surface.medium.is_null())
       add_opaque(surface);
     else
-      add_tint(surface);
+      add_entry(surface);
     if (std::optional<Json> normals = texture(of(material_.normalTexture), "normalTexture")) {
       (*normals)["scale"] = std::max(material_.normalTexture.scale, 0.);
       surface.keys["normal_map"] = std::move(*normals);
+      translated("normalTexture: " + tangents());
     }
     tell_losses(!surface.medium.is_null());
     return surface;
@@ -132,6 +96,12 @@ class MaterialTranslator {
       not_carried(std::string(name) + ": " + failure.message);
       return {};
     }
+  }
+
+  std::string tangents() const {
+    if (use_.has_tangents) return "around the mesh's TANGENT";
+    return use_.has_uvs ? "around tangents of its UVs, not MikkTSpace's: its mesh has no TANGENT"
+                        : "about y, for its mesh has no TEXCOORD_0";
   }
 
   /// A colour or number times its texture.
@@ -179,9 +149,8 @@ class MaterialTranslator {
     if (degrees != 0) keys["specular_rotation"] = degrees;
     translated(
         fmt::format("anisotropyStrength {:.3g}, anisotropyRotation {:.3g}, roughnessFactor {:.3g} -> "
-                    "specular_anisotropy {:.3g}, specular_rotation {:.4g}, specular_roughness {:.3g}{}",
-                    strength, rotation, roughness, anisotropy, degrees, mean,
-                    use_.has_uvs ? "" : "; about y, for its mesh has no TEXCOORD_0"));
+                    "specular_anisotropy {:.3g}, specular_rotation {:.4g}, specular_roughness {:.3g}; {}",
+                    strength, rotation, roughness, anisotropy, degrees, mean, tangents()));
     if (material_.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0)
       not_carried(
           "anisotropyStrength where the roughness is not roughnessFactor: both alphas follow the texture");
@@ -198,17 +167,58 @@ class MaterialTranslator {
     if (color != Vec3d(1)) not_carried("specularColorFactor " + short_triple(color));
   }
 
-  void add_tint(SurfaceTranslation& surface) {
-    const tinygltf::PbrMetallicRoughness& pbr = material_.pbrMetallicRoughness;
-    std::optional<Json> base = texture(of(pbr.baseColorTexture), "baseColorTexture");
-    if (base || surface.reflectance != Vec3d(1)) {
-      surface.medium["tint"] =
-          times(std::move(base), triple_json(surface.reflectance), triple_json(Vec3d(1)));
-      translated(fmt::format("baseColorFactor -> tint {}", short_triple(surface.reflectance)));
+  std::optional<Json> extension_texture(const char* extension, const char* key) {
+    if (!values(extension).has(key)) return {};
+    carried_.insert(key);
+    tinygltf::ExtensionMap extensions;
+    return texture(values(extension).texture(key, extensions), key);
+  }
+
+  /// A colour of the medium, unless it is white.
+  void add_color(Json& medium, const char* key, std::optional<Json> picture, const Vec3d& factor,
+                 const char* name) {
+    if (!picture && factor == Vec3d(1)) return;
+    medium[key] = times(std::move(picture), triple_json(factor), triple_json(Vec3d(1)));
+    translated(fmt::format("{} -> {} {}", name, key, short_triple(factor)));
+  }
+
+  /// Light that is transmitted, clearly in the base colour or diffusely in another, scatters inside; the rest is reflected
+  /// in the base colour. Without either all enters, for nothing would scatter.
+  void add_entry(SurfaceTranslation& surface) {
+    constexpr const char *kClear = "KHR_materials_transmission",
+                         *kDiffuse = "KHR_materials_diffuse_transmission";
+    const double clear = std::clamp(values(kClear).number("transmissionFactor", 0), 0., 1.),
+                 diffuse = std::clamp(values(kDiffuse).number("diffuseTransmissionFactor", 0), 0., 1.);
+    const double weight = clear + (1 - clear) * diffuse;
+    const Vec3d color = values(kDiffuse).color("diffuseTransmissionColorFactor", Vec3d(1));
+    std::optional<Json> base =
+        texture(of(material_.pbrMetallicRoughness.baseColorTexture), "baseColorTexture");
+    std::optional<Json> share;
+    if (diffuse == 0 && clear > 0) share = channel(extension_texture(kClear, "transmissionTexture"), "r");
+    if (clear == 0 && diffuse > 0)
+      share = channel(extension_texture(kDiffuse, "diffuseTransmissionTexture"), "a");
+    if (weight == 0) {
+      not_carried(
+          "transmissionFactor 0 and diffuseTransmissionFactor 0: all light enters that the boundary "
+          "does not reflect");
+    } else if (weight < 1 || share) {
+      surface.medium["subsurface_weight"] = times(std::move(share), weight, 1.0);
+      surface.medium["base_color"] = times(base, triple_json(surface.reflectance), triple_json(Vec3d(1)));
+      translated(fmt::format(
+          "transmissionFactor {:.3g}, diffuseTransmissionFactor {:.3g} -> subsurface_weight {:.3g}, the rest "
+          "in base_color {}",
+          clear, diffuse, weight, short_triple(surface.reflectance)));
+    }
+    if (diffuse > 0 && clear == 0) {
+      add_color(surface.medium, "tint", extension_texture(kDiffuse, "diffuseTransmissionColorTexture"), color,
+                "diffuseTransmissionColorFactor");
+    } else {
+      add_color(surface.medium, "tint", std::move(base), surface.reflectance, "baseColorFactor");
+      if (color != Vec3d(1)) not_carried("diffuseTransmissionColorFactor " + short_triple(color));
     }
     add_specular_weight(surface.medium);
-    if (std::optional<Json> rough =
-            channel(texture(of(pbr.metallicRoughnessTexture), "metallicRoughnessTexture"), "g"))
+    const GltfTexture both = of(material_.pbrMetallicRoughness.metallicRoughnessTexture);
+    if (std::optional<Json> rough = channel(texture(both, "metallicRoughnessTexture"), "g"))
       surface.medium["specular_roughness"] =
           times(std::move(rough), surface.medium["specular_roughness"], 1.0);
   }
@@ -275,7 +285,7 @@ class MaterialTranslator {
         short_triple(color), distance * kMillimetres, short_triple(scatter.multiscatter_color),
         scatter.anisotropy, ior, material_.pbrMetallicRoughness.roughnessFactor, short_triple(sigma_a),
         short_triple(sigma_s), g, ior, roughness));
-    tell_of_entry(volume);
+    tell_of_thickness(volume);
     medium.update({{"sigma_a", triple_json(sigma_a)},
                    {"sigma_s", triple_json(sigma_s)},
                    {"g", g},
@@ -288,24 +298,13 @@ class MaterialTranslator {
     return component_min(component_max(color, Vec3d(kDarkest)), Vec3d(kClearest));
   }
 
-  /// A translucent body takes in all light that its boundary lets through, wherever it is thick.
-  void tell_of_entry(const ExtensionValues& volume) {
+  void tell_of_thickness(const ExtensionValues& volume) {
     const double thickness = volume.number("thicknessFactor", 0);
     if (thickness > 0)
       translated(
           fmt::format("thicknessFactor {:.4g} mm -> the mesh's own thickness", thickness * kMillimetres));
     else
       not_carried("thicknessFactor 0 (thin-walled): the mesh is taken as a body");
-    const double clear = values("KHR_materials_transmission").number("transmissionFactor", 0);
-    const ExtensionValues diffuse = values("KHR_materials_diffuse_transmission");
-    const double share = diffuse.number("diffuseTransmissionFactor", 0);
-    const Vec3d tint = diffuse.color("diffuseTransmissionColorFactor", Vec3d(1));
-    if (clear < 1 && share < 1)
-      not_carried(
-          fmt::format("transmissionFactor {:.3g} and diffuseTransmissionFactor {:.3g}: all light enters that "
-                      "the boundary does not reflect",
-                      clear, share));
-    if (tint != Vec3d(1)) not_carried("diffuseTransmissionColorFactor " + short_triple(tint));
   }
 
   void tell_losses(bool is_translucent) {
@@ -317,7 +316,8 @@ class MaterialTranslator {
     add(material_.emissiveTexture.index, "emissiveTexture");
     for (const auto& [extension, unused] : material_.extensions)
       for (std::string& name : values(extension.c_str()).textures()) textures.push_back(std::move(name));
-    for (const std::string& name : textures) not_carried("texture " + name);
+    for (const std::string& name : textures)
+      if (!carried_.contains(name)) not_carried("texture " + name);
     if (material_.emissiveFactor != std::vector<double>{0, 0, 0} && !material_.emissiveFactor.empty())
       not_carried("emissiveFactor: it does not glow");
     if (material_.alphaMode != "OPAQUE")
@@ -345,6 +345,7 @@ class MaterialTranslator {
   const MaterialUse& use_;
   std::string place_, label_;
   AssetScene& scene_;
+  std::set<std::string> carried_;  // textures of extensions
 };
 
 }  // namespace

@@ -9,8 +9,9 @@ namespace opaline {
 
 /// Where a material is met.
 struct MaterialUse {
-  int index = -1;           ///< -1: glTF's default one, white
-  bool has_uvs = false;     ///< of what it is on
+  int index = -1;        ///< -1: glTF's default one, white
+  bool has_uvs = false;  ///< of what it is on
+  bool has_tangents = false;
   std::string mesh_path{};  ///< how the scene file calls the asset
 };
 

@@ -122,14 +122,20 @@ void check_positions(const GltfModel& gltf, int accessor, const std::vector<Vec3
   }
 }
 
+/// error unless there are as many as positions
+void check_count(const GltfModel& gltf, int accessor, std::size_t count, const GltfPart& part,
+                 const char* what) {
+  if (count != part.positions.size())
+    fail_at(gltf.path, record_name("accessors", std::size_t(accessor)),
+            std::string("has a ") + what + " too many or too few",
+            std::to_string(part.positions.size()) + ", as there are positions", std::to_string(count));
+}
+
 void read_normals(const GltfModel& gltf, const tinygltf::Primitive& primitive, GltfPart& part) {
   const auto found = primitive.attributes.find("NORMAL");
   if (found == primitive.attributes.end()) return;
   const std::vector<Vec3d> normals = read_vectors(gltf, found->second);
-  if (normals.size() != part.positions.size())
-    fail_at(
-        gltf.path, record_name("accessors", std::size_t(found->second)), "has a normal too many or too few",
-        std::to_string(part.positions.size()) + ", as there are positions", std::to_string(normals.size()));
+  check_count(gltf, found->second, normals.size(), part, "normal");
   part.normals.reserve(normals.size());
   for (const Vec3d& n : normals) {
     const bool usable = is_finite(n) && dot(n, n) < coordinate_limit;
@@ -142,16 +148,27 @@ void read_uvs(const GltfModel& gltf, const tinygltf::Primitive& primitive, GltfP
   const auto found = primitive.attributes.find("TEXCOORD_0");
   if (found == primitive.attributes.end()) return;
   part.uvs = read_pairs(gltf, found->second);
-  if (part.uvs.size() != part.positions.size())
-    fail_at(gltf.path, record_name("accessors", std::size_t(found->second)), "has a UV too many or too few",
-            std::to_string(part.positions.size()) + ", as there are positions",
-            std::to_string(part.uvs.size()));
+  check_count(gltf, found->second, part.uvs.size(), part, "UV");
   for (auto& uv : part.uvs) uv[1] = 1 - uv[1];
+}
+
+/// Around the file's normals; without them there are none (glTF 2.0, 3.7.2.1).
+void read_tangents(const GltfModel& gltf, const tinygltf::Primitive& primitive, GltfPart& part) {
+  const auto found = primitive.attributes.find("TANGENT");
+  if (found == primitive.attributes.end() || part.normals.empty()) return;
+  const std::vector<std::array<double, 4>> tangents = read_quadruples(gltf, found->second);
+  check_count(gltf, found->second, tangents.size(), part, "tangent");
+  part.tangents.reserve(tangents.size());
+  for (const auto& [x, y, z, w] : tangents) {
+    const Vec3d direction{x, y, z};
+    const bool usable = is_finite(direction) && dot(direction, direction) < coordinate_limit;
+    part.tangents.push_back({usable ? Vec3f(direction) : Vec3f(), w < 0 ? -1.0f : 1.0f});
+  }
 }
 
 }  // namespace
 
-GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, bool with_uvs) {
+GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, MeshUvs uvs) {
   const PartIndex index = find_part(gltf, name);
   const tinygltf::Primitive& primitive = gltf.model.meshes[index.mesh].primitives[index.primitive];
   const std::string place =
@@ -165,15 +182,16 @@ GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, bool wit
   part.positions = read_vectors(gltf, positions->second);
   check_positions(gltf, positions->second, part.positions);
   read_normals(gltf, primitive, part);
-  if (with_uvs) read_uvs(gltf, primitive, part);
+  if (uvs != MeshUvs::unread) read_uvs(gltf, primitive, part);
+  if (uvs == MeshUvs::if_any || uvs == MeshUvs::with_tangents) read_tangents(gltf, primitive, part);
   TriangleList(gltf, primitive, place).read(part);
   if (part.triangles.empty())
     fail_at(gltf.path, place, "has no triangles", "at least three corners", "fewer");
   return part;
 }
 
-GltfPart read_gltf_part(const std::string& path, const std::string& part, bool with_uvs) {
-  return read_gltf_part(*load_gltf(path), part, with_uvs);
+GltfPart read_gltf_part(const std::string& path, const std::string& part, MeshUvs uvs) {
+  return read_gltf_part(*load_gltf(path), part, uvs);
 }
 
 std::string gltf_contents(const std::string& path) {

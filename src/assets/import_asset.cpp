@@ -41,16 +41,16 @@ void check_extent(const std::string& path, const AssetScene& scene) {
                    fmt::format("{:.3g}", farthest));
 }
 
-void replace_materials(AssetScene& scene, const std::string& material) {
+void replace_materials(AssetScene& scene, const std::string& material, const AssetPlace& asset) {
   scene.translated.push_back("all materials of the asset -> " + in_quotes(material));
-  const SurfaceTranslation surface = translate_materialx(material, scene);
+  const SurfaceTranslation surface = translate_materialx(material, asset, scene);
   constexpr const char* name = "material";
   scene.media = Json::object();
   if (!surface.medium.is_null()) scene.media[name] = surface.medium;
   for (Json& shape : scene.shapes) {
     for (const char* key :
          {"medium", "reflectance", "group", "metalness", "specular_roughness", "specular_ior",
-          "specular_weight", "specular_anisotropy", "specular_rotation", "normal_map"})
+          "specular_weight", "specular_anisotropy", "specular_rotation", "normal_map", "bump_map"})
       shape.erase(key);
     if (surface.medium.is_null())
       shape["reflectance"] = triple_json(surface.reflectance);
@@ -73,7 +73,7 @@ ImportedAsset import_asset(const std::string& path, const std::string& mesh_path
       kind_of(path) == AssetKind::gltf ? import_gltf(path, mesh_path) : import_obj(path, mesh_path);
   const bool own_camera = !scene.camera.is_null(), own_lights = scene.center_irradiance > 0;
   check_extent(path, scene);
-  if (!material.empty()) replace_materials(scene, material);
+  if (!material.empty()) replace_materials(scene, material, {path, mesh_path});
   add_defaults(scene);
   try {
     std::string text = scene_text(scene, std::filesystem::path(path).filename().string());

@@ -181,7 +181,9 @@ class GltfImporter {
       shape["transform"] = Json::array({{{"matrix", rows}}});
     }
     if (!primitive.attributes.contains("NORMAL")) shape["normals"] = "faceted";
-    const MaterialUse use{primitive.material, primitive.attributes.contains("TEXCOORD_0"), mesh_path_};
+    const MaterialUse use{primitive.material, primitive.attributes.contains("TEXCOORD_0"),
+                          primitive.attributes.contains("TANGENT") && primitive.attributes.contains("NORMAL"),
+                          mesh_path_};
     add_surface(shape, use, placed.index, mesh.primitives.size() > 1);
     scene_.shapes.push_back(std::move(shape));
     parts_.push_back({part, t});
@@ -207,7 +209,8 @@ class GltfImporter {
   };
 
   const Surface& surface_of(const MaterialUse& use) {
-    const auto known = surfaces_.find({use.index, use.has_uvs});
+    const std::tuple key{use.index, use.has_uvs, use.has_tangents};
+    const auto known = surfaces_.find(key);
     if (known != surfaces_.end()) return known->second;
     SurfaceTranslation translation = translate_material(gltf_, use, scene_);
     Surface surface{"", translation.reflectance, std::move(translation.keys)};
@@ -215,7 +218,7 @@ class GltfImporter {
       surface.medium = medium_names_.take(gltf_.model.materials[std::size_t(use.index)].name, "medium");
       scene_.media[surface.medium] = std::move(translation.medium);
     }
-    return surfaces_[{use.index, use.has_uvs}] = surface;
+    return surfaces_[key] = surface;
   }
 
   void tell_mesh_losses(std::size_t index) {
@@ -269,7 +272,8 @@ class GltfImporter {
   std::string mesh_path_;
   AssetScene scene_;
   UniqueNames shape_names_, medium_names_, light_names_;
-  std::map<std::pair<int, bool>, Surface> surfaces_;  // by material, and whether there are UVs
+  std::map<std::tuple<int, bool, bool>, Surface>
+      surfaces_;  // by material, and whether there are UVs and tangents
   std::set<std::size_t> told_meshes_;
   std::vector<PlacedPart> parts_;
 };

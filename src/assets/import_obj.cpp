@@ -11,6 +11,7 @@
 #include "assets/asset_scene.h"
 #include "opaline/assets/obj_material.h"
 #include "opaline/core/error.h"
+#include "opaline/image/texture_file.h"
 
 namespace opaline {
 namespace {
@@ -100,6 +101,11 @@ class ObjImporter {
   }
 
  private:
+  struct Bump {
+    std::string key, keyword;  ///< of the shape, of the library
+    Json texture;
+  };
+
   /// One file, whose name may have blanks in it, or several names.
   void read_libraries(const std::string& names) {
     const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
@@ -129,25 +135,63 @@ class ObjImporter {
           lost_[material].insert("Kd " + in_quotes(trimmed(line)));
       } else if (keyword == "map_Kd" && !material.empty() && has_uvs_) {
         take_picture(material, std::string(trimmed(line)), path);
+      } else if (is_bump(keyword) && !material.empty() && has_uvs_) {
+        take_bump(material, keyword, line, path);
       } else if (is_lost(keyword, line)) {
         lost_[material].insert(keyword);
       }
     });
   }
 
-  /// A file beside the library, without options, which not two programs read alike.
-  void take_picture(const std::string& material, std::string name, const std::string& library) {
+  /// A file beside the library, or an empty path: there is none.
+  static std::filesystem::path beside(const std::string& library, std::string name) {
     std::ranges::replace(name, '\\', '/');
-    namespace fs = std::filesystem;
-    const fs::path file = fs::path(library).parent_path() / name;
+    const std::filesystem::path file = std::filesystem::path(library).parent_path() / name;
     std::error_code error;
-    if (name.starts_with('-') || !fs::is_regular_file(file, error)) {
+    return std::filesystem::is_regular_file(file, error) ? file : std::filesystem::path();
+  }
+
+  /// Without options, which not two programs read alike.
+  void take_picture(const std::string& material, const std::string& name, const std::string& library) {
+    const std::filesystem::path file = name.starts_with('-') ? "" : beside(library, name);
+    if (file.empty())
       lost_[material].insert("map_Kd " + in_quotes(name));
+    else
+      pictures_[material] = scene_name_of(file, path_, mesh_path_);
+  }
+
+  static bool is_bump(const std::string& keyword) {
+    return keyword == "bump" || keyword == "map_bump" || keyword == "map_Bump";
+  }
+
+  /// The height of white is what -bm says, in the OBJ's own lengths. Some programs write maps of normals here, whose mean
+  /// is blue.
+  void take_bump(const std::string& material, const std::string& keyword, std::string_view line,
+                 const std::string& library) {
+    const std::string all(trimmed(line));
+    std::string_view rest = line;
+    double height = 1;
+    if (trimmed(rest).starts_with("-bm")) {
+      next_word(rest);
+      const std::string_view word = next_word(rest);
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), height);
+      if (error != std::errc() || end != word.data() + word.size()) height = -1;
+    }
+    const std::string name(trimmed(rest));
+    const std::filesystem::path file = name.starts_with('-') ? "" : beside(library, name);
+    if (file.empty() || !(height >= 0)) {
+      lost_[material].insert(keyword + ' ' + in_quotes(all));
       return;
     }
-    const fs::path from_asset = fs::relative(file, fs::path(path_).parent_path(), error);
-    pictures_[material] =
-        (fs::path(mesh_path_).parent_path() / (error || from_asset.empty() ? file : from_asset)).string();
+    Json texture{{"texture", scene_name_of(file, path_, mesh_path_)}};
+    if (height != 1) texture["scale"] = height;
+    try {
+      const Texel mean = TextureFile::open(file.string(), ColorSpace::linear)->mean();
+      const bool is_blue = mean[2] > .6 && mean[2] > mean[0] + .1 && mean[2] > mean[1] + .1;
+      bumps_[material] = {is_blue ? "normal_map" : "bump_map", keyword, std::move(texture)};
+    } catch (const Error& failure) {
+      lost_[material].insert(keyword + ": " + failure.message);
+    }
   }
 
   /// Whether a value changes what a matte surface looks like: black highlights and full opacity do not.
@@ -166,8 +210,19 @@ class ObjImporter {
                              {"file", mesh_path_},
                              {"part", material},
                              {"reflectance", reflectance_of(material)}});
+    if (const auto bump = bumps_.find(material); bump != bumps_.end()) add_bump(material, bump->second);
     for (const std::string& keyword : lost_[material])
       scene_.not_carried.push_back("material " + in_quotes(material) + ": " + keyword);
+  }
+
+  void add_bump(const std::string& material, const Bump& bump) {
+    scene_.shapes.back()[bump.key] = bump.texture;
+    const double scale = bump.texture.value("scale", 1.0);
+    scene_.translated.push_back(fmt::format("material {}: {} -> {} {}, {}", in_quotes(material), bump.keyword,
+                                            bump.key, bump.texture["texture"].get<std::string>(),
+                                            bump.key == "bump_map"
+                                                ? fmt::format("white {:.4g} mm high", scale)
+                                                : fmt::format("for it is blue, slopes times {:.4g}", scale)));
   }
 
   Json reflectance_of(const std::string& material) {
@@ -198,6 +253,7 @@ class ObjImporter {
   bool has_uvs_ = false;
   std::map<std::string, Vec3d> colors_;                // Kd, by material
   std::map<std::string, std::string> pictures_;        // map_Kd, as the scene file calls it, by material
+  std::map<std::string, Bump> bumps_;                  // by material
   std::map<std::string, std::set<std::string>> lost_;  // keywords without a counterpart, by material
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Constants of MaterialX's open_pbr_surface and standard_surface. Both describe a translucent body by the colour that
+// Constants and bumps of MaterialX's open_pbr_surface and standard_surface. Both describe a translucent body by the colour that
 // comes out and the mean free paths inside, which is how the artist's medium of a scene file does: nothing is inverted.
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 
 #include "assets/asset_bytes.h"
 #include "assets/asset_scene.h"
+#include "assets/materialx_bump.h"
 #include "opaline/core/error.h"
 #include "opaline/core/rgb_primaries.h"
 #include "opaline/core/srgb.h"
@@ -23,7 +24,7 @@ constexpr double kMostSpecularAnisotropy = .98, kMostAnisotropy = .99, kLeastIor
 /// What a surface model calls its values, and those it has where nothing is given.
 struct SurfaceModel {
   const char *node, *base_weight, *base_color, *weight, *color, *radius, *scale, *anisotropy, *ior,
-      *metalness, *specular_weight, *specular_anisotropy;
+      *metalness, *specular_weight, *specular_anisotropy, *normal;
   Vec3d default_color, default_scale;
   double default_roughness;
   bool has_rotation;  ///< of the anisotropy, in turns
@@ -43,13 +44,14 @@ constexpr std::array<SurfaceModel, 2> models{
       "base_metalness",
       "specular_weight",
       "specular_roughness_anisotropy",
+      "geometry_normal",
       Vec3d(.8),
       {1, .5, .25},
       .3,
       false},
      {"standard_surface", "base", "base_color", "subsurface", "subsurface_color", "subsurface_radius",
       "subsurface_scale", "subsurface_anisotropy", "specular_IOR", "metalness", "specular",
-      "specular_anisotropy", Vec3d(1), Vec3d(1), .2, true}}};
+      "specular_anisotropy", "normal", Vec3d(1), Vec3d(1), .2, true}}};
 
 const SurfaceModel* find_model(const pugi::xml_node& node) {
   const auto found = std::ranges::find_if(
@@ -60,10 +62,11 @@ const SurfaceModel* find_model(const pugi::xml_node& node) {
 class SurfaceReader {
  public:
   SurfaceReader(const std::string& file, const pugi::xml_node& node, const SurfaceModel& model,
-                AssetScene& scene)
+                const AssetPlace& asset, AssetScene& scene)
       : file_(file),
         node_(node),
         model_(model),
+        asset_(asset),
         scene_(scene),
         label_("material " + in_quotes(node.attribute("name").value())) {}
 
@@ -73,22 +76,44 @@ class SurfaceReader {
     const double weight = number(model_.weight, 0, 0, 1);
     if (weight > 0) {
       surface.medium = make_medium();
-      if (weight < 1)
-        scene_.not_carried.push_back(
-            fmt::format("{}: {} {:.3g}: the body is translucent as a whole, without its base "
-                        "colour",
-                        label_, model_.weight, weight));
+      if (weight < 1) {
+        surface.medium["subsurface_weight"] = weight;
+        surface.medium["base_color"] = triple_json(base);
+        scene_.translated.push_back(
+            fmt::format("{}: {} {:.3g} -> subsurface_weight; base colour -> base_color {} of the rest",
+                        label_, model_.weight, weight, short_triple(base)));
+      }
     } else {
       surface.reflectance = base;
       scene_.translated.push_back(fmt::format("{}: {} 0, base colour -> reflectance {} (opaque)", label_,
                                               model_.weight, short_triple(base)));
       add_gloss(surface);
     }
+    add_bump(surface.keys);
     tell_losses();
     return surface;
   }
 
  private:
+  void add_bump(Json& keys) {
+    const pugi::xml_node normal = input(model_.normal);
+    if (!normal) return;
+    const HeightMap heights = height_map(normal);
+    if (heights.file.empty()) {
+      scene_.not_carried.push_back(fmt::format("{}: {}: {}", label_, model_.normal, heights.problem));
+      return;
+    }
+    const std::filesystem::path file = std::filesystem::path(file_).parent_path() / heights.file;
+    Json& map = keys["bump_map"] = {{"texture", scene_name_of(file, asset_.path, asset_.mesh_path)},
+                                    {"scale", heights.scale}};
+    if (heights.tiling != std::array<double, 2>{1, 1}) {
+      map["uv_scale"] = heights.tiling;
+      map["uv_offset"] = {0, 1 - heights.tiling[1]};  // tiles are counted from the lower edge
+    }
+    scene_.translated.push_back(fmt::format("{}: bump of {} -> bump_map, white {:.4g} mm high", label_,
+                                            heights.file, heights.scale * scene_.mm_per_unit));
+  }
+
   /// Of OpenPBR the keys' own meaning. Standard Surface divides and multiplies alpha by the root of the alphas' ratio.
   /// Returns the roughness beside it.
   double add_grain(Json& keys) {
@@ -226,6 +251,7 @@ class SurfaceReader {
   const std::string& file_;
   pugi::xml_node node_;
   const SurfaceModel& model_;
+  const AssetPlace& asset_;
   AssetScene& scene_;
   std::string label_;
   std::set<std::string> read_;
@@ -251,7 +277,8 @@ std::string surface_names(const pugi::xml_node& root) {
 
 }  // namespace
 
-SurfaceTranslation translate_materialx(const std::string& file_and_name, AssetScene& scene) {
+SurfaceTranslation translate_materialx(const std::string& file_and_name, const AssetPlace& asset,
+                                       AssetScene& scene) {
   const std::size_t hash = file_and_name.rfind('#');
   const std::string file = file_and_name.substr(0, hash);
   const std::string name = hash == file_and_name.npos ? "" : file_and_name.substr(hash + 1);
@@ -269,7 +296,7 @@ SurfaceTranslation translate_materialx(const std::string& file_and_name, AssetSc
   const pugi::xml_node surface = find_surface(root, name);
   if (!surface)
     throw bad_file(file, "has no such surface", surface_names(root), name.empty() ? "" : in_quotes(name));
-  return SurfaceReader(file, surface, *find_model(surface), scene).run();
+  return SurfaceReader(file, surface, *find_model(surface), asset, scene).run();
 }
 
 }  // namespace opaline

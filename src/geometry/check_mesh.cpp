@@ -20,7 +20,7 @@ class MeshChecker {
       : settings_(settings), source_(std::move(source)), memory_(memory) {}
 
   CheckedMesh run() {
-    origins_.resize(source_.uvs.size());
+    origins_.resize(std::max(source_.uvs.size(), source_.tangents.size()));
     for (std::size_t t = 0; t < origins_.size(); ++t) origins_[t] = std::uint32_t(2 * t);
     find_same_vertices();
     if (!recall()) {
@@ -216,18 +216,26 @@ class MeshChecker {
     warn_of(report_.duplicates_dropped, " triangles given twice were dropped");
   }
 
-  /// Of the triangles that are left; none where holes were filled.
-  std::vector<CornerUvs> mended_uvs() const {
-    std::vector<CornerUvs> uvs;
-    uvs.reserve(origins_.size());
+  /// Of the triangles that are left; those that fill holes have none. given: of the source's, or empty
+  template <class Corners>
+  std::vector<Corners> mended(const std::vector<Corners>& given) const {
+    std::vector<Corners> corners;
+    if (given.empty()) return corners;
+    corners.reserve(origins_.size());
     for (const std::uint32_t origin : origins_) {
-      uvs.push_back(origin == kNew ? CornerUvs{} : source_.uvs[origin / 2]);
-      if (origin != kNew && origin % 2 == 1) std::swap(uvs.back()[1], uvs.back()[2]);
-      constexpr float farthest = 1e6f;
-      for (auto& corner : uvs.back())
+      corners.push_back(origin == kNew ? Corners{} : given[origin / 2]);
+      if (origin != kNew && origin % 2 == 1) std::swap(corners.back()[1], corners.back()[2]);
+    }
+    return corners;
+  }
+
+  std::vector<CornerUvs> mended_uvs() const {
+    std::vector<CornerUvs> uvs = mended(source_.uvs);
+    constexpr float farthest = 1e6f;
+    for (CornerUvs& corners : uvs)
+      for (auto& corner : corners)
         for (float& value : corner)
           if (!(std::abs(value) < farthest)) value = 0;
-    }
     return uvs;
   }
 
@@ -245,6 +253,7 @@ class MeshChecker {
       if (!source_.normals.empty()) mesh.normals.push_back(source_.normals[v]);
     }
     mesh.uvs = mended_uvs();
+    mesh.tangents = mended(source_.tangents);
     mesh.triangles = std::move(source_.triangles);
     for (Triangle& triangle : mesh.triangles)
       for (std::uint32_t& v : triangle) v = place[v];
@@ -255,7 +264,7 @@ class MeshChecker {
 
   const CheckSettings& settings_;
   SourceMesh source_;
-  std::vector<std::uint32_t> origins_;  // see CheckMemory; empty: without UVs
+  std::vector<std::uint32_t> origins_;  // see CheckMemory; empty: without UVs and tangents
   CheckMemory* memory_;
   MeshReport report_;
   std::vector<std::uint32_t> same_, site_;

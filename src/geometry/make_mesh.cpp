@@ -16,12 +16,12 @@ namespace {
 
 struct SourceReader {
   const std::string& name;
-  bool with_uvs;
-  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path, file.part, with_uvs); }
+  MeshUvs uvs;
+  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path, file.part, uvs); }
   template <class Builtin>
   SourceMesh operator()(const Builtin& shape) const {
     SourceMesh mesh = tessellate(shape, name);
-    if (with_uvs) add_uvs(shape, mesh);
+    if (uvs != MeshUvs::unread) add_uvs(shape, mesh);
     return mesh;
   }
 };
@@ -76,15 +76,22 @@ void place(SourceMesh& mesh, const Transform& to_world, const std::string& name)
   const NormalMap map{cross(y, z) * (side * (largest / lx)), cross(z, x) * (side * (largest / ly)),
                       cross(x, y) * (side * (largest / lz))};
   for (Vec3f& n : mesh.normals) n = map(n);
+  for (CornerTangents& tangents : mesh.tangents)
+    for (auto& [direction, handedness] : tangents) {
+      const Vec3d d(direction);
+      direction = Vec3f(normalized(to_world.x * d.x + to_world.y * d.y + to_world.z * d.z));
+      handedness *= float(side);
+    }
   if (determinant < 0) {
     for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
     for (CornerUvs& uvs : mesh.uvs) std::swap(uvs[1], uvs[2]);
+    for (CornerTangents& tangents : mesh.tangents) std::swap(tangents[1], tangents[2]);
   }
 }
 
 SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs) {
-  SourceMesh mesh = std::visit(SourceReader{name, uvs != MeshUvs::unread}, shape.source);
-  if (uvs == MeshUvs::required && mesh.uvs.empty())
+  SourceMesh mesh = std::visit(SourceReader{name, uvs}, shape.source);
+  if ((uvs == MeshUvs::required || uvs == MeshUvs::with_tangents) && mesh.uvs.empty())
     throw bad_file(name, "has no UVs, by which its textures would be laid over it",
                    "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF", "none");
   if (const auto* file = std::get_if<MeshFile>(&shape.source))

@@ -92,7 +92,7 @@ std::string mesh_contents(const std::string& path) {
   return format != nullptr && format->contents != nullptr ? format->contents(path) : read_mesh_bytes(path);
 }
 
-SourceMesh read_mesh(const std::string& path, const std::string& part, bool with_uvs) {
+SourceMesh read_mesh(const std::string& path, const std::string& part, MeshUvs uvs) {
   const MeshFormat* format = find_mesh_format(path);
   if (format == nullptr) {
     const std::string extension = fs::path(path).extension().string();
@@ -102,8 +102,7 @@ SourceMesh read_mesh(const std::string& path, const std::string& part, bool with
   if (!part.empty() && format->read_part == nullptr)
     throw bad_file(path, "its format has no parts", "no \"part\"", '"' + part + '"');
   std::string bytes = read_mesh_bytes(path);
-  SourceMesh mesh =
-      part.empty() ? format->read(path, bytes, with_uvs) : format->read_part(path, part, bytes, with_uvs);
+  SourceMesh mesh = part.empty() ? format->read(path, bytes, uvs) : format->read_part(path, part, bytes, uvs);
   require_indexable(path, mesh);
   return mesh;
 }

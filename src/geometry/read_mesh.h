@@ -5,6 +5,7 @@
 #include <string>
 
 #include "geometry/source_mesh.h"
+#include "opaline/scene/scene.h"
 
 namespace opaline {
 
@@ -16,6 +17,6 @@ namespace opaline {
 /// error Error{bad_input} naming the file, and the line where known: missing, not a file, empty, unknown
 ///       extension, no such part, truncated, not of its format, bad coordinates or indices, no faces. Memory stays within a
 ///       small multiple of the file's length
-SourceMesh read_mesh(const std::string& path, const std::string& part = {}, bool with_uvs = false);
+SourceMesh read_mesh(const std::string& path, const std::string& part = {}, MeshUvs uvs = MeshUvs::unread);
 
 }  // namespace opaline

@@ -19,8 +19,9 @@ struct SourceMesh {
   std::vector<Vec3d> positions;
   std::vector<Vec3f> normals;  ///< empty, or one a vertex, of any length; zero where there is none
   std::vector<Triangle> triangles;
-  std::vector<CornerUvs> uvs;  ///< one a triangle, if asked for and there; else empty
-  std::size_t collapsed = 0;   ///< triangles left out already for want of three different corners
+  std::vector<CornerUvs> uvs;            ///< one a triangle, if asked for and there; else empty
+  std::vector<CornerTangents> tangents;  ///< the same
+  std::size_t collapsed = 0;             ///< triangles left out already for want of three different corners
   std::vector<std::string> warnings;
 };
 

@@ -23,4 +23,11 @@ SurfaceUv surface_uv(const Mesh& mesh, std::uint32_t triangle, float u, float v)
   return result;
 }
 
+Tangent surface_tangent(const Mesh& mesh, std::uint32_t triangle, float u, float v) {
+  const auto& [a, b, c] = mesh.tangents[triangle];
+  const float w = 1 - u - v;
+  return {a.direction * w + b.direction * u + c.direction * v,
+          a.side * w + b.side * u + c.side * v < 0 ? -1.0f : 1.0f};
+}
+
 }  // namespace opaline

@@ -56,6 +56,9 @@ std::size_t turn_outward(Mesh& mesh) {
     mesh.normals[v] = -mesh.normals[v];
     ++turned;
   }
+  for (std::size_t t = 0; t < mesh.tangents.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (agreement[mesh.triangles[t][k]] < 0) mesh.tangents[t][k].side *= -1;
   return turned;
 }
 

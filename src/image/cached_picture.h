@@ -22,6 +22,7 @@ class CachedPicture {
  public:
   virtual ~CachedPicture() = default;
   virtual std::array<float, 4> at(const TexturePlace& place) const = 0;
+  virtual std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const = 0;
   /// The first texel, if all others are like it.
   virtual std::optional<Texel> constant() const = 0;
   virtual Texel mean() const = 0;

@@ -164,15 +164,26 @@ bool TextureFile::has_tile(int column, int row) const {
          pictures_.contains(kFirstTile + column + kColumns * row);
 }
 
-std::array<float, 4> TextureFile::at(const TexturePlace& place) const {
-  if (const auto plain = pictures_.find(0); plain != pictures_.end()) return plain->second->at(place);
+const CachedPicture* TextureFile::picture_at(TexturePlace& place) const {
+  if (const auto plain = pictures_.find(0); plain != pictures_.end()) return plain->second.get();
   const float column = std::floor(place.u), row = std::floor(1 - place.v);
   const auto tile = pictures_.find(kFirstTile + int(column) + kColumns * int(row));
-  if (tile == pictures_.end()) return {0, 0, 0, 1};
+  if (tile == pictures_.end()) return nullptr;
+  place.u -= column;
+  place.v += row;
+  return tile->second.get();
+}
+
+std::array<float, 4> TextureFile::at(const TexturePlace& place) const {
   TexturePlace within = place;
-  within.u -= column;
-  within.v += row;
-  return tile->second->at(within);
+  const CachedPicture* const picture = picture_at(within);
+  return picture == nullptr ? std::array<float, 4>{0, 0, 0, 1} : picture->at(within);
+}
+
+std::array<float, 2> TextureFile::slope(const TexturePlace& place, std::size_t channel) const {
+  TexturePlace within = place;
+  const CachedPicture* const picture = picture_at(within);
+  return picture == nullptr ? std::array<float, 2>{} : picture->slope(within, channel);
 }
 
 Texel TextureFile::mean() const {

@@ -139,6 +139,19 @@ class OiioPicture : public CachedPicture {
     return texel;
   }
 
+  // Cubic splines between the texels of every size, for slopes without steps.
+  std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const override {
+    OIIO::TextureOpt options = options_;
+    options.interpmode = OIIO::TextureOpt::InterpBicubic;
+    std::array<float, 4> texel{}, along_u{}, along_v{};
+    if (!texture_system().texture(handle_, texture_system().get_perthread_info(), options, place.u, place.v,
+                                  place.side_x[0], place.side_x[1], place.side_y[0], place.side_y[1],
+                                  std::max(3, std::min(channels_, 4)), texel.data(), along_u.data(),
+                                  along_v.data()))
+      fail();
+    return {along_u[channel], along_v[channel]};
+  }
+
   std::optional<Texel> constant() const override {
     std::optional<Texel> first;
     bool is_constant = true;

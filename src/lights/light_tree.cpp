@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lights/build_light_tree.h"
+#include "lights/lamp_table.h"
 #include "opaline/core/random.h"
 
 namespace opaline {
@@ -21,6 +22,8 @@ constexpr float kMirrored = .03f;
 constexpr float kBound = .25f;
 // Added to cosines: what rounding may take from those that lights need to be seen.
 constexpr float kRounding = 1e-3f;
+// Lights without an area that are weighed one by one: so many take as long as the nodes of a cut.
+constexpr std::size_t kMostWeighed = WeighedDraw::kMost;
 // As many nodes as a cut has at most, but for those that its last ones have beside them on their way from the root.
 constexpr std::size_t kMostInCut = 448, kMostDepth = 64;
 
@@ -37,7 +40,9 @@ struct Angle {
 };
 
 std::uint64_t hash_of(std::span<const Light> lights) {
-  std::uint64_t hash = lights.size();
+  constexpr std::uint64_t kVersion =
+      2;  // raise it where the same lights are drawn otherwise: results are kept by the hash
+  std::uint64_t hash = hash_bits(kVersion, lights.size());
   const auto add = [&](double value) { hash = hash_bits(hash, std::bit_cast<std::uint64_t>(value)); };
   for (const Light& light : lights) {
     hash = hash_bits(hash, light.source.index());
@@ -166,6 +171,8 @@ LightTree::LightTree(std::vector<Light> lights)
   order_ = std::move(built.order);
   places_.resize(order_.size());
   for (std::uint32_t i = 0; i < order_.size(); ++i) places_[order_[i]] = i;
+  if (!has_area_ && lights_.size() <= kMostWeighed)
+    lamps_ = std::make_shared<const LampTable>(lights_, order_);
 }
 
 LightExtent LightTree::extent() const {
@@ -200,6 +207,7 @@ void LightTree::collect(std::uint32_t node, const Place& at, Cut& cut) const {
 
 void LightTree::draw(const Place& at, double random, std::span<Drawn> drawn) const {
   std::ranges::fill(drawn, Drawn{});
+  if (lamps_ != nullptr && at.lobe == nullptr) return draw_weighed(at, random, drawn);
   Cut cut;
   collect(0, at, cut);
   const double rays = double(drawn.size());
@@ -235,7 +243,25 @@ void LightTree::descend(std::uint32_t node, double begin, double end, Slots& slo
   while (slots.any_before(end)) slots.skip();
 }
 
+void LightTree::draw_weighed(const Place& at, double random, std::span<Drawn> drawn) const {
+  std::array<float, kMostWeighed> values;
+  const std::span<float> weights(values.data(), lamps_->weights());
+  lamps_->weigh(at.point, at.normal, weights);
+  auto next = drawn.begin();
+  WeighedDraw(weights, double(drawn.size()))
+      .visit(random, drawn.size(), [&](std::size_t i, double expected, double within) {
+        *next++ = {order_[i], float(expected), std::clamp(float(within), 0.f, 0x1.fffffep-1f)};
+      });
+  // Those that are drawn surely first: what halves of a draw differ by is what is in error.
+  std::stable_partition(drawn.begin(), next, [](const Drawn& d) { return d.expected >= 1; });
+}
+
 double LightTree::share(const Place& at, std::uint32_t light) const {
+  if (lamps_ != nullptr && at.lobe == nullptr) {
+    std::vector<float> weights(lamps_->weights());
+    lamps_->weigh(at.point, at.normal, weights);
+    return WeighedDraw(weights, 1).expected(places_[light]);
+  }
   Cut cut;
   collect(0, at, cut);
   const std::uint32_t place = places_[light];

@@ -28,13 +28,13 @@ struct Appearance {
   /// Of a boundary whose roughness is a texture, or that is anisotropic.
   std::shared_ptr<const RoughnessRange> roughnesses = {};
   float roughness = 0;  ///< where it is no texture
-  std::shared_ptr<const AngularExit> exit =
-      {};  ///< of light that was followed inside; none: as a boundary lets it
+  /// Of light that was followed inside; none: it leaves as the boundary lets it.
+  std::shared_ptr<const AngularExit> exit = {};
 
   /// The same at a point whose textures are known.
   Appearance at(const HitTextures& textures) const {
     Appearance here = *this;
-    here.albedo = albedo * textures.tint.entering * textures.tint.leaving;
+    here.albedo = albedo * textures.tint.entering * textures.tint.leaving + textures.reflected;
     if (roughnesses)
       here.rough = roughnesses->at(textures.roughness.value_or(roughness), textures.tangent_share);
     if (textures.metalness) here.metalness = *textures.metalness;
@@ -46,12 +46,11 @@ struct Appearance {
     return rough ? rough->reflectance(cosine) : fresnel_reflectance(cosine, eta);
   }
   /// Radiance towards a direction over the exitance: what is not mirrored. In a furnace both are 1 together.
-  RgbF radiance_of_exitance(float cosine) const {
+  float radiance_of_exitance(float cosine) const {
     constexpr float kInversePi = std::numbers::inv_pi_v<float>;
-    if (!has_boundary) return RgbF(kInversePi);
+    if (!has_boundary) return kInversePi;
     const float entered = kInversePi * (1 - reflectance(cosine)) / (1 - average_reflectance);
-    const RgbF left(metalness > 0 ? entered * (1 - metalness) : entered);
-    return exit ? left * exit->at(cosine) : left;
+    return metalness > 0 ? entered * (1 - metalness) : entered;
   }
   bool mirrors() const { return has_boundary && eta != 1; }
   /// The share of even light that is mirrored towards a direction.

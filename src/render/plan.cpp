@@ -347,7 +347,8 @@ Plan make_plan(const Scene& scene, const World& world) {
   for (const Mesh& mesh : world.meshes) {
     plan.triangles += mesh.triangles.size();
     plan.bytes += mesh.positions.size() * 48 + mesh.triangles.size() * 140;  // and Embree's tree
-    plan.bytes += mesh.uvs.size() * 2 * sizeof(CornerUvs);                   // as read, and mended
+    plan.bytes +=                                                            // as read, and mended
+        2 * (mesh.uvs.size() * sizeof(CornerUvs) + mesh.tangents.size() * sizeof(CornerTangents));
   }
   plan.bytes += texture_bytes(scene);
   std::size_t samples = 0;

@@ -48,6 +48,28 @@ Appearance mesh_appearance(const Scene& scene, const Shape& shape) {
   return appearance;
 }
 
+/// Turns a normal that maps have bent back until what it mirrors towards the eye comes from outside.
+/// in    direction: of the ray that met the point, of any length
+void keep_mirrored_outside(SurfacePoint& point, const Vec3f& direction) {
+  constexpr float kLeastCosine = 0.01f;  // of what is mirrored, with the geometric normal
+  const Vec3f d = normalized(direction), mirrored = d - point.normal * (2 * dot(d, point.normal));
+  const float cosine = dot(mirrored, point.geometric);
+  if (cosine >= kLeastCosine || !(dot(d, point.geometric) < 0)) return;
+  point.normal = normalized(normalized(mirrored + point.geometric * (kLeastCosine - cosine)) - d);
+}
+
+/// AngularExit for the share of what leaves that comes from inside.
+RgbF scattered_exit(const AngularExit& exit, float cosine, const SurfaceHits& hits, const LeavingLight& light,
+                    std::size_t i) {
+  RgbF factor = exit.at(cosine);
+  if (!light.is_tinted) return factor;
+  const RgbF reflected = hits.textures[i].reflected * light.irradiance[i];
+  for (std::size_t c = 0; c < 3; ++c)
+    if (light.exitance[i][c] > 0)
+      factor[c] = 1 + (factor[c] - 1) * std::max(0.f, 1 - reflected[c] / light.exitance[i][c]);
+  return factor;
+}
+
 // Of the cones around some 64 directions over a hemisphere, for textures that they meet.
 constexpr float kGatheringSpread = 0.25f;
 
@@ -187,11 +209,12 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
       }
       SurfacePoint point = holds_points ? held->points[hits - 1] : point_of(hit, input_.rays);
       // An opaque sheet has two equal sides; a translucent one is lit and seen from outside.
-      if (!appearances_[hit.mesh].translucent && dot(point.geometric, ray.direction) > 0) {
+      const bool from_behind = !appearances_[hit.mesh].translucent && dot(point.geometric, ray.direction) > 0;
+      if (from_behind) {
         point.geometric = -point.geometric;
         point.normal = -point.normal;
       }
-      if (!textures_.empty()) add_textures(batch, i, point, own);
+      if (!textures_.empty()) add_textures(batch, i, from_behind, point, own);
       own.points.push_back(point);
       own.hits.push_back(hit);
       own.keys.push_back(keys[i]);
@@ -201,13 +224,19 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
   return surfaces;
 }
 
-void Shader::add_textures(const RayBatch& batch, std::size_t ray, SurfacePoint& point,
+void Shader::add_textures(const RayBatch& batch, std::size_t ray, bool from_behind, SurfacePoint& point,
                           SurfaceHits& hits) const {
   const auto& [traced, hit] = batch.rays[ray];
-  const SurfaceTextures::Place place = textures_.place(
-      hit.mesh, hit.triangle, hit.u, hit.v, footprint_of(point, traced.direction, width_at(batch, ray)));
+  SurfaceTextures::Place place = textures_.place(hit.mesh, hit.triangle, hit.u, hit.v,
+                                                 footprint_of(point, traced.direction, width_at(batch, ray)));
+  place.from_behind = from_behind;
+  const Vec3f unbent = point.normal;
   textures_.bend(place, point);
-  HitTextures here{textures_.tint(place), textures_.roughness(place), textures_.metalness(place)};
+  const bool is_bent = point.normal != unbent;
+  if (is_bent) keep_mirrored_outside(point, traced.direction);
+  HitTextures here{textures_.tint(place), textures_.reflected(place), textures_.roughness(place),
+                   textures_.metalness(place)};
+  here.is_bent = is_bent;
   here.tangent = textures_.tangent(place, point);
   if (here.tangent != Vec3f{}) {
     const float along = dot(traced.direction, here.tangent),
@@ -235,8 +264,10 @@ void Shader::write(const SurfaceHits& hits, const LeavingLight& light, std::span
     const Appearance& appearance = is_plain ? appearances_[hit.mesh] : textured;
     const SurfacePoint& point = hits.points[i];
     PixelSample& sample = out[hits.rays[i]];
-    RgbF radiance = appearance.radiance_of_exitance(cos_view(point, ray.direction));
-    if (!is_plain) radiance = radiance * hits.textures[i].tint.leaving;
+    const float cosine = cos_view(point, ray.direction);
+    RgbF radiance(appearance.radiance_of_exitance(cosine));
+    if (!is_plain && !light.is_tinted) radiance = radiance * hits.textures[i].tint.leaving;
+    if (appearance.exit) radiance = radiance * scattered_exit(*appearance.exit, cosine, hits, light, i);
     sample.diffuse = light.exitance[i] * radiance;
     sample.coverage = 1;
     sample.albedo = appearance.albedo;

@@ -65,7 +65,8 @@ class Shader {
 
   RgbF surroundings(const Vec3f& direction) const;
   std::vector<SurfaceHits> collect(const RayBatch& batch, HeldView::Batch* held) const;
-  void add_textures(const RayBatch& batch, std::size_t ray, SurfacePoint& point, SurfaceHits& hits) const;
+  void add_textures(const RayBatch& batch, std::size_t ray, bool from_behind, SurfacePoint& point,
+                    SurfaceHits& hits) const;
   Appearance appearance_of(const SurfaceHits& hits, std::size_t i) const;
   /// What leaves where rays meet surfaces, and lights that they meet. Returns the hits of each field.
   std::vector<SurfaceHits> shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,

@@ -199,6 +199,7 @@ struct Shader::GlossyHits {
     float weight;
     RgbF color;  // besides
     std::uint32_t hit;
+    bool is_again;  // facets around a bent normal mirrored it into the surface, which sends it back
   };
   // In directions of the lobes, hit by hit; `rays` are to be traced.
   std::vector<LobeRay> draw_from_lobes(std::vector<TracedRay>& rays) const {
@@ -210,10 +211,13 @@ struct Shader::GlossyHits {
       for (int k = 0; k < facets; ++k) {
         const std::uint64_t number = part * std::uint64_t(facets) + std::uint64_t(k);
         const auto [direction, weight] = boundary(i).sample(frames[i].view, r2_point(number, shift));
-        const Vec3f towards = frames[i].world(direction);
-        if (!(weight > 0 && dot(towards, hits.points[i].geometric) > 0)) continue;
+        Vec3f towards = frames[i].world(direction);
+        const float height = dot(towards, hits.points[i].geometric);
+        const bool is_again = height < 0 && !hits.textures.empty() && hits.textures[i].is_bent;
+        if (!(weight > 0 && (height > 0 || is_again))) continue;
+        if (is_again) towards = towards - hits.points[i].geometric * (2 * height);
         rays.push_back(leaving(hits.points[i], towards));
-        drawn.push_back({weight / float(facets), color(i, direction), std::uint32_t(i)});
+        drawn.push_back({weight / float(facets), color(i, direction), std::uint32_t(i), is_again});
       }
     }
     return drawn;
@@ -294,15 +298,16 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldVie
   std::vector<std::uint64_t> met_keys;
   for (std::size_t r = 0; r < rays.size(); ++r) {
     const auto& [ray, mesh_hit] = rays[r];
-    const auto& [weight, color, i] = drawn[r];
+    const auto& [weight, color, i, is_again] = drawn[r];
     const bool is_free = mesh_hit.mesh == Hit::kMiss;
     for (std::size_t l = 0; l < lights_.size(); ++l) {
       const Light& light = lights_[l];
       if (is_delta(light)) continue;
       RgbF radiance = seen_radiance(coat != nullptr ? unit_lights_[l] : light, ray, is_free);
       if (radiance == RgbF{}) continue;
-      const float balanced =
-          weight * balance(glossy.of_lobe(i, ray.direction), glossy.of_light(i, light, ray.direction));
+      const float balanced = is_again ? weight
+                                      : weight * balance(glossy.of_lobe(i, ray.direction),
+                                                         glossy.of_light(i, light, ray.direction));
       if (coat != nullptr) {
         const float unit = max_component(radiance);
         coat->lights.push_back({glossy.hits.rays[i], std::uint32_t(l), unit, balanced});

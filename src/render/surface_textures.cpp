@@ -37,6 +37,16 @@ float number_of(const Texture& texture, const SurfaceTextures::Place& place) {
   return std::clamp(looked_up(texture, place)[texture.channel] * float(texture.scale.x), 0.0f, 1.0f);
 }
 
+RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
+  const std::array<float, 4> texel = looked_up(texture, place);
+  RgbF color;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float value = std::max(0.0f, texel[c]) * float(texture.scale[c]);
+    color[c] = texture.is_relative ? value : std::min(value, 1.0f);
+  }
+  return color;
+}
+
 // A whole number of 8 bits has no middle of the range: both beside it are as good.
 float slope_of(float value) {
   const float slope = 2 * value - 1;
@@ -74,13 +84,47 @@ struct TangentFrame {
   Vec3f tangent{}, bitangent{};
 };
 
-TangentFrame frame_of(const SurfaceUv& uv, const SurfacePoint& point) {
-  const Vec3f across_v = cross(uv.gradient_v, point.geometric);
-  const float side = dot(uv.gradient_u, across_v);
+/// By the mesh's tangent where it has one: its handedness is about the side that is outside.
+TangentFrame frame_of(const SurfaceTextures::Place& place, const SurfacePoint& point) {
+  const auto& [direction, handedness] = place.tangent;
+  const Vec3f own = normalized(direction - point.normal * dot(direction, point.normal));
+  if (own != Vec3f{}) return {own, cross(point.normal, own) * (place.from_behind ? -handedness : handedness)};
+  if (!place.uv) return {};
+  const Vec3f across_v = cross(place.uv->gradient_v, point.geometric);
+  const float side = dot(place.uv->gradient_u, across_v);
   if (!(std::abs(side) > 0)) return {};
   const Vec3f along = across_v * (side > 0 ? 1.0f : -1.0f);
   const Vec3f tangent = normalized(along - point.normal * dot(along, point.normal));
   return {tangent, cross(point.normal, tangent) * (side > 0 ? 1.0f : -1.0f)};
+}
+
+/// Of what leans on a surface: 1, or -1 where it is seen from behind.
+float outward(const SurfaceTextures::Place& place) {
+  return place.from_behind ? -1.0f : 1.0f;
+}
+
+void map_normal(const Texture& texture, const SurfaceTextures::Place& place, SurfacePoint& point) {
+  const std::array<float, 4> texel = looked_up(texture, place);
+  const float strength = float(texture.scale.x) * outward(place);
+  const float x = slope_of(texel[0]) * strength, y = slope_of(texel[1]) * strength;
+  if (x == 0 && y == 0) return;
+  const auto [tangent, bitangent] = frame_of(place, point);
+  if (tangent == Vec3f{}) return;
+  point.normal =
+      normalized(tangent * x + bitangent * y + point.normal * std::max(2 * texel[2] - 1, 1.0f / 255));
+}
+
+/// Of the height over the surface, mm per world unit.
+Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& place) {
+  const auto [along_u, along_v] =
+      texture.file->slope(texture_place(texture, *place.uv, place.footprint), texture.channel);
+  // Of the picture's u and v, by the mesh's.
+  const double angle = texture.uv_rotation * std::numbers::pi / 180;
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  const Vec3f x = place.uv->gradient_u * float(texture.uv_scale[0]),
+              y = place.uv->gradient_v * float(-texture.uv_scale[1]);
+  const Vec3f of_u = x * float(cosine) + y * float(sine), of_v = y * float(cosine) - x * float(sine);
+  return (of_u * along_u + of_v * along_v) * float(texture.scale.x);
 }
 
 /// Around +y, as turned on a lathe; where the normal is +y itself, along x.
@@ -102,11 +146,17 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
     const Shape& shape = scene.shapes[m];
     OfMesh& own = of_mesh_.emplace_back();
     own.normals = pointer_to(shape.normal_map);
+    own.heights = pointer_to(shape.bump_map);
     if (shape.medium) {
       const Medium& medium = scene.media[*shape.medium];
       own.tint = pointer_to(medium.tint_texture);
       own.roughness = pointer_to(medium.roughness_texture);
       own.factor = medium.tint;
+      if (is_partly_opaque(medium)) {
+        own.partly_opaque = &medium;
+        own.weight = pointer_to(medium.weight_texture);
+        own.base = pointer_to(medium.base_texture);
+      }
       own.at_entry = medium.texture_mix == TextureMix::pre    ? 1
                      : medium.texture_mix == TextureMix::post ? 0
                                                               : .5;
@@ -116,10 +166,12 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
       if (shape.gloss) own.roughness = pointer_to(shape.gloss->roughness_texture);
       if (shape.gloss) own.metalness = pointer_to(shape.gloss->metalness_texture);
     }
-    own.has_tint = own.tint != nullptr || own.factor != Rgb(1);
+    own.has_tint = own.tint != nullptr || own.factor != Rgb(1) || own.weight != nullptr;
     own.grain = grain_of(scene, shape);
     own.has_uv = uvs_of(scene, shape) != MeshUvs::unread && !world.meshes[m].uvs.empty();
-    is_empty_ = is_empty_ && !own.has_tint && !needs_uvs(scene, shape) && own.grain == nullptr;
+    own.has_tangents = !world.meshes[m].tangents.empty();
+    is_empty_ = is_empty_ && !own.has_tint && !needs_uvs(scene, shape) && own.grain == nullptr &&
+                own.partly_opaque == nullptr;
     for (const Texture* texture : textures_of(scene, shape))
       check_tiles(*texture, world.meshes[m], shape.name);
   }
@@ -133,21 +185,32 @@ SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t 
                                               const Footprint& footprint) const {
   Place place{mesh, {}, footprint};
   if (of_mesh_[mesh].has_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
+  if (of_mesh_[mesh].has_tangents) place.tangent = surface_tangent(world_.meshes[mesh], triangle, u, v);
   return place;
 }
 
 SurfaceTint SurfaceTextures::tint(const Place& place) const {
   const OfMesh& own = of_mesh_[place.mesh];
-  if (!own.has_tint) return {};
+  const float weight = own.partly_opaque == nullptr ? 1 : float(own.partly_opaque->subsurface_weight);
+  if (!own.has_tint) return {.leaving = RgbF(weight)};
   RgbF tint(own.factor);
   if (own.tint != nullptr) {
-    const std::array<float, 4> texel = looked_up(*own.tint, place);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float value = std::max(0.0f, texel[c]) * float(own.tint->scale[c]);
-      tint[c] *= own.tint->is_relative ? value : std::min(value, 1.0f);
-    }
+    tint = tint * color_of(*own.tint, place);
   }
-  return {powered(tint, own.at_entry), powered(tint, own.at_exit)};
+  if (own.weight != nullptr) tint *= number_of(*own.weight, place);
+  SurfaceTint result{powered(tint, own.at_entry), powered(tint, own.at_exit)};
+  if (weight < 1) result.leaving *= weight;
+  return result;
+}
+
+RgbF SurfaceTextures::reflected(const Place& place) const {
+  const OfMesh& own = of_mesh_[place.mesh];
+  if (own.partly_opaque == nullptr) return {};
+  const float scattered =
+      own.weight != nullptr ? number_of(*own.weight, place) : float(own.partly_opaque->subsurface_weight);
+  RgbF base(own.partly_opaque->base_color);
+  if (own.base != nullptr) base = base * color_of(*own.base, place);
+  return base * (1 - scattered);
 }
 
 std::optional<float> SurfaceTextures::roughness(const Place& place) const {
@@ -165,23 +228,19 @@ std::optional<float> SurfaceTextures::metalness(const Place& place) const {
 Vec3f SurfaceTextures::tangent(const Place& place, const SurfacePoint& point) const {
   const Grain* const grain = of_mesh_[place.mesh].grain;
   if (grain == nullptr) return {};
-  TangentFrame frame = place.uv ? frame_of(*place.uv, point) : TangentFrame{};
+  TangentFrame frame = frame_of(place, point);
   if (frame.tangent == Vec3f{}) frame = level_frame(point.normal);
   const double angle = grain->rotation * std::numbers::pi / 180;
   return frame.tangent * float(std::cos(angle)) + frame.bitangent * float(std::sin(angle));
 }
 
 void SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
-  const Texture* const texture = of_mesh_[place.mesh].normals;
-  if (texture == nullptr) return;
-  const std::array<float, 4> texel = looked_up(*texture, place);
-  const float x = slope_of(texel[0]) * float(texture->scale.x),
-              y = slope_of(texel[1]) * float(texture->scale.x);
-  if (x == 0 && y == 0) return;
-  const auto [tangent, bitangent] = frame_of(*place.uv, point);
-  if (tangent == Vec3f{}) return;
-  point.normal =
-      normalized(tangent * x + bitangent * y + point.normal * std::max(2 * texel[2] - 1, 1.0f / 255));
+  const OfMesh& own = of_mesh_[place.mesh];
+  if (own.normals != nullptr) map_normal(*own.normals, place, point);
+  if (own.heights == nullptr) return;
+  const Vec3f rise = height_gradient(*own.heights, place) * float(1 / world_.unit),
+              along = rise - point.normal * dot(rise, point.normal);
+  if (along != Vec3f{}) point.normal = normalized(point.normal - along * outward(place));
 }
 
 std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples) {
@@ -198,6 +257,11 @@ std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<cons
   return tints;
 }
 
+void add_coordinates(KeyBuilder& key, const Mesh& mesh) {
+  key.add_array(std::span(mesh.uvs));
+  if (!mesh.tangents.empty()) key.add_array(std::span(mesh.tangents));
+}
+
 void add_to_key(KeyBuilder& key, const Texture& texture) {
   key.add(texture.file->hash())
       .add(texture.scale)
@@ -208,11 +272,13 @@ void add_to_key(KeyBuilder& key, const Texture& texture) {
 
 StageKey tint_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes,
                   const StageKey& samples) {
-  if (medium.texture_mix == TextureMix::post || (medium.tint == Rgb(1) && !medium.tint_texture)) return {};
+  const bool has_tint = medium.tint != Rgb(1) || medium.tint_texture || medium.weight_texture;
+  if (medium.texture_mix == TextureMix::post || !has_tint) return {};
   KeyBuilder key("entering tint", 1);
   key.add(samples).add(medium.tint).add(medium.texture_mix);
-  if (!medium.tint_texture) return key.key();
-  add_to_key(key, *medium.tint_texture);
+  if (!medium.tint_texture && !medium.weight_texture) return key.key();
+  if (medium.tint_texture) add_to_key(key, *medium.tint_texture);
+  if (medium.weight_texture) add_to_key(key.add(std::string("weight")), *medium.weight_texture);
   for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
   return key.key();
 }

@@ -100,6 +100,22 @@ void read_tint(const ObjectReader& reader, Medium& medium) {
   medium.tint_texture = std::move(tint.texture);
 }
 
+void read_weight(const ObjectReader& reader, Medium& medium) {
+  const auto weight = reader.find("subsurface_weight"), base = reader.find("base_color");
+  if (base && !weight)
+    base->fail_key("has no meaning where all light scatters", "'subsurface_weight' beside it");
+  if (weight) {
+    NumberReading reading = read_number(*weight);
+    medium.subsurface_weight = reading.number;
+    medium.weight_texture = std::move(reading.texture);
+  }
+  if (base) {
+    ColorReading reading = read_color(*base);
+    medium.base_color = reading.color;
+    medium.base_texture = std::move(reading.texture);
+  }
+}
+
 }  // namespace
 
 double weighted_ior(double ior, double weight) {
@@ -145,6 +161,7 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   }
   medium.grain = read_grain(reader);
   read_tint(reader, medium);
+  read_weight(reader, medium);
   const auto profile = reader.find("profile");
   const std::size_t choice = profile ? profile->choice() : 0;
   medium.profile.reset();

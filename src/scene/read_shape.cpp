@@ -130,6 +130,7 @@ void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shap
     shape.reflectance_texture = std::move(color.texture);
   }
   if (const auto map = reader.find("normal_map")) shape.normal_map = read_normal_map(*map);
+  if (const auto map = reader.find("bump_map")) shape.bump_map = read_bump_map(*map, context.mm_per_unit);
   read_gloss(reader, shape);
   if (!group) return;
   shape.group = group->string();

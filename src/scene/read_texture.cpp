@@ -76,6 +76,13 @@ Texture read_normal_map(const Value& value) {
   return read_texture(value, false);
 }
 
+std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit) {
+  Texture texture = read_texture(value, false);
+  if (texture.file->constant()) return {};
+  texture.scale = texture.scale * mm_per_unit;
+  return texture;
+}
+
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) {
   std::vector<const Texture*> textures;
   const auto add = [&](const std::optional<Texture>& texture) {
@@ -83,6 +90,7 @@ std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) 
   };
   add(shape.reflectance_texture);
   add(shape.normal_map);
+  add(shape.bump_map);
   if (shape.gloss) {
     add(shape.gloss->metalness_texture);
     add(shape.gloss->roughness_texture);
@@ -90,6 +98,9 @@ std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) 
   if (!shape.medium) return textures;
   add(scene.media[*shape.medium].tint_texture);
   add(scene.media[*shape.medium].roughness_texture);
+  if (!is_partly_opaque(scene.media[*shape.medium])) return textures;
+  add(scene.media[*shape.medium].weight_texture);
+  add(scene.media[*shape.medium].base_texture);
   return textures;
 }
 
@@ -110,8 +121,10 @@ const Grain* grain_of(const Scene& scene, const Shape& shape) {
 }
 
 MeshUvs uvs_of(const Scene& scene, const Shape& shape) {
-  if (needs_uvs(scene, shape)) return MeshUvs::required;
-  return grain_of(scene, shape) != nullptr ? MeshUvs::if_any : MeshUvs::unread;
+  const bool has_grain = grain_of(scene, shape) != nullptr;
+  if (needs_uvs(scene, shape))
+    return has_grain || shape.normal_map ? MeshUvs::with_tangents : MeshUvs::required;
+  return has_grain ? MeshUvs::if_any : MeshUvs::unread;
 }
 
 }  // namespace opaline

@@ -32,6 +32,8 @@ struct NumberReading {
 };
 NumberReading read_number(const Value& value);
 Texture read_normal_map(const Value& value);
+/// Its scale in mm; none: it is flat.
+std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit);
 
 /// The index that mirrors the weight's share of what `ior` mirrors at right angles.
 /// from  OpenPBR Surface 1.1, specular_weight

@@ -13,34 +13,13 @@
 #include "opaline/scene/json_tree.h"
 #include "opaline/scene/light_reader.h"
 #include "opaline/scene/names.h"
-#include "scene/presets.h"
+#include "scene/key_rows.h"
 #include "scene/settings_table.h"
 
 namespace opaline {
 namespace {
 
 constexpr std::array<std::string_view, 4> kTextureChannels{"r", "g", "b", "a"};
-
-KeyInfo row(std::string_view section, std::string_view key, ValueType type, std::string_view unit,
-            const Range& range, std::string default_value, std::string_view meaning,
-            std::span<const std::string_view> choices = {}) {
-  return {section, key, type, unit, range, std::move(default_value), meaning, choices};
-}
-
-KeyInfo textured(KeyInfo info) {
-  info.may_be_texture = true;
-  return info;
-}
-
-std::string_view profile_meaning() {
-  static const std::string text = [] {
-    std::string list = "how light spreads under the surface: `\"auto\"` (chosen for each body, see the plan)";
-    for (std::size_t i = 0; i < kProfileNames.size(); ++i)
-      list += ", `\"" + std::string(kProfileNames[i]) + "\"` (" + std::string(kProfileSources[i]) + ')';
-    return list;
-  }();
-  return text;
-}
 
 template <class Kind>
 void add_light_rows(std::vector<KeyInfo>& rows) {
@@ -83,74 +62,6 @@ std::vector<KeyInfo> scene_rows() {
       row("scene", "camera", object, "", kFiniteNumber, "see camera", "where the picture is taken from"),
       row("scene", "film", object, "", kFiniteNumber, "see film", "the picture itself"),
       row("scene", "settings", object, "", kFiniteNumber, "see settings", "how it is computed"),
-  };
-}
-
-constexpr const char
-    *kAnisotropyMeaning =
-        "of `specular_roughness`, as OpenPBR's: towards 1 highlights are long along u and "
-        "short across, as on metal that is brushed across u",
-    *kRotationMeaning =
-        "turns u for `specular_anisotropy`, counterclockwise; where a mesh has no UVs u runs "
-        "level, around y";
-
-std::vector<KeyInfo> medium_rows() {
-  using enum ValueType;
-  return {
-      row("medium", "preset", choice, "", kFiniteNumber, "",
-          "a measured material: apple, chicken1, chicken2, cream, ketchup, marble, potato, skimmilk, skin1, "
-          "skin2, spectralon, wholemilk (Jensen et al. 2001)",
-          preset_names()),
-      row("medium", "sigma_a", number_or_triple, "1/mm", kNonNegative, "", "absorption"),
-      row("medium", "sigma_s_prime", number_or_triple, "1/mm", kNonNegative, "",
-          "reduced scattering, (1 - g) sigma_s"),
-      row("medium", "sigma_s", number_or_triple, "1/mm", kNonNegative, "", "scattering"),
-      row("medium", "g", number, "", {-1, 1, true, true}, "0",
-          "mean cosine of the scattering angle, beside `sigma_s`: 0 even, towards 1 forward, towards -1 "
-          "back"),
-      textured(row(
-          "medium", "subsurface_color", color, "", kUnitInterval, "",
-          "how much of the light that enters comes out again; of a texture the mean, and each texel over it "
-          "the `tint`")),
-      row("medium", "subsurface_radius", number_or_triple, "mm", kNonNegative, "",
-          "how far light goes before it is scattered or absorbed, 1/sigma_t; three numbers are red, green "
-          "and blue, not x, y, z"),
-      row("medium", "subsurface_radius_scale", number_or_triple, "", kNonNegative, "1",
-          "multiplies `subsurface_radius`, for a tint"),
-      row("medium", "subsurface_scatter_anisotropy", number, "", {-1, 1, true, true}, "0",
-          "the same as `g`, beside `subsurface_color`"),
-      row("medium", "scatter_anisotropy", number, "", {-.95, .95}, "0",
-          "the same for `volume` alone, beside `preset` or `sigma_s_prime`: sigma_s is sigma_s_prime / (1 - "
-          "g); "
-          "diffusion depends on `sigma_s_prime` only"),
-      row("medium", "specular_ior", number, "", {.1, 10},
-          "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
-      row("medium", "eta", number, "", {.1, 10}, "", "another word for `specular_ior`; use one of the two"),
-      textured(row(
-          "medium", "specular_roughness", number, "", kUnitInterval, "0",
-          "of the surface as it mirrors: 0 smooth, .3 satin; alone a rough one shows highlights of lights "
-          "without size")),
-      row("medium", "specular_weight", number, "", {0, 1}, "1",
-          "times what the surface mirrors at right angles: an index of refraction of its own, for light from "
-          "inside as well; at 0 all light enters"),
-      row("medium", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning),
-      row("medium", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning),
-      textured(row(
-          "medium", "tint", color, "", kUnitInterval, "1",
-          "colours the light of any medium at its surface, by `texture_mix`; where it is even, what leaves "
-          "is times the tint")),
-      row("medium", "texture_mix", choice, "", kFiniteNumber, "`\"split\"`",
-          "where the tint is met: `\"pre\"` by light that enters, and blurred like it; `\"post\"` by light "
-          "that "
-          "leaves, sharp; `\"split\"` its root by both",
-          kTextureMixNames),
-      row("medium", "thickness", length, "", kFiniteNumber,
-          "`\"auto\"`: that of flat bodies; else that of the built-in plates, else thick",
-          "for `\"multipole\"`, which takes the place of `\"auto\"` then: how thick the things made of it "
-          "are; light that enters on the far side "
-          "leaves on "
-          "this one"),
-      row("medium", "profile", choice, "", kFiniteNumber, "`\"auto\"`", profile_meaning(), kProfileChoices),
   };
 }
 
@@ -200,6 +111,10 @@ std::vector<KeyInfo> shape_rows() {
                    "normals of the file's details, around the mesh's own: red to the right, green up, blue "
                    "out, 0 to 1 "
                    "for -1 to 1; `scale` is of its slopes")),
+      textured(
+          row("shape", "bump_map", object, "", kFiniteNumber, "none",
+              "heights of the file's details over the mesh: its numbers times `scale`, in scene units "
+              "whatever the `transform`; they turn normals, around those of `normal_map`, and move nothing")),
       row("shape", "group", text, "", kFiniteNumber, "alone",
           "translucent shapes with the same group blend as one object, others never bleed into each other; a "
           "group has one medium"),

@@ -27,7 +27,7 @@ StageKey source_key(const Shape& shape, MeshUvs uvs) {
   KeyBuilder key("source", 1);
   key.add(std::uint64_t(shape.source.index()));
   if (uvs == MeshUvs::required) key.add(true);
-  if (uvs == MeshUvs::if_any) key.add(uvs);
+  if (uvs == MeshUvs::if_any || uvs == MeshUvs::with_tangents) key.add(uvs);
   try {
     std::visit(AddSource{key}, shape.source);
   } catch (const Error& failure) {

@@ -91,6 +91,7 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
       const Medium& medium = input.scene.media[*shape.medium];
       key.add(medium.tint).add(medium.texture_mix).add(medium.eta).add(medium.specular_roughness);
       key.add(medium.grain.anisotropy).add(medium.grain.rotation);
+      if (is_partly_opaque(medium)) key.add(medium.subsurface_weight).add(medium.base_color);
     } else {
       key.add(shape.reflectance).add(shape.gloss.has_value());
       if (const auto& gloss = shape.gloss) {
@@ -99,7 +100,7 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
       }
     }
     for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
-    if (uvs_of(input.scene, shape) != MeshUvs::unread) key.add_array(std::span(input.world.meshes[i].uvs));
+    if (uvs_of(input.scene, shape) != MeshUvs::unread) add_coordinates(key, input.world.meshes[i]);
   }
   for (const Light& light : lights) key.add(view_light_key(light)).add(emission(light));
   return key.key();
@@ -124,11 +125,17 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
   key.add(settings.method).add(settings.light_samples).add(point_irradiance_seed(settings));
   for (const Light& light : lights)
     if (!is_delta(light)) key.add(view_light_key(light));
-  for (const Shape& shape : input.scene.shapes) {
+  for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
+    const Shape& shape = input.scene.shapes[i];
     key.add(shape.medium.has_value());
-    if (shape.medium) key.add(input.scene.media[*shape.medium].eta);
+    if (shape.medium) {
+      const Medium& medium = input.scene.media[*shape.medium];
+      key.add(medium.eta).add(is_partly_opaque(medium));
+    }
     if (shape.gloss) key.add(shape.gloss->eta);
-    if (shape.normal_map) add_to_key(key, *shape.normal_map);
+    for (const auto& map : {&shape.normal_map, &shape.bump_map})
+      if (*map) add_to_key(key, **map);
+    if (shape.normal_map || shape.bump_map) add_coordinates(key, input.world.meshes[i]);
   }
   for (const GroupPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));
   return key.key();

@@ -44,7 +44,7 @@ struct Asset {
   template <class T>
   int accessor(const char* type, ComponentType component, const std::vector<T>& numbers,
                bool normalized = false) {
-    const std::size_t per_element = type == std::string("SCALAR") ? 1 : type == std::string("VEC2") ? 2 : 3;
+    const std::size_t per_element = type == std::string("SCALAR") ? 1 : std::size_t(type[3] - '0');
     buffer.resize((buffer.size() + 3) / 4 * 4);
     json["bufferViews"].push_back(
         {{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", numbers.size() * sizeof(T)}});

@@ -131,6 +131,44 @@ TEST(GltfTextures, BecomeTheScenes) {
   EXPECT_FALSE(scene.shapes.at(0).gloss);
 }
 
+// Claim: light that is transmitted, clearly or diffusely, is the share that scatters inside: t + (1 - t) d; the rest is
+// reflected in the base colour, and what is transmitted diffusely alone is tinted by its own colour. A texture of the one
+// that there is is one of weights, red or alpha. Source: KHR_materials_transmission, KHR_materials_diffuse_transmission.
+// Fails if the shares add up, or the base colour tints what enters diffusely.
+TEST(GltfTextures, WeighWhatIsTransmitted) {
+  const Json image = {{"uri", "data:image/png;base64," + base64(png_of(200))}};
+  const auto medium = [&](const Json& clear, const Json& diffuse) {
+    const Json material = {
+        {"pbrMetallicRoughness", {{"baseColorFactor", {.5, .6, .7, 1}}}},
+        {"extensions",
+         {{"KHR_materials_volume",
+           {{"thicknessFactor", 1}, {"attenuationDistance", .01}, {"attenuationColor", {.5, .4, .3}}}},
+          {"KHR_materials_volume_scatter", {{"multiscatterColor", {.8, .6, .4}}}},
+          {"KHR_materials_transmission", clear},
+          {"KHR_materials_diffuse_transmission", diffuse}}}};
+    const Asset asset = textured_triangle(material, image);
+    EXPECT_TRUE(imported(asset).not_carried.empty()) << imported(asset).not_carried.at(0);
+    return scene_of(asset.glb(), "a.glb").media.at(0);
+  };
+  const Json none = Json::object();
+  const Medium both = medium({{"transmissionFactor", .5}}, {{"diffuseTransmissionFactor", .2}});
+  EXPECT_NEAR(both.subsurface_weight, .6, 1e-12);
+  EXPECT_EQ(both.base_color, Rgb(.5, .6, .7));
+  EXPECT_EQ(both.tint, Rgb(.5, .6, .7));
+  const Medium diffuse = medium(none, {{"diffuseTransmissionFactor", .25},
+                                       {"diffuseTransmissionTexture", {{"index", 0}}},
+                                       {"diffuseTransmissionColorFactor", {1, .9, .8}}});
+  EXPECT_EQ(diffuse.tint, Rgb(1, .9, .8));
+  EXPECT_EQ(diffuse.weight_texture.value().scale.x, .25);
+  EXPECT_EQ(diffuse.weight_texture->channel, 3u);
+  const Medium clear = medium({{"transmissionFactor", .5}, {"transmissionTexture", {{"index", 0}}}}, none);
+  EXPECT_EQ(clear.weight_texture.value().scale.x, .5);
+  EXPECT_EQ(clear.weight_texture->channel, 0u);
+  const Medium all = medium({{"transmissionFactor", 1}}, none);
+  EXPECT_FALSE(is_partly_opaque(all));
+  EXPECT_EQ(all.tint, Rgb(.5, .6, .7));
+}
+
 // Claim: a texture that cannot be had leaves its factor, and is said; the rest of the asset is read. Fails if it is an
 // error, or goes unsaid.
 TEST(GltfTextures, ThatCannotBeHadAreSaid) {
@@ -168,6 +206,32 @@ TEST(ObjTextures, AreTakenFromLibraries) {
   EXPECT_NEAR(left_texel(*scene.shapes[0].reflectance_texture->file), test::linear_of_byte(128), 2e-4);
   EXPECT_FALSE(scene.shapes.at(1).reflectance_texture);
   EXPECT_TRUE(has(import_asset(folder.file("a.obj"), "a.obj").not_carried, "map_Kd '-s 2 2 2 p.png'"));
+}
+
+// Claim: OBJ's bump maps are heights in the OBJ's lengths, times -bm, under any of their names; one that is blue, as maps
+// of normals are, is one of normals. Other options, and pictures that are not there, are said. Fails if -bm is taken for
+// the name, or a map of normals for heights.
+TEST(ObjTextures, OfHeightsAreBumps) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("h.png"), png_of(128));
+  test::put_png(folder.file("a normal.png"), 4, 2, [](int x, int) { return test::Bytes{120 + x, 128, 255}; });
+  put_bytes(folder.file("a.mtl"),
+            "newmtl a\nmap_Bump -bm 0.25 h.png\nnewmtl b\nbump a normal.png\nnewmtl c\nmap_bump h.png\n"
+            "newmtl d\nbump -s 2 2 2 h.png\nnewmtl e\nbump -bm 2 gone.png\n");
+  std::string text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n";
+  for (const char* name : {"a", "b", "c", "d", "e"})
+    text += std::string("usemtl ") + name + "\nf 1/1 2/2 3/3\n";
+  put_bytes(folder.file("a.obj"), text);
+  const Scene scene = load_scene(folder.file("a.obj"));
+  EXPECT_EQ(scene.shapes.at(0).bump_map.value().scale.x, .25);
+  EXPECT_TRUE(scene.shapes.at(1).normal_map && !scene.shapes[1].bump_map);
+  EXPECT_EQ(scene.shapes.at(2).bump_map.value().scale.x, 1);
+  EXPECT_FALSE(scene.shapes.at(3).bump_map || scene.shapes.at(4).bump_map);
+  const ImportedAsset import = import_asset(folder.file("a.obj"), "a.obj");
+  EXPECT_TRUE(has(import.translated, "map_Bump -> bump_map h.png, white 0.25 mm high"));
+  EXPECT_TRUE(has(import.translated, "bump -> normal_map a normal.png, for it is blue"));
+  EXPECT_TRUE(has(import.not_carried, "bump '-s 2 2 2 h.png'"));
+  EXPECT_TRUE(has(import.not_carried, "bump '-bm 2 gone.png'"));
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ TEST(SceneTextures, AreRead) {
           "specular_roughness": {"texture": "two.png", "channel": "g", "scale": 0.5}, "texture_mix": "post"}},
           "shapes": [{"quad": {"corner": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1, 0]},
           "reflectance": {"texture": "two.png", "scale": [1, 0.5, 0.25], "uv_scale": [2, 3], "uv_offset": [0.5, 0.25],
-          "uv_rotation": 90}, "normal_map": {"texture": "two.png", "scale": 2}}]})");
+          "uv_rotation": 90}, "normal_map": {"texture": "two.png", "scale": 2},
+          "bump_map": {"texture": "two.png", "scale": 0.5, "channel": "g"}}], "mm_per_unit": 10})");
   const Medium& medium = scene.media[0];
   const Rgb color = std::get<ArtistMedium>(medium.coefficients).subsurface_color;
   EXPECT_EQ(color.x, 1);
@@ -62,6 +63,8 @@ TEST(SceneTextures, AreRead) {
   EXPECT_EQ(texture.uv_rotation, 90);
   EXPECT_EQ(scene.shapes[0].reflectance, Rgb(1));
   EXPECT_EQ(scene.shapes[0].normal_map->scale.x, 2);
+  EXPECT_EQ(scene.shapes[0].bump_map->scale.x, 5);
+  EXPECT_EQ(scene.shapes[0].bump_map->channel, 1u);
   EXPECT_TRUE(needs_uvs(scene, scene.shapes[0]));
 }
 

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "opaline/core/vec3.h"
+#include "opaline/geometry/mesh.h"
+#include "opaline/scene/scene.h"
 
 namespace opaline {
 
@@ -16,6 +18,7 @@ struct GltfPart {
   std::vector<Vec3d> positions;
   std::vector<Vec3f> normals;             ///< empty, or one a vertex, of any length
   std::vector<std::array<float, 2>> uvs;  ///< empty, or one a vertex; v upwards
+  std::vector<Tangent> tangents;          ///< empty, or one a vertex
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::string> warnings;
 };
@@ -24,8 +27,8 @@ struct GltfPart {
 /// out   every index in range, every position finite and below 1e18; strips and fans as triangles
 /// error Error{bad_input} naming the file, the accessor and its element: a part that is not there, points or
 ///       lines, data out of bounds or of a type that glTF does not allow
-/// with_uvs: read TEXCOORD_0, where it is
-GltfPart read_gltf_part(const std::string& path, const std::string& part, bool with_uvs = false);
+/// in    uvs: what it is read with, where it is
+GltfPart read_gltf_part(const std::string& path, const std::string& part, MeshUvs uvs = MeshUvs::unread);
 
 /// What a part depends on: changes when the file's bytes or those of a buffer beside it do.
 std::string gltf_contents(const std::string& path);

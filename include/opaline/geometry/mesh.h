@@ -15,11 +15,19 @@ namespace opaline {
 /// UVs at the corners of a triangle; v upwards.
 using CornerUvs = std::array<std::array<float, 2>, 3>;
 
+/// Along the surface at a corner of a triangle, as a file has it; of any length, zero where there is none.
+struct Tangent {
+  Vec3f direction{};
+  float side = 1;  ///< 1: direction, the way that v goes and the normal are right-handed; -1: left-handed
+};
+using CornerTangents = std::array<Tangent, 3>;
+
 struct Mesh {
   std::vector<Vec3d> positions;                         ///< mm, world space
   std::vector<Vec3f> normals;                           ///< unit, one a vertex; empty: faceted
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
-  std::vector<CornerUvs> uvs{};  ///< one a triangle, where a texture needs them; else empty
+  std::vector<CornerUvs> uvs{};            ///< one a triangle, where a texture needs them; else empty
+  std::vector<CornerTangents> tangents{};  ///< one a triangle, where they are read and the file has them
 };
 
 /// What was found and mended while a mesh was made ready; counts are of triangles unless said.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// UVs at a point of a mesh's surface, and how they change along it.
+// UVs and tangents at a point of a mesh's surface.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 
 namespace opaline {
 
+/// And how they change along the surface.
 struct SurfaceUv {
   std::array<float, 2> uv{};     ///< v upwards
   Vec3f gradient_u, gradient_v;  ///< along the surface, per length of the mesh's space
@@ -16,5 +17,9 @@ struct SurfaceUv {
 
 /// in    mesh: with UVs; u, v: barycentrics of the triangle's second and third corner
 SurfaceUv surface_uv(const Mesh& mesh, std::uint32_t triangle, float u, float v);
+
+/// Between those of the corners.
+/// in    mesh: with tangents
+Tangent surface_tangent(const Mesh& mesh, std::uint32_t triangle, float u, float v);
 
 }  // namespace opaline

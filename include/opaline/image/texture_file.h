@@ -48,6 +48,9 @@ class TextureFile {
   /// The mean over a place. Thread-safe.
   /// error Error{bad_input} naming the file: it is damaged there
   std::array<float, 4> at(const TexturePlace& place) const;
+  /// How a channel of at() changes along the whole picture, to the right and down; of smooth surfaces between texels.
+  /// Thread-safe.
+  std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const;
   /// What all texels are, where they are alike.
   const std::optional<Texel>& constant() const { return constant_; }
   /// Over all texels; reads the whole picture the first time.
@@ -65,6 +68,8 @@ class TextureFile {
 
  private:
   TextureFile() = default;
+  /// The picture at a place, which is set to be within it; null: none.
+  const CachedPicture* picture_at(TexturePlace& place) const;
   void add_picture(int tile, const std::string& path, ColorSpace space);
 
   std::string path_;

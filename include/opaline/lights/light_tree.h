@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,11 +12,13 @@
 
 namespace opaline {
 
+class LampTable;
+
 /// Point, spot, sphere and quad lights in a binary tree. Each node bounds where its lights are, which way they shine
 /// and how brightly. From that follows the importance of a node at a point: what its lights could bring there if
 /// nothing were in the way; it is positive wherever one of them brings light. Lights are drawn by importance. One that
 /// is drawn n times in the mean stands for 1 / n of what it brings each time, so that the mean of what is drawn is the
-/// sum over all lights.
+/// sum over all lights. Lights without an area that are not very many are all weighed at each point in place of nodes.
 /// from  Conty Estevez & Kulla 2018, Importance Sampling of Many Lights with Adaptive Tree Splitting: bounds,
 ///       importance and splitting; Madow 1949, systematic sampling: no light is drawn twice in vain
 class LightTree {
@@ -76,6 +79,8 @@ class LightTree {
   const std::vector<Node>& nodes() const { return nodes_; }
 
  private:
+  void draw_weighed(const Place& at, double random, std::span<Drawn> drawn) const;
+
   class Cut;
   class Slots;
 
@@ -92,6 +97,7 @@ class LightTree {
   std::vector<std::uint32_t> order_,
       places_;  ///< lights in the order of the leaves, and where each of them is there
   std::vector<Node> nodes_;
+  std::shared_ptr<const LampTable> lamps_;  ///< in the leaves' order; null: nodes are weighed
 };
 
 /// So many lights without an area, and so many with one, are traced one by one.

@@ -41,26 +41,33 @@ class SurfaceTextures {
     std::uint32_t mesh;
     std::optional<SurfaceUv> uv;  ///< none: nothing asks for it, or the mesh has none
     Footprint footprint;
+    Tangent tangent{};         ///< of the mesh, world units; zero: it has none
+    bool from_behind = false;  ///< the point's normals are turned round: a sheet is seen on its other side
   };
   Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
 
-  /// Of an opaque surface what leaves is times the texture of its reflectance.
+  /// Of an opaque surface what leaves is times the texture of its reflectance. Of a body's light that scatters, its
+  /// weight is in it, once.
   SurfaceTint tint(const Place& place) const;
+  /// Share of the light entering a body that it reflects diffusely at its surface instead.
+  RgbF reflected(const Place& place) const;
   /// None: the surface's own.
   std::optional<float> roughness(const Place& place) const;
   std::optional<float> metalness(const Place& place) const;
   /// Unit, at right angles to the shading normal, the way in which an anisotropic boundary is roughest; of others 0.
   Vec3f tangent(const Place& place, const SurfacePoint& point) const;
-  /// Turns the point's shading normal by the normal map, if there is one.
+  /// Turns the point's shading normal by the normal map and then the bump map, if there are any.
   void bend(const Place& place, SurfacePoint& point) const;
 
  private:
   struct OfMesh {
-    const Texture *tint = nullptr, *roughness = nullptr, *metalness = nullptr, *normals = nullptr;
+    const Texture *tint = nullptr, *roughness = nullptr, *metalness = nullptr, *normals = nullptr,
+                  *heights = nullptr, *weight = nullptr, *base = nullptr;
     Rgb factor{1, 1, 1};               ///< times the tint's texture
     double at_entry = 0, at_exit = 1;  ///< exponents of the tint
-    bool has_tint = false, has_uv = false;
+    bool has_tint = false, has_uv = false, has_tangents = false;
     const Grain* grain = nullptr;
+    const Medium* partly_opaque = nullptr;
   };
 
   const World& world_;
@@ -74,6 +81,8 @@ std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<cons
 
 /// Of a scene's texture: its file's contents and how it is laid; with the UVs of some meshes.
 void add_to_key(KeyBuilder& key, const Texture& texture);
+/// A mesh's UVs and tangents.
+void add_coordinates(KeyBuilder& key, const Mesh& mesh);
 /// Of entering_tints; a key of zeros where there are none.
 StageKey tint_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes,
                   const StageKey& samples);

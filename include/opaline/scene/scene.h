@@ -96,10 +96,19 @@ struct Medium {
   Rgb tint{1, 1, 1};
   std::optional<Texture> tint_texture{}, roughness_texture{};
   TextureMix texture_mix = TextureMix::split;
-  ChosenProfile chosen{};  ///< where profile is none
-  Grain grain{};           ///< of the boundary
+  /// Share of the light that scatters inside, [0, 1]; the rest is reflected diffusely at the surface, by base_color.
+  double subsurface_weight = 1;
+  Rgb base_color{.8, .8, .8};
+  std::optional<Texture> weight_texture{}, base_texture{};  ///< times these
+  ChosenProfile chosen{};                                   ///< where profile is none
+  Grain grain{};                                            ///< of the boundary
   friend bool operator==(const Medium&, const Medium&) = default;
 };
+
+/// Whether some of its light is reflected diffusely at its surface.
+inline bool is_partly_opaque(const Medium& medium) {
+  return medium.subsurface_weight < 1 || medium.weight_texture;
+}
 
 inline ProfileKind profile_kind(const Medium& medium) {
   return medium.profile.value_or(medium.chosen.kind);
@@ -178,6 +187,7 @@ struct Shape {
   SourcePlace place{};                           ///< of its source
   std::optional<Texture> reflectance_texture{};  ///< times the reflectance
   std::optional<Texture> normal_map{};           ///< its scale is of the slopes
+  std::optional<Texture> bump_map{};             ///< heights; its scale is mm
   std::optional<Gloss> gloss{};                  ///< of an opaque shape; none: matte
   friend bool operator==(const Shape&, const Shape&) = default;
 };
@@ -331,7 +341,13 @@ bool needs_uvs(const Scene& scene, const Shape& shape);
 /// Of a shape whose boundary is rough and has one; else null.
 const Grain* grain_of(const Scene& scene, const Shape& shape);
 
-enum class MeshUvs { unread, if_any, required };
+/// What a mesh is read with, by which its surface is described: UVs, and tangents where the file has them.
+enum class MeshUvs {
+  unread,
+  if_any,        ///< both
+  required,      ///< UVs alone
+  with_tangents  ///< UVs required
+};
 MeshUvs uvs_of(const Scene& scene, const Shape& shape);
 
 }  // namespace opaline

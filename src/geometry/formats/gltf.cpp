@@ -9,8 +9,8 @@
 namespace opaline {
 namespace {
 
-SourceMesh read_primitive(const std::string& path, const std::string& part, std::string&, bool with_uvs) {
-  GltfPart primitive = read_gltf_part(path, part, with_uvs);
+SourceMesh read_primitive(const std::string& path, const std::string& part, std::string&, MeshUvs uvs) {
+  GltfPart primitive = read_gltf_part(path, part, uvs);
   SourceMesh mesh;
   mesh.positions = std::move(primitive.positions);
   mesh.normals = std::move(primitive.normals);
@@ -23,12 +23,15 @@ SourceMesh read_primitive(const std::string& path, const std::string& part, std:
       mesh.triangles.push_back(triangle);
   }
   give_uvs(mesh, primitive.uvs);
+  if (!primitive.tangents.empty())
+    for (const auto& [a, b, c] : mesh.triangles)
+      mesh.tangents.push_back({primitive.tangents[a], primitive.tangents[b], primitive.tangents[c]});
   mesh.warnings = std::move(primitive.warnings);
   return mesh;
 }
 
-SourceMesh read_without_part(const std::string& path, std::string& bytes, bool with_uvs) {
-  return read_primitive(path, "", bytes, with_uvs);
+SourceMesh read_without_part(const std::string& path, std::string& bytes, MeshUvs uvs) {
+  return read_primitive(path, "", bytes, uvs);
 }
 
 }  // namespace

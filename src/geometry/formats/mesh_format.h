@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "geometry/source_mesh.h"
+#include "opaline/scene/scene.h"
 
 namespace opaline {
 
@@ -17,11 +18,11 @@ struct MeshFormat {
 
   /// The mesh in a file's bytes, which the reader may overwrite or free; see read_mesh.
   /// error Error{bad_input} naming the file, and the line where the format has lines
-  SourceMesh (*read)(const std::string& path, std::string& bytes, bool with_uvs);
+  SourceMesh (*read)(const std::string& path, std::string& bytes, MeshUvs uvs);
 
   /// A part of the mesh, see MeshFile::part. Null: files of the format have no parts.
   SourceMesh (*read_part)(const std::string& path, const std::string& part, std::string& bytes,
-                          bool with_uvs) = nullptr;
+                          MeshUvs uvs) = nullptr;
 
   /// What the mesh of a file whose bytes alone do not say it all depends on. Null: on its bytes.
   std::string (*contents)(const std::string& path) = nullptr;

@@ -53,8 +53,8 @@ class VertexVariants {
 class ObjReader {
  public:
   /// part: the material whose faces are read; null: all faces
-  ObjReader(const std::string& path, const std::string* part, std::string& bytes, bool with_uvs)
-      : path_(path), part_(part), bytes_(bytes), with_uvs_(with_uvs) {}
+  ObjReader(const std::string& path, const std::string* part, std::string& bytes, MeshUvs uvs)
+      : path_(path), part_(part), bytes_(bytes), with_uvs_(uvs != MeshUvs::unread) {}
 
   SourceMesh run() {
     if (bytes_.find('\0') != bytes_.npos)
@@ -272,13 +272,12 @@ class ObjReader {
   int first_unread_line_ = 0, first_material_line_ = 0;
 };
 
-SourceMesh read_obj(const std::string& path, std::string& bytes, bool with_uvs) {
-  return ObjReader(path, nullptr, bytes, with_uvs).run();
+SourceMesh read_obj(const std::string& path, std::string& bytes, MeshUvs uvs) {
+  return ObjReader(path, nullptr, bytes, uvs).run();
 }
 
-SourceMesh read_material(const std::string& path, const std::string& part, std::string& bytes,
-                         bool with_uvs) {
-  return ObjReader(path, &part, bytes, with_uvs).run();
+SourceMesh read_material(const std::string& path, const std::string& part, std::string& bytes, MeshUvs uvs) {
+  return ObjReader(path, &part, bytes, uvs).run();
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ class OffReader {
   bool has_normals_ = false;
 };
 
-SourceMesh read_off(const std::string& path, std::string& bytes, bool) {
+SourceMesh read_off(const std::string& path, std::string& bytes, MeshUvs) {
   return OffReader(path, bytes).run();
 }
 

@@ -123,11 +123,11 @@ constexpr std::size_t kFirstUv = 6;
 
 class PlyReader {
  public:
-  PlyReader(const std::string& path, const std::string& bytes, bool with_uvs)
+  PlyReader(const std::string& path, const std::string& bytes, MeshUvs uvs)
       : path_(path),
         header_(read_ply_header(path, bytes)),
         values_(path, bytes, header_),
-        has_uvs_(with_uvs) {}
+        has_uvs_(uvs != MeshUvs::unread) {}
 
   SourceMesh run() {
     for (const PlyElement* element : wanted_elements()) rows(*element);
@@ -254,8 +254,8 @@ class PlyReader {
   VertexCheck check_;
 };
 
-SourceMesh read_ply(const std::string& path, std::string& bytes, bool with_uvs) {
-  return PlyReader(path, bytes, with_uvs).run();
+SourceMesh read_ply(const std::string& path, std::string& bytes, MeshUvs uvs) {
+  return PlyReader(path, bytes, uvs).run();
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ class TextStlReader {
   bool ended_ = false;
 };
 
-SourceMesh read_stl(const std::string& path, std::string& bytes, bool) {
+SourceMesh read_stl(const std::string& path, std::string& bytes, MeshUvs) {
   const bool exact = bytes.size() >= binary_header && bytes.size() == binary_size(bytes);
   const bool text = lower(TextCursor(bytes).word_across_lines()) == "solid" && bytes.find('\0') == bytes.npos;
   const bool binary = exact || !text;

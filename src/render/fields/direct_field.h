@@ -19,7 +19,8 @@ class DirectField : public Field {
             .irradiance = {},
             .error = {},
             .noise = {},
-            .bias = {}};
+            .bias = {},
+            .is_tinted = false};
   }
   float eta() const override { return eta_; }
 

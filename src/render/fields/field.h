@@ -43,6 +43,7 @@ struct LeavingLight {
   std::vector<RgbF> error;       ///< standard error of the exitance that neighbouring hits share
   std::vector<Rgb> noise;        ///< variance of the exitance of each hit by itself
   std::vector<RgbF> bias;        ///< that the noise gives the exitance
+  bool is_tinted = false;        ///< the factor is in all of them
 };
 
 class Field {

@@ -9,6 +9,7 @@
 #include "opaline/lights/light_tree.h"
 #include "render/fields/direct_field.h"
 #include "render/fields/local_field.h"
+#include "render/fields/partly_opaque_field.h"
 #include "render/fields/sample_field.h"
 #include "render/fields/volume_field.h"
 
@@ -24,13 +25,15 @@ struct Source {
   const Body* group = nullptr;
   const EntrySampler* entries = nullptr;
   float eta = 0;
+  bool is_partly_opaque = false;
   friend bool operator==(const Source&, const Source&) = default;
 };
 
 Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_samplers, std::size_t mesh) {
   const Shape& shape = input.scene.shapes[mesh];
   if (!shape.medium) return {.eta = shape.gloss ? float(shape.gloss->eta) : 0};
-  Source source{.eta = float(input.scene.media[*shape.medium].eta)};
+  const Medium& medium = input.scene.media[*shape.medium];
+  Source source{.eta = float(medium.eta), .is_partly_opaque = is_partly_opaque(medium)};
   if (has_samples(input.scene.settings.method))
     for (const Body& group : input.groups)
       if (has_mesh(group.plan.meshes, mesh)) source.group = &group;
@@ -69,7 +72,9 @@ Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
     fields.of_mesh.push_back(std::size_t(known - sources.begin()));
     if (known != sources.end()) continue;
     sources.push_back(source);
-    fields.all.push_back(make_field(input, source, textures, albedos));
+    std::unique_ptr<Field> field = make_field(input, source, textures, albedos);
+    if (source.is_partly_opaque) field = std::make_unique<PartlyOpaqueField>(input, std::move(field));
+    fields.all.push_back(std::move(field));
   }
   return fields;
 }

@@ -14,7 +14,7 @@ const kForms = {
 const kNumbers = ["number", "whole_number", "length"], kThrees = ["point", "triple"];
 const kColours = ["color", "number_or_triple"];
 // Shown where the scene has them.
-const kOptional = ["specular_anisotropy", "specular_rotation", "tint", "texture_mix", "thickness"];
+const kOptional = ["base_color", "specular_anisotropy", "specular_rotation", "tint", "texture_mix", "thickness"];
 const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_weight", "specular_anisotropy", "specular_rotation"];
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};
 const kWidestLinear = 1000, kDecade = 1;

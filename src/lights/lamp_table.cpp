@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lights/lamp_table.h"
+
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace opaline {
+namespace {
+
+// Added to cosines, at the surface and off a spot's way: more than rounding may take from those that lights need to be
+// seen.
+constexpr float kTrace = 1e-5f;
+constexpr float kLeastSquare = 1e-30f;
+
+}  // namespace
+
+LampTable::LampTable(std::span<const Light> lights, std::span<const std::uint32_t> order) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  Rgb total;
+  for (const Light& light : lights) total += emission(light);
+  for (const std::uint32_t l : order) {
+    const Light& light = lights[l];
+    const LightExtent place = extent(light);
+    const Rgb colour = emission(light);
+    x_.push_back(float(place.center->x));
+    y_.push_back(float(place.center->y));
+    z_.push_back(float(place.center->z));
+    double intensity = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      if (total[c] > 0) intensity += colour[c] / total[c];
+    intensity_.push_back(float(intensity));
+    const auto* spot = std::get_if<SpotLight>(&light.source);
+    has_spots_ |= spot != nullptr;
+    const Vec3f way = spot != nullptr ? Vec3f(spot->direction) : Vec3f{};
+    const double rim = spot != nullptr ? std::cos(spot->outer_angle * kDegree) - double(kTrace) : -3,
+                 full = spot != nullptr ? std::cos(spot->inner_angle * kDegree) : -2;
+    way_x_.push_back(way.x);
+    way_y_.push_back(way.y);
+    way_z_.push_back(way.z);
+    rim_.push_back(float(rim));
+    per_fade_.push_back(float(1 / std::max(full - rim, double(kTrace))));
+  }
+  for (std::vector<float>* column :
+       {&x_, &y_, &z_, &intensity_, &way_x_, &way_y_, &way_z_, &rim_, &per_fade_})
+    column->resize(weights());
+}
+
+// Four lamps at once.
+template <bool has_spots>
+void LampTable::weigh_block(const Vec3f& point, const Vec3f& normal, std::size_t first,
+                            float* weights) const {
+  const __m128 zero = _mm_setzero_ps(), one = _mm_set1_ps(1), least = _mm_set1_ps(kLeastSquare);
+  const auto along = [](const Vec3f& d, __m128 x, __m128 y, __m128 z) {
+    return _mm_add_ps(_mm_add_ps(_mm_mul_ps(_mm_set1_ps(d.x), x), _mm_mul_ps(_mm_set1_ps(d.y), y)),
+                      _mm_mul_ps(_mm_set1_ps(d.z), z));
+  };
+  for (std::size_t i = first; i < first + kBlock; i += 4) {
+    const __m128 x = _mm_sub_ps(_mm_loadu_ps(&x_[i]), _mm_set1_ps(point.x)),
+                 y = _mm_sub_ps(_mm_loadu_ps(&y_[i]), _mm_set1_ps(point.y)),
+                 z = _mm_sub_ps(_mm_loadu_ps(&z_[i]), _mm_set1_ps(point.z));
+    const __m128 square = _mm_add_ps(_mm_add_ps(_mm_mul_ps(x, x), _mm_mul_ps(y, y)), _mm_mul_ps(z, z));
+    const __m128 per_d = _mm_div_ps(one, _mm_sqrt_ps(_mm_max_ps(square, least)));
+    const __m128 above = _mm_add_ps(_mm_mul_ps(along(normal, x, y, z), per_d), _mm_set1_ps(kTrace));
+    __m128 weight = _mm_mul_ps(_mm_mul_ps(_mm_loadu_ps(&intensity_[i]), _mm_max_ps(above, zero)),
+                               _mm_mul_ps(per_d, per_d));
+    if constexpr (has_spots) {
+      const __m128 off = _mm_mul_ps(per_d, _mm_add_ps(_mm_add_ps(_mm_mul_ps(_mm_loadu_ps(&way_x_[i]), x),
+                                                                 _mm_mul_ps(_mm_loadu_ps(&way_y_[i]), y)),
+                                                      _mm_mul_ps(_mm_loadu_ps(&way_z_[i]), z)));
+      const __m128 fading =
+          _mm_mul_ps(_mm_sub_ps(_mm_sub_ps(zero, off), _mm_loadu_ps(&rim_[i])), _mm_loadu_ps(&per_fade_[i]));
+      const __m128 share = _mm_min_ps(_mm_max_ps(fading, zero), one);
+      weight = _mm_mul_ps(weight, _mm_mul_ps(share, share));
+    }
+    _mm_storeu_ps(weights + (i - first), weight);
+  }
+}
+
+void LampTable::weigh(const Vec3f& point, const Vec3f& normal, std::span<float> weights) const {
+  for (std::size_t first = 0; first < x_.size(); first += kBlock)
+    if (has_spots_)
+      weigh_block<true>(point, normal, first, &weights[first]);
+    else
+      weigh_block<false>(point, normal, first, &weights[first]);
+}
+
+WeighedDraw::WeighedDraw(std::span<const float> weights, double draws)
+    : weights_(weights), blocks_(weights.size() / kBlock) {
+  double sum = 0;
+  for (std::size_t b = 0; b < blocks_; ++b) {
+    constexpr std::size_t kLanes = 4;
+    std::array<float, kLanes> sums{}, largest{};
+    for (std::size_t i = 0; i < kBlock; i += kLanes)
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const float weight = weights[b * kBlock + i + k];
+        sums[k] += weight;
+        largest[k] = largest[k] > weight ? largest[k] : weight;
+      }
+    sums_[b] = double((sums[0] + sums[1]) + (sums[2] + sums[3]));
+    largest_[b] = std::max(std::max(largest[0], largest[1]), std::max(largest[2], largest[3]));
+    sum += sums_[b];
+  }
+  if (!(sum > 0)) return;
+  // What those drawn surely leave goes to the others, of which more are drawn surely then.
+  scale_ = draws / sum;
+  for (std::size_t sure = 0;;) {
+    std::size_t now = 0;
+    double rest = 0;
+    for (std::size_t b = 0; b < blocks_; ++b) {
+      if (!(double(largest_[b]) * scale_ >= 1)) {
+        rest += sums_[b];
+        continue;
+      }
+      for (std::size_t i = b * kBlock; i < (b + 1) * kBlock; ++i)
+        if (double(weights[i]) * scale_ >= 1)
+          ++now;
+        else
+          rest += double(weights[i]);
+    }
+    if (now == sure) return;
+    sure = now;
+    const double left = draws - double(sure);
+    scale_ = left > 0 && rest > 0 ? left / rest : left > 0 ? std::numeric_limits<double>::max() : scale_;
+    if (!(left > 0) || !(rest > 0)) return;
+  }
+}
+
+double WeighedDraw::block_length(std::size_t b) const {
+  if (!(double(largest_[b]) * scale_ >= 1)) return sums_[b] * scale_;
+  double length = 0;
+  for (std::size_t i = b * kBlock; i < (b + 1) * kBlock; ++i) length += expected(i);
+  return length;
+}
+
+}  // namespace opaline

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A body whose surface reflects some of its light diffusely (subsurface_weight), over the field of what scatters inside.
+#pragma once
+
+#include <memory>
+
+#include "opaline/render/render.h"
+#include "render/fields/field.h"
+
+namespace opaline {
+
+class PartlyOpaqueField : public Field {
+ public:
+  PartlyOpaqueField(const RenderInput& input, std::unique_ptr<Field> inside);
+
+  LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
+                  HeldView::Surface* held) const override;
+  float eta() const override { return inside_->eta(); }
+  bool asks_irradiance() const override { return true; }
+  bool asks_samples() const override { return inside_->asks_samples(); }
+
+ private:
+  std::unique_ptr<Field> inside_;
+  bool is_noisy_;
+  int samples_per_pixel_;
+};
+
+}  // namespace opaline
