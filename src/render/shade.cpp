@@ -80,9 +80,7 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
   for (const Light& light : lights_)
     if (is_visible(light)) (extent(light).center ? emitters_ : surroundings_).push_back(light);
   for (const Shape& shape : input.scene.shapes) appearances_.push_back(mesh_appearance(input.scene, shape));
-  // The samples of a pixel share the rays: their average has as many.
-  const int spp = input.scene.film.samples_per_pixel;
-  light_samples_ = (input.scene.settings.light_samples + spp - 1) / spp;
+  light_samples_ = light_samples_of_ray(input.scene);
   if (input.view != nullptr && can_hold_coats())
     for (const Light& light : lights_) unit_lights_.push_back(with_emission(light, {1, 1, 1}));
 }

@@ -126,6 +126,15 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
   return key.key();
 }
 
+StageKey view_near_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
+                       const StageKey& surfaces) {
+  KeyBuilder key("near fields of the view", 1);
+  key.add(surfaces).add(input.scene.film.samples_per_pixel).add(input.plan.rays);
+  key.add(input.world.origin).add(input.world.unit);
+  for (const MeshKeys& mesh : meshes) key.add(mesh.all);
+  return key.key();
+}
+
 StageKey view_coats_key(const Scene& scene) {
   KeyBuilder key("coats of the view", 1);
   for (const Shape& shape : scene.shapes) {

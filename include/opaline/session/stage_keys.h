@@ -57,6 +57,10 @@ StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes
 /// random numbers that lights are sampled with there.
 /// in    lights: recentred
 StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights);
+/// Of irradiance at places of surfaces, by light, whatever the camera sees.
+/// in    surfaces: view_surfaces_key
+StageKey view_near_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
+                       const StageKey& surfaces);
 /// Besides that, of what coats mirror.
 StageKey view_coats_key(const Scene& scene);
 
