@@ -13,6 +13,21 @@ void set_held_lights(std::vector<PointTransfers>& lights,
   lights = std::move(now);
 }
 
+void HeldView::set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<float>& eta) {
+  if (of_mesh == field_of_mesh && eta == eta_of_field) return;
+  forget_coats();  // which mirror the others
+  if (of_mesh != field_of_mesh || eta.size() != eta_of_field.size()) {
+    forget_surfaces();
+  } else {
+    for (std::vector<Batch>& tile : tiles)
+      for (Batch& batch : tile)
+        for (std::size_t f = 0; f < batch.surfaces.size(); ++f)
+          if (eta[f] != eta_of_field[f]) batch.surfaces[f] = {};
+  }
+  field_of_mesh = of_mesh;
+  eta_of_field = eta;
+}
+
 void HeldView::set_lights(std::span<const std::optional<std::size_t>> before) {
   forget_coats();
   for (std::vector<Batch>& tile : tiles)

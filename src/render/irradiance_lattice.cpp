@@ -58,15 +58,17 @@ struct IrradianceLattice::Crossings {
   std::array<std::array<std::array<float, 2>, kLines * kLines>, 3> shifts;  // of the lines in their squares
 };
 
-IrradianceLattice::IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, int light_samples,
-                                     bool holds_lights)
+IrradianceLattice::IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta,
+                                     int light_samples, bool holds_lights)
     : is_own_mesh_(std::move(is_own_mesh)),
       spacing_(spacing),
+      eta_(eta),
       light_samples_(light_samples),
       holds_lights_(holds_lights) {}
 
-bool IrradianceLattice::is_of(const std::vector<bool>& is_own_mesh, double spacing, int light_samples) const {
-  return is_own_mesh == is_own_mesh_ && spacing == spacing_ && light_samples == light_samples_;
+bool IrradianceLattice::is_of(const std::vector<bool>& is_own_mesh, double spacing, double eta,
+                              int light_samples) const {
+  return is_own_mesh == is_own_mesh_ && spacing == spacing_ && eta == eta_ && light_samples == light_samples_;
 }
 
 void IrradianceLattice::set_lights(std::span<const std::optional<std::size_t>> before) {
@@ -163,6 +165,7 @@ void IrradianceLattice::light(Cell& cell, const PointIrradianceInput& lighting) 
   PointIrradianceInput here = lighting;
   here.points = cell.points;
   here.keys = keys;
+  here.eta = eta_;
   here.light_samples = light_samples_;
   here.variance = {};
   if (holds_lights_) add_transfers(here, cell.lights);

@@ -37,12 +37,13 @@ class IrradianceLattice {
     std::uint64_t seed = 0, picture = 0;      ///< of the places' keys; that `entered` is of
   };
 
-  /// in    spacing: of the lines of level 0, mm; light_samples: shadow rays from a place to each light with an area;
+  /// in    spacing: of the lines of level 0, mm; eta: of the boundary, as PointIrradianceInput's; light_samples: shadow rays from a place to each light with an area;
   ///       holds_lights: for more than one picture
-  IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, int light_samples, bool holds_lights);
+  IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta, int light_samples,
+                    bool holds_lights);
 
   /// Whether a new one with these would be the same.
-  bool is_of(const std::vector<bool>& is_own_mesh, double spacing, int light_samples) const;
+  bool is_of(const std::vector<bool>& is_own_mesh, double spacing, double eta, int light_samples) const;
   /// To be called between pictures of other lights, as HeldView::set_lights.
   void set_lights(std::span<const std::optional<std::size_t>> before);
   /// To be called between pictures: cells are in the colours of the first one's lights otherwise. Lets go of all of
@@ -54,7 +55,7 @@ class IrradianceLattice {
   /// Of the cells that are within reach, mm, of any of some points.
   std::vector<Key> keys_near(std::span<const SurfacePoint> points, std::span<const std::uint32_t> chosen,
                              double reach, std::uint32_t level) const;
-  /// in    lighting: its points and number of rays are not looked at; the same at each call but for them
+  /// in    lighting: its points, boundary and number of rays are not looked at; the same at each call but for them
   const Cell& cell(const Key& key, const PointIrradianceInput& lighting);
 
  private:
@@ -71,7 +72,7 @@ class IrradianceLattice {
   void add_crossings(const RayScene& rays, const LineQuery::Triangle& triangle, Crossings& crossings) const;
 
   std::vector<bool> is_own_mesh_;
-  double spacing_;
+  double spacing_, eta_;
   int light_samples_;
   bool holds_lights_;
   std::uint64_t picture_ = 0;

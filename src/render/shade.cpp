@@ -76,6 +76,11 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
       textures_(input.scene, input.world),
       pixel_spread_(camera_ray_spread(input.scene)),
       fields_(make_fields(input, textures_, entry_samplers)) {
+  if (input.view != nullptr) {
+    std::vector<float> eta;
+    for (const std::unique_ptr<Field>& field : fields_.all) eta.push_back(field->eta());
+    input.view->set_fields(fields_.of_mesh, eta);
+  }
   for (const Light& light : lights_) emitted_.emplace_back(emission(light));
   for (const Light& light : lights_)
     if (is_visible(light)) (extent(light).center ? emitters_ : surroundings_).push_back(light);

@@ -118,8 +118,6 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
     if (!is_delta(light)) key.add(view_light_key(light));
   for (const Shape& shape : input.scene.shapes) {
     key.add(shape.medium.has_value());
-    if (shape.medium) key.add(input.scene.media[*shape.medium].eta);
-    if (shape.gloss) key.add(shape.gloss->eta);
     if (shape.normal_map) add_to_key(key, *shape.normal_map);
   }
   for (const GroupPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));

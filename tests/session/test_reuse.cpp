@@ -215,6 +215,34 @@ TEST(Reuse, Medium) {
   expect_row({"eta", [](Scene& s) { s.media[0].eta = 1.4; }, 3, true});
 }
 
+// Claim: with the view held, another index of one medium has lights looked for where the camera sees that medium, and
+// nowhere else. Source: held_view.h. Fails if: what lights send to other surfaces is let go of, or to this one is not.
+TEST(Reuse, HeldViewAndIndex) {
+  Scene scene = two_balls();
+  scene.settings.method = Method::lambert;
+  scene.settings.light_samples = 32;
+  scene.media[0].eta = 1.2;
+  scene.media[1].eta = 1;
+  Session session;
+  session.hold_view(true);
+  const auto rays_of = [&] {
+    session.edit(scene);
+    session.prepare();
+    const std::uint64_t before = session.rays().statistics().rays;
+    EXPECT_TRUE(same_pixels(session.render().image, cold_picture(scene)));
+    return session.rays().statistics().rays - before;
+  };
+  const std::uint64_t all = rays_of();
+  scene.media[0].eta = 1.4;
+  const std::uint64_t once = rays_of();
+  EXPECT_GT(once, 0u);
+  EXPECT_LT(once, all / 2);
+  scene.media[1].eta = 1.4;  // one boundary for both
+  rays_of();
+  scene.media[1].eta = 1.3;
+  rays_of();
+}
+
 // Claim: a light that moved, came, went, changed its size or its name (its random numbers) costs its own rays
 // from each group, and no other's; lights of no area have no random numbers. Source: the table in session.h.
 TEST(Reuse, Lights) {

@@ -78,6 +78,12 @@ struct HeldView {
   /// Where a sharp near field is looked up, one a body; null: not known. Whatever the camera sees.
   std::vector<std::shared_ptr<IrradianceLattice>> lattices;
 
+  std::vector<std::size_t> field_of_mesh;  ///< index of HeldView::Batch::surfaces
+  std::vector<float> eta_of_field;         ///< of the boundary that light enters through; 0: none
+
+  /// Takes over other fields: where they shade the same meshes, what was found of those with the same boundary holds.
+  void set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<float>& eta);
+
   /// Lets go of all that depends on the camera.
   void forget_camera() {
     tiles.clear();
