@@ -12,6 +12,7 @@
 
 #include "opaline/scene/json_tree.h"
 #include "opaline/scene/light_reader.h"
+#include "opaline/scene/mesh_formats.h"
 #include "opaline/scene/names.h"
 #include "scene/presets.h"
 #include "scene/settings_table.h"
@@ -30,6 +31,18 @@ KeyInfo row(std::string_view section, std::string_view key, ValueType type, std:
 KeyInfo textured(KeyInfo info) {
   info.may_be_texture = true;
   return info;
+}
+
+std::string_view mesh_file_meaning() {
+  static const std::string text = [] {
+    std::string formats;
+    for (std::size_t i = 0; i < kMeshFormats.size(); ++i) {
+      if (i > 0) formats += i + 1 < kMeshFormats.size() ? ", " : " or ";
+      formats += kMeshFormats[i];
+    }
+    return "mesh: " + formats + "; relative paths start at the scene file's folder";
+  }();
+  return text;
 }
 
 std::string_view profile_meaning() {
@@ -159,9 +172,7 @@ std::vector<KeyInfo> shape_rows() {
   return {
       row("shape", "name", text, "", kFiniteNumber, "\"shape0\", \"shape1\", ...",
           "what messages and `--set` call it; no two alike"),
-      row("shape", "file", file, "", kFiniteNumber, "",
-          "mesh: OBJ, PLY, STL, OFF or an asset's GLB or glTF; relative paths start at the scene file's "
-          "folder"),
+      row("shape", "file", file, "", kFiniteNumber, "", mesh_file_meaning()),
       row("shape", "part", text, "", kFiniteNumber, "all of the file",
           "with `file`: a part of it; of GLB and glTF, which must have it, `\"mesh/primitive\"` by their "
           "indices, "
