@@ -136,6 +136,11 @@ LightExtent LightOf<EnvironmentLight>::extent(const EnvironmentLight&) {
 }
 
 template <>
+std::optional<Lamp> LightOf<EnvironmentLight>::lamp(const EnvironmentLight&) {
+  return {};
+}
+
+template <>
 std::vector<double> LightOf<EnvironmentLight>::geometry(const EnvironmentLight& light) {
   const std::uint64_t hash = light.picture->hash();
   return {double(hash >> 32), double(hash & 0xffffffff), light.rotation, double(light.channel.value_or(0))};
