@@ -20,9 +20,9 @@ namespace fs = std::filesystem;
 /// ".a, .b or .c"
 std::string known_extensions() {
   std::string list;
-  for (std::size_t i = 0; i < mesh_formats.size(); ++i) {
-    if (i > 0) list += i + 1 < mesh_formats.size() ? ", " : " or ";
-    list += mesh_formats[i]->extension;
+  for (std::size_t i = 0; i < kMeshFormats.size(); ++i) {
+    if (i > 0) list += i + 1 < kMeshFormats.size() ? ", " : " or ";
+    list += extension_of(kMeshFormats[i]);
   }
   return list;
 }

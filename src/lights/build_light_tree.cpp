@@ -3,49 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
+
+#include "lights/light_of.h"
 
 namespace opaline {
 namespace {
-
-using std::numbers::pi;
-
-/// A light as the bounds of nodes see it.
-struct Lamp {
-  Vec3d center{};
-  double radius = 0;
-  std::optional<Vec3d> facing{};
-  double full = pi, reach = pi;  ///< off its way, to where its light begins to fade and ends
-  bool fades_by_square = false;
-  double intensity = 0;  ///< the way it is brightest, for an emission of 1
-};
-
-std::optional<Lamp> lamp_of(const Light& light) {
-  const LightExtent place = extent(light);
-  const auto lamp = [&](double intensity) {
-    return Lamp{.center = *place.center, .radius = place.radius, .intensity = intensity};
-  };
-  if (std::holds_alternative<PointLight>(light.source)) return lamp(1);
-  if (const auto* sphere = std::get_if<SphereLight>(&light.source))
-    return lamp(pi * sphere->radius * sphere->radius);
-  if (const auto* spot = std::get_if<SpotLight>(&light.source)) {
-    Lamp shining = lamp(1);
-    shining.facing = spot->direction;
-    shining.full = spot->inner_angle * pi / 180;
-    shining.reach = spot->outer_angle * pi / 180;
-    shining.fades_by_square = true;
-    return shining;
-  }
-  if (const auto* quad = std::get_if<QuadLight>(&light.source)) {
-    Lamp shining = lamp(length(cross(quad->u, quad->v)));
-    shining.facing = place.facing;
-    shining.full = 0;
-    shining.reach = pi / 2;
-    return shining;
-  }
-  return {};
-}
 
 class Builder {
  public:

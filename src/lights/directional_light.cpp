@@ -109,6 +109,11 @@ LightExtent LightOf<DirectionalLight>::extent(const DirectionalLight& light) {
 }
 
 template <>
+std::optional<Lamp> LightOf<DirectionalLight>::lamp(const DirectionalLight&) {
+  return {};
+}
+
+template <>
 std::vector<double> LightOf<DirectionalLight>::geometry(const DirectionalLight& light) {
   return {light.direction.x, light.direction.y, light.direction.z, light.angle};
 }

@@ -9,10 +9,34 @@
 namespace opaline {
 namespace {
 
+struct Turn {
+  double degrees = 0, cosine = 1, sine = 0;
+};
+
 /// Counterclockwise about +y, seen from above; degrees.
 Vec3d turned(const Vec3d& direction, double degrees) {
-  const double angle = degrees * std::numbers::pi / 180, cosine = std::cos(angle), sine = std::sin(angle);
-  return {direction.x * cosine + direction.z * sine, direction.y, direction.z * cosine - direction.x * sine};
+  thread_local Turn turn;  // of one light after another, millions of directions each
+  if (degrees != turn.degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    turn = {degrees, std::cos(angle), std::sin(angle)};
+  }
+  return {direction.x * turn.cosine + direction.z * turn.sine, direction.y,
+          direction.z * turn.cosine - direction.x * turn.sine};
+}
+
+/// What the light's picture has in a direction. Its channels, lights of their own, are asked one after the other.
+RgbF radiance_towards(const EnvironmentLight& light, const Vec3f& direction) {
+  struct Asked {
+    std::uint64_t picture = 0;
+    double rotation = 0;
+    Vec3f direction;
+    RgbF radiance;
+  };
+  thread_local Asked last;
+  if (last.picture != light.picture->hash() || last.rotation != light.rotation || last.direction != direction)
+    last = {light.picture->hash(), light.rotation, direction,
+            light.picture->radiance(turned(Vec3d(direction), -light.rotation))};
+  return last.radiance;
 }
 
 float channel_of(const EnvironmentLight& light, const RgbF& colour) {
@@ -103,12 +127,16 @@ EmitterHit LightOf<EnvironmentLight>::intersect(const EnvironmentLight&, const V
 
 template <>
 RgbF LightOf<EnvironmentLight>::background(const EnvironmentLight& light, const Vec3f& direction) {
-  return RgbF(emission(light)) *
-         channel_of(light, light.picture->radiance(turned(Vec3d(direction), -light.rotation)));
+  return RgbF(emission(light)) * channel_of(light, radiance_towards(light, direction));
 }
 
 template <>
 LightExtent LightOf<EnvironmentLight>::extent(const EnvironmentLight&) {
+  return {};
+}
+
+template <>
+std::optional<Lamp> LightOf<EnvironmentLight>::lamp(const EnvironmentLight&) {
   return {};
 }
 

@@ -80,14 +80,11 @@ struct KnownPicture {
 
 // The share of [0, 1) that `u` lies in, by its end; u becomes its place within.
 std::size_t draw(const float* ends, std::size_t count, double& u) {
-  // As upper_bound, without branches that cannot be foretold.
-  const float* first = ends;
-  for (std::size_t left = count; left > 1;) {
-    const std::size_t half = left / 2;
-    first += first[half - 1] <= float(u) ? half : 0;
-    left -= half;
-  }
-  const std::size_t i = std::size_t(first - ends);
+  // As upper_bound, which would wait for each comparison before the next; the last end is 1.
+  const float wanted = float(u);
+  int before = 0;
+  for (std::size_t k = 0; k < count; ++k) before += ends[k] <= wanted ? 1 : 0;
+  const std::size_t i = std::min(std::size_t(before), count - 1);
   const double begin = i > 0 ? double(ends[i - 1]) : 0, width = double(ends[i]) - begin;
   u = width > 0 ? std::clamp((u - begin) / width, 0.0, 1.0) : .5;
   return i;

@@ -121,6 +121,10 @@ LightExtent extent(const Light& light) {
   return by_kind(light, [](const auto& kind, auto of) { return of.extent(kind); });
 }
 
+std::optional<Lamp> lamp_of(const Light& light) {
+  return by_kind(light, [](const auto& kind, auto of) { return of.lamp(kind); });
+}
+
 std::vector<double> geometry(const Light& light) {
   return by_kind(light, [](const auto& kind, auto of) { return of.geometry(kind); });
 }

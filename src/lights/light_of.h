@@ -4,12 +4,24 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <optional>
 #include <vector>
 
 #include "opaline/lights/light.h"
 
 namespace opaline {
+
+/// A light as a tree of many lights bounds it.
+struct Lamp {
+  Vec3d center{};
+  double radius = 0;
+  std::optional<Vec3d> facing{};  ///< unit, the way that it shines; none: all around
+  /// Off that way, to where its light begins to fade and where it ends, radians.
+  double full = std::numbers::pi, reach = std::numbers::pi;
+  bool fades_by_square = false;
+  double intensity = 0;  ///< the way it is brightest, for an emission of 1
+};
 
 template <class Kind>
 struct LightOf {
@@ -29,9 +41,14 @@ struct LightOf {
   /// What a ray that meets nothing sees of it; 0 unless it is all around.
   static RgbF background(const Kind& light, const Vec3f& direction);
   static LightExtent extent(const Kind& light);
+  /// None: trees cannot hold it.
+  static std::optional<Lamp> lamp(const Kind& light);
   /// All numbers but the colour's that change what a point receives: place, size, direction, cone. Keys of
   /// kept results are made of them, so one that is missing keeps a result that is no longer right.
   static std::vector<double> geometry(const Kind& light);
 };
+
+/// Of a light of any kind: light.cpp.
+std::optional<Lamp> lamp_of(const Light& light);
 
 }  // namespace opaline

@@ -128,6 +128,11 @@ LightExtent LightOf<ManyLights>::extent(const ManyLights& light) {
 }
 
 template <>
+std::optional<Lamp> LightOf<ManyLights>::lamp(const ManyLights&) {
+  return {};
+}
+
+template <>
 std::vector<double> LightOf<ManyLights>::geometry(const ManyLights& light) {
   const std::uint64_t hash = light.tree->hash();
   return {double(hash >> 32), double(hash & 0xffffffff), double(light.channel.value_or(0))};

@@ -72,6 +72,11 @@ LightExtent LightOf<PointLight>::extent(const PointLight& light) {
 }
 
 template <>
+std::optional<Lamp> LightOf<PointLight>::lamp(const PointLight& light) {
+  return Lamp{.center = light.position, .intensity = 1};
+}
+
+template <>
 std::vector<double> LightOf<PointLight>::geometry(const PointLight& light) {
   return {light.position.x, light.position.y, light.position.z};
 }

@@ -105,6 +105,17 @@ LightExtent LightOf<QuadLight>::extent(const QuadLight& light) {
 }
 
 template <>
+std::optional<Lamp> LightOf<QuadLight>::lamp(const QuadLight& light) {
+  const LightExtent place = extent(light);
+  return Lamp{.center = *place.center,
+              .radius = place.radius,
+              .facing = place.facing,
+              .full = 0,
+              .reach = std::numbers::pi / 2,
+              .intensity = length(cross(light.u, light.v))};
+}
+
+template <>
 std::vector<double> LightOf<QuadLight>::geometry(const QuadLight& light) {
   return {light.corner.x, light.corner.y, light.corner.z, light.u.x, light.u.y,
           light.u.z,      light.v.x,      light.v.y,      light.v.z};

@@ -105,6 +105,13 @@ LightExtent LightOf<SphereLight>::extent(const SphereLight& light) {
 }
 
 template <>
+std::optional<Lamp> LightOf<SphereLight>::lamp(const SphereLight& light) {
+  return Lamp{.center = light.center,
+              .radius = light.radius,
+              .intensity = std::numbers::pi * light.radius * light.radius};
+}
+
+template <>
 std::vector<double> LightOf<SphereLight>::geometry(const SphereLight& light) {
   return {light.center.x, light.center.y, light.center.z, light.radius};
 }

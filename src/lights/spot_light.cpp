@@ -110,6 +110,16 @@ LightExtent LightOf<SpotLight>::extent(const SpotLight& light) {
 }
 
 template <>
+std::optional<Lamp> LightOf<SpotLight>::lamp(const SpotLight& light) {
+  return Lamp{.center = light.position,
+              .facing = light.direction,
+              .full = light.inner_angle * std::numbers::pi / 180,
+              .reach = light.outer_angle * std::numbers::pi / 180,
+              .fades_by_square = true,
+              .intensity = 1};
+}
+
+template <>
 std::vector<double> LightOf<SpotLight>::geometry(const SpotLight& light) {
   return {light.position.x,  light.position.y,  light.position.z,  light.direction.x,
           light.direction.y, light.direction.z, light.outer_angle, light.inner_angle};

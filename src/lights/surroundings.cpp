@@ -72,6 +72,11 @@ LightExtent LightOf<Surroundings>::extent(const Surroundings&) {
 }
 
 template <>
+std::optional<Lamp> LightOf<Surroundings>::lamp(const Surroundings&) {
+  return {};
+}
+
+template <>
 std::vector<double> LightOf<Surroundings>::geometry(const Surroundings&) {
   return {};
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "opaline/core/random.h"
+#include "opaline/render/held_view.h"
 
 namespace opaline {
 namespace {
@@ -15,11 +16,16 @@ constexpr int kLines = 8;  // along a side of a cell
 // Side of the part of its square in which a line stands at random. The whole square leaves more noise beside
 // edges (p99 2.12 % in place of 1.96 % on the bunny's thigh), none is bad for edges along an axis.
 constexpr float kFreedom = 0.5f;
-constexpr int kFewerRays = 16;  // than a point's own are traced from a place to each light with an area
 
 std::size_t largest_axis(const Vec3d& v) {
   const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
   return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+}
+
+std::size_t bytes_of(const IrradianceLattice::Cell& cell) {
+  const std::size_t of_point =
+      sizeof(SurfacePoint) + sizeof(float) + sizeof(RgbF) + cell.lights.size() * sizeof(float);
+  return sizeof cell + cell.points.size() * of_point;
 }
 
 }  // namespace
@@ -49,12 +55,33 @@ struct IrradianceLattice::Crossings {
   double step;
   std::uint64_t seed;  // of the cell
   Cell& cell;
-  std::vector<std::uint64_t> keys;
   std::array<std::array<std::array<float, 2>, kLines * kLines>, 3> shifts;  // of the lines in their squares
 };
 
-IrradianceLattice::IrradianceLattice(std::vector<bool> is_own_mesh, double spacing)
-    : is_own_mesh_(std::move(is_own_mesh)), spacing_(spacing) {}
+IrradianceLattice::IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta,
+                                     int light_samples, bool holds_lights)
+    : is_own_mesh_(std::move(is_own_mesh)),
+      spacing_(spacing),
+      eta_(eta),
+      light_samples_(light_samples),
+      holds_lights_(holds_lights) {}
+
+bool IrradianceLattice::is_of(const std::vector<bool>& is_own_mesh, double spacing, double eta,
+                              int light_samples) const {
+  return is_own_mesh == is_own_mesh_ && spacing == spacing_ && eta == eta_ && light_samples == light_samples_;
+}
+
+void IrradianceLattice::set_lights(std::span<const std::optional<std::size_t>> before) {
+  for (Shard& shard : shards_)
+    for (auto& [key, cell] : shard.cells) set_held_lights(cell.lights, before);
+}
+
+void IrradianceLattice::next_picture() {
+  ++picture_;
+  if (bytes_ <= kMostBytes) return;
+  for (Shard& shard : shards_) shard.cells.clear();
+  bytes_ = 0;
+}
 
 double IrradianceLattice::spacing(std::uint32_t level) const {
   return std::ldexp(level % 2 == 0 ? spacing_ : spacing_ / std::numbers::sqrt2, -int(level / 2));
@@ -119,8 +146,30 @@ const IrradianceLattice::Cell& IrradianceLattice::cell(const Key& key, const Poi
   Shard& shard = shards_[Hash()(key) % shards_.size()];
   const std::lock_guard lock(shard.mutex);
   const auto known = shard.cells.find(key);
-  if (known != shard.cells.end()) return known->second;
-  return shard.cells.emplace(key, make_cell(key, lighting)).first->second;
+  if (known == shard.cells.end()) {
+    Cell& cell = shard.cells.emplace(key, make_cell(key, lighting)).first->second;
+    light(cell, lighting);
+    bytes_ += bytes_of(cell);
+    return cell;
+  }
+  if (known->second.picture != picture_) light(known->second, lighting);
+  return known->second;
+}
+
+// By rays to those lights alone of which nothing is held.
+void IrradianceLattice::light(Cell& cell, const PointIrradianceInput& lighting) const {
+  cell.picture = picture_;
+  if (cell.points.empty()) return;
+  std::vector<std::uint64_t> keys(cell.points.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = hash_bits(cell.seed, i);
+  PointIrradianceInput here = lighting;
+  here.points = cell.points;
+  here.keys = keys;
+  here.eta = eta_;
+  here.light_samples = light_samples_;
+  here.variance = {};
+  if (holds_lights_) add_transfers(here, cell.lights);
+  cell.entered = holds_lights_ ? combine_lights(cell.lights, here) : irradiance_at(here);
 }
 
 IrradianceLattice::Cell IrradianceLattice::make_cell(const Key& key,
@@ -142,12 +191,7 @@ IrradianceLattice::Cell IrradianceLattice::make_cell(const Key& key,
     cell.low = component_min(cell.low, point.position);
     cell.high = component_max(cell.high, point.position);
   }
-  PointIrradianceInput here = lighting;
-  here.points = cell.points;
-  here.keys = crossings.keys;
-  here.light_samples = std::max(1, lighting.light_samples / kFewerRays);
-  here.variance = {};
-  cell.entered = irradiance_at(here);
+  cell.seed = crossings.seed;
   return cell;
 }
 
@@ -181,7 +225,6 @@ void IrradianceLattice::add_crossings(const RayScene& rays, const LineQuery::Tri
       crossings.cell.points.push_back(
           rays.surface_point(triangle.mesh, triangle.triangle, float(u), float(v)));
       crossings.cell.areas.push_back(stands_for);
-      crossings.keys.push_back(hash_bits(crossings.seed, crossings.keys.size()));
     }
 }
 

@@ -74,10 +74,18 @@ struct NearFieldSampler::Places {
   std::vector<std::uint32_t> sets;  // of the points that brought them
 };
 
-NearFieldSampler::NearFieldSampler(const Body& group)
+NearFieldSampler::NearFieldSampler(const Body& group, int light_samples,
+                                   std::shared_ptr<IrradianceLattice>* held)
     : kernel_(group.kernel), near_(group), is_own_mesh_(*std::ranges::max_element(group.plan.meshes) + 1) {
   for (const std::uint32_t mesh : group.plan.meshes) is_own_mesh_[mesh] = true;
-  lattice_ = std::make_unique<IrradianceLattice>(is_own_mesh_, kCoarsest * double(near_.narrowest));
+  const double spacing = kCoarsest * double(near_.narrowest), eta = double(float(group.profile.eta));
+  const int of_place = std::max(1, light_samples / kFewerRays);
+  if (held != nullptr && *held != nullptr && (*held)->is_of(is_own_mesh_, spacing, eta, of_place)) {
+    lattice_ = *held;
+    return;
+  }
+  lattice_ = std::make_shared<IrradianceLattice>(is_own_mesh_, spacing, eta, of_place, held != nullptr);
+  if (held != nullptr) *held = lattice_;
 }
 
 std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& lighting,

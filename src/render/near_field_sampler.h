@@ -27,8 +27,11 @@ namespace opaline {
 ///       edges: Mitchell 1996
 class NearFieldSampler {
  public:
-  /// group: not without meshes; it must outlive the sampler.
-  explicit NearFieldSampler(const Body& group);
+  /// in    group: not without meshes; it must outlive the sampler. light_samples: from a point to each light with an
+  /// area, the most that refine is given. held: where it is the one that the group needs, of earlier
+  /// pictures; else replaced by one for this and later ones. Null: none is kept
+  explicit NearFieldSampler(const Body& group, int light_samples,
+                            std::shared_ptr<IrradianceLattice>* held = nullptr);
 
   /// Corrects the exitance of the points beside shadow edges.
   /// in    lighting: of the points; own: their irradiance
@@ -62,7 +65,7 @@ class NearFieldSampler {
   const SplitKernel& kernel_;
   NearKernel near_;
   std::vector<bool> is_own_mesh_;
-  std::unique_ptr<IrradianceLattice> lattice_;
+  std::shared_ptr<IrradianceLattice> lattice_;
 };
 
 }  // namespace opaline

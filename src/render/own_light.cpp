@@ -37,7 +37,10 @@ bool can_hold_own_light(const Scene& scene, const World& world, const Body& grou
 }
 
 OwnLight::OwnLight(const PrecomputeInput& input, const Body& group)
-    : input_(input), group_(group), lights_(recentred_lights(input.scene, input.world)), near_field_(group) {}
+    : input_(input),
+      group_(group),
+      lights_(recentred_lights(input.scene, input.world)),
+      near_field_(group, input.scene.settings.light_samples) {}
 
 void OwnLight::add(std::span<const SurfacePoint> points, std::span<Exitance> exitance,
                    std::span<PlaceDoubt> doubts) const {

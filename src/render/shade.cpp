@@ -100,13 +100,16 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
       textures_(input.scene, input.world),
       pixel_spread_(camera_ray_spread(input.scene)),
       fields_(make_fields(input, textures_, entry_samplers)) {
+  if (input.view != nullptr) {
+    std::vector<float> eta;
+    for (const std::unique_ptr<Field>& field : fields_.all) eta.push_back(field->eta());
+    input.view->set_fields(fields_.of_mesh, eta);
+  }
   for (const Light& light : lights_) emitted_.emplace_back(emission(light));
   for (const Light& light : lights_)
     if (is_visible(light)) (extent(light).center ? emitters_ : surroundings_).push_back(light);
   for (const Shape& shape : input.scene.shapes) appearances_.push_back(mesh_appearance(input.scene, shape));
-  // The samples of a pixel share the rays: their average has as many.
-  const int spp = input.scene.film.samples_per_pixel;
-  light_samples_ = (input.scene.settings.light_samples + spp - 1) / spp;
+  light_samples_ = light_samples_of_ray(input.scene);
   if (input.view != nullptr && can_hold_coats())
     for (const Light& light : lights_) unit_lights_.push_back(with_emission(light, {1, 1, 1}));
 }

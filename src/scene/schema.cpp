@@ -12,6 +12,7 @@
 
 #include "opaline/scene/json_tree.h"
 #include "opaline/scene/light_reader.h"
+#include "opaline/scene/mesh_formats.h"
 #include "opaline/scene/names.h"
 #include "scene/key_rows.h"
 #include "scene/settings_table.h"
@@ -20,6 +21,18 @@ namespace opaline {
 namespace {
 
 constexpr std::array<std::string_view, 4> kTextureChannels{"r", "g", "b", "a"};
+
+std::string_view mesh_file_meaning() {
+  static const std::string text = [] {
+    std::string formats;
+    for (std::size_t i = 0; i < kMeshFormats.size(); ++i) {
+      if (i > 0) formats += i + 1 < kMeshFormats.size() ? ", " : " or ";
+      formats += kMeshFormats[i];
+    }
+    return "mesh: " + formats + "; relative paths start at the scene file's folder";
+  }();
+  return text;
+}
 
 template <class Kind>
 void add_light_rows(std::vector<KeyInfo>& rows) {
@@ -70,9 +83,7 @@ std::vector<KeyInfo> shape_rows() {
   return {
       row("shape", "name", text, "", kFiniteNumber, "\"shape0\", \"shape1\", ...",
           "what messages and `--set` call it; no two alike"),
-      row("shape", "file", file, "", kFiniteNumber, "",
-          "mesh: OBJ, PLY, STL, OFF or an asset's GLB or glTF; relative paths start at the scene file's "
-          "folder"),
+      row("shape", "file", file, "", kFiniteNumber, "", mesh_file_meaning()),
       row("shape", "part", text, "", kFiniteNumber, "all of the file",
           "with `file`: a part of it; of GLB and glTF, which must have it, `\"mesh/primitive\"` by their "
           "indices, "

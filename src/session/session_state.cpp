@@ -240,8 +240,11 @@ HeldView* Session::State::held_view() {
   std::vector<StageKey> light_keys;
   for (const Light& light : lights) light_keys.push_back(view_light_key(light));
   const bool sees_the_same = key == view_key_ && surfaces_key == view_surfaces_key_;
-  if (key != view_key_) view_ = {};
+  if (key != view_key_) view_.forget_camera();
   if (!sees_the_same) view_.forget_surfaces();
+  const StageKey near_key = view_near_key(input, mesh_keys_, surfaces_key);
+  if (near_key != view_near_key_) view_.lattices.clear();
+  view_near_key_ = near_key;
   const StageKey coats_key = view_coats_key(scene_);
   if (coats_key != view_coats_key_) view_.forget_coats();
   view_coats_key_ = coats_key;
@@ -257,6 +260,7 @@ HeldView* Session::State::held_view() {
   view_key_ = key;
   view_surfaces_key_ = surfaces_key;
   view_light_keys_ = std::move(light_keys);
+  view_.next_picture();
   return &view_;
 }
 

@@ -73,7 +73,7 @@ struct Session::State {
   HeldView view_;
   std::shared_ptr<const BouncedPlaces> bounced_;  // of the last picture in which light bounced
   StageKey bounced_key_;
-  StageKey view_key_, view_surfaces_key_, view_coats_key_;
+  StageKey view_key_, view_surfaces_key_, view_coats_key_, view_near_key_;
   std::vector<StageKey> view_light_keys_;
   std::vector<GroupPlan> reference_;  ///< of the anchor; empty: none
   bool edits_ = true, prepared_ = false, anchored_ = false, matches_new_ = false;

@@ -128,16 +128,21 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];
     key.add(shape.medium.has_value());
-    if (shape.medium) {
-      const Medium& medium = input.scene.media[*shape.medium];
-      key.add(medium.eta).add(is_partly_opaque(medium));
-    }
-    if (shape.gloss) key.add(shape.gloss->eta);
+    if (shape.medium) key.add(is_partly_opaque(input.scene.media[*shape.medium]));
     for (const auto& map : {&shape.normal_map, &shape.bump_map})
       if (*map) add_to_key(key, **map);
     if (shape.normal_map || shape.bump_map) add_coordinates(key, input.world.meshes[i]);
   }
   for (const GroupPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));
+  return key.key();
+}
+
+StageKey view_near_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
+                       const StageKey& surfaces) {
+  KeyBuilder key("near fields of the view", 1);
+  key.add(surfaces).add(input.scene.film.samples_per_pixel).add(input.plan.rays);
+  key.add(input.world.origin).add(input.world.unit);
+  for (const MeshKeys& mesh : meshes) key.add(mesh.all);
   return key.key();
 }
 

@@ -269,8 +269,8 @@ void ViewServer::State::take(const ChosenSettings& chosen) {
 void ViewServer::State::after_edit() {
   background->stop();
   reference.reset();
-  tell(PageText::scene, scene_text(edits, hooks.command(edits.overrides(), edits.frame())));
   renderer->show(edits.scene(), edits.revision(), edits.reference());
+  tell(PageText::scene, scene_text(edits, hooks.command(edits.overrides(), edits.frame())));
 }
 
 void ViewServer::State::save(PageConnection& page, const std::string& name) {

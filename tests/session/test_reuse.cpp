@@ -150,6 +150,56 @@ TEST(Reuse, NearFieldInOtherColours) {
   }
 }
 
+// Claim: where near fields beside shadow edges share a lattice its places are held with the view, by light: in other
+// colours next to no ray is traced, and whatever is edited the picture is that of a new session. Source: held_view.h.
+// Fails if: places keep the light of another picture, of a light elsewhere, or of another surface.
+TEST(Reuse, NearFieldPlaces) {
+  Scene scene = two_balls();
+  scene.film.resolution = {160, 120};
+  scene.camera.position = {-12, 14, 60};
+  scene.camera.look_at = {-15, 12, 0};
+  scene.camera.field_of_view = 9;
+  scene.settings.samples = 700;
+  scene.lights.erase(scene.lights.begin() + 1);       // the panel
+  for (Medium& medium : scene.media) medium.eta = 1;  // mirrors nothing
+  Shape sheet;
+  sheet.name = "sheet";
+  sheet.source = QuadShape{{-20, 40, 20}, {10, 0, 0}, {0, 0, -30}};
+  scene.shapes.push_back(sheet);
+  Session session;
+  session.hold_view(true);
+  session.match_new_session(true);
+  const auto rays_of = [&] {
+    session.edit(scene);
+    session.prepare();
+    const std::uint64_t before = session.rays().statistics().rays;
+    EXPECT_TRUE(same_pixels(session.render().image, cold_picture(scene)));
+    return session.rays().statistics().rays - before;
+  };
+  auto& intensity = std::get<PointLight>(scene.lights[0].source).intensity;
+  const std::uint64_t first = rays_of();
+  intensity = {2e4, 2e4, 4e4};
+  EXPECT_LT(rays_of(), first / 20);
+  scene.settings.seed = 3;
+  rays_of();
+  std::get<PointLight>(scene.lights[0].source).position.x = 4;
+  rays_of();
+  scene.camera.position.x = -10;
+  rays_of();
+  intensity = {5e4, 1e4, 1e4};
+  rays_of();
+  std::get<QuadShape>(scene.shapes.back().source).corner.x += 1;
+  rays_of();
+  scene.lights.insert(scene.lights.begin(), {"lamp", PointLight{{-40, 60, 30}, {1e4, 3e4, 1e4}}});
+  rays_of();
+  scene.media[0].coefficients = PhysicalMedium{{.01, .02, .03}, {1, 2, 3}};
+  rays_of();
+  scene.media[0].eta = 1.4;
+  rays_of();
+  std::get<SphereShape>(scene.shapes[0].source).radius = 11;
+  rays_of();
+}
+
 // Claim: a medium's coefficients and profile, and what evaluation is asked for, cost evaluation alone; eta
 // the light that enters that medium's group. Source: the table in session.h.
 TEST(Reuse, Medium) {
@@ -163,6 +213,34 @@ TEST(Reuse, Medium) {
   expect_row({"evaluator", [](Scene& s) { s.settings.evaluator = EvaluatorKind::classic; }});
   expect_row({"near field", [](Scene& s) { s.settings.near_field = false; }});
   expect_row({"eta", [](Scene& s) { s.media[0].eta = 1.4; }, 3, true});
+}
+
+// Claim: with the view held, another index of one medium has lights looked for where the camera sees that medium, and
+// nowhere else. Source: held_view.h. Fails if: what lights send to other surfaces is let go of, or to this one is not.
+TEST(Reuse, HeldViewAndIndex) {
+  Scene scene = two_balls();
+  scene.settings.method = Method::lambert;
+  scene.settings.light_samples = 32;
+  scene.media[0].eta = 1.2;
+  scene.media[1].eta = 1;
+  Session session;
+  session.hold_view(true);
+  const auto rays_of = [&] {
+    session.edit(scene);
+    session.prepare();
+    const std::uint64_t before = session.rays().statistics().rays;
+    EXPECT_TRUE(same_pixels(session.render().image, cold_picture(scene)));
+    return session.rays().statistics().rays - before;
+  };
+  const std::uint64_t all = rays_of();
+  scene.media[0].eta = 1.4;
+  const std::uint64_t once = rays_of();
+  EXPECT_GT(once, 0u);
+  EXPECT_LT(once, all / 2);
+  scene.media[1].eta = 1.4;  // one boundary for both
+  rays_of();
+  scene.media[1].eta = 1.3;
+  rays_of();
 }
 
 // Claim: a light that moved, came, went, changed its size or its name (its random numbers) costs its own rays

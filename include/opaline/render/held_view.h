@@ -17,9 +17,12 @@
 
 namespace opaline {
 
+class IrradianceLattice;
+
 /// Kept from one picture to the next by Session::hold_view: 20 bytes a camera ray, and where the ray met a
 /// surface 4, 4 a light (8 where the light's error is estimated, too), and 40 where there is room for them; where a rough
-/// coat mirrors lights and surfaces some 100 more, up to kMostCoatBytes in all.
+/// coat mirrors lights and surfaces some 100 more, up to kMostCoatBytes in all; and
+/// of near fields beside shadows' edges some 60 for each place of a lattice, up to IrradianceLattice::kMostBytes a body.
 struct HeldView {
   struct Coat;
   struct CameraHit {
@@ -72,6 +75,21 @@ struct HeldView {
   bool has_room = false;                  ///< for the points
   std::unique_ptr<std::atomic<std::size_t>> coat_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 
+  /// Where a sharp near field is looked up, one a body; null: not known. Whatever the camera sees.
+  std::vector<std::shared_ptr<IrradianceLattice>> lattices;
+
+  std::vector<std::size_t> field_of_mesh;  ///< index of HeldView::Batch::surfaces
+  std::vector<float> eta_of_field;         ///< of the boundary that light enters through; 0: none
+
+  /// Takes over other fields: where they shade the same meshes, what was found of those with the same boundary holds.
+  void set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<float>& eta);
+
+  /// Lets go of all that depends on the camera.
+  void forget_camera() {
+    tiles.clear();
+    *coat_bytes = 0;
+  }
+
   /// Lets go of all that depends on which surfaces are of which kind.
   void forget_surfaces() {
     for (std::vector<Batch>& tile : tiles)
@@ -88,18 +106,13 @@ struct HeldView {
   }
 
   /// Takes over other lights. before: which of those held each of them is; none: it is to be traced
-  void set_lights(std::span<const std::optional<std::size_t>> before) {
-    forget_coats();
-    for (std::vector<Batch>& tile : tiles)
-      for (Batch& batch : tile)
-        for (Surface& surface : batch.surfaces) {
-          std::vector<PointTransfers> lights(before.size());
-          for (std::size_t l = 0; l < before.size(); ++l)
-            if (before[l] && *before[l] < surface.lights.size())
-              lights[l] = std::move(surface.lights[*before[l]]);
-          surface.lights = std::move(lights);
-        }
-  }
+  void set_lights(std::span<const std::optional<std::size_t>> before);
+
+  /// To be called before each picture, once its lights are set.
+  void next_picture();
 };
+
+/// HeldView::set_lights of what one set of points has from each light.
+void set_held_lights(std::vector<PointTransfers>& lights, std::span<const std::optional<std::size_t>> before);
 
 }  // namespace opaline

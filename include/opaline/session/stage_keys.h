@@ -58,9 +58,13 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes);
 
 /// Of which surfaces the camera's rays meet are of which kind, lights that hide some included, and of the
-/// random numbers that lights are sampled with there.
+/// random numbers that lights are sampled with there; but for boundaries (HeldView::set_fields).
 /// in    lights: recentred
 StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights);
+/// Of irradiance at places of surfaces, by light, whatever the camera sees.
+/// in    surfaces: view_surfaces_key
+StageKey view_near_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
+                       const StageKey& surfaces);
 /// Besides that, of what coats mirror.
 StageKey view_coats_key(const Scene& scene);
 

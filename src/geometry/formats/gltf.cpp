@@ -36,9 +36,18 @@ SourceMesh read_without_part(const std::string& path, std::string& bytes, MeshUv
 
 }  // namespace
 
-constinit const MeshFormat glb_format{
-    .extension = ".glb", .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
-constinit const MeshFormat gltf_format{
-    .extension = ".gltf", .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
+template <>
+const MeshFormat& FormatOf<mesh_format_index("GLB")>::format() {
+  static constexpr MeshFormat format{
+      .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
+  return format;
+}
+
+template <>
+const MeshFormat& FormatOf<mesh_format_index("glTF")>::format() {
+  static constexpr MeshFormat format{
+      .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
+  return format;
+}
 
 }  // namespace opaline

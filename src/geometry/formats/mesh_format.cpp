@@ -2,17 +2,38 @@
 #include "geometry/formats/mesh_format.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
+#include <utility>
 
 namespace opaline {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+template <std::size_t... kIndices>
+const MeshFormat& format_at(std::size_t index, std::index_sequence<kIndices...>) {
+  constexpr std::array formats{&FormatOf<kIndices>::format...};
+  return formats[index]();
+}
+
+}  // namespace
+
+std::string extension_of(std::string_view format) {
+  return '.' + lower(format);
+}
 
 const MeshFormat* find_mesh_format(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-  const auto found =
-      std::ranges::find_if(mesh_formats, [&](const MeshFormat* f) { return f->extension == extension; });
-  return found == mesh_formats.end() ? nullptr : *found;
+  const std::string extension = lower(std::filesystem::path(path).extension().string());
+  const auto found = std::ranges::find(kMeshFormats, extension, extension_of);
+  if (found == kMeshFormats.end()) return nullptr;
+  return &format_at(std::size_t(found - kMeshFormats.begin()),
+                    std::make_index_sequence<kMeshFormats.size()>());
 }
 
 }  // namespace opaline

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mesh formats. Each has a file of its own in this folder, which holds all that is particular to it.
+// The mesh formats. Each has a file of its own in this folder, which holds all that is particular to it but its name.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <istream>
 #include <string>
-#include <string_view>
 
 #include "geometry/source_mesh.h"
+#include "opaline/scene/mesh_formats.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {
 
 struct MeshFormat {
-  std::string_view extension;  ///< of its files, in lower case, with the dot
-
   /// The mesh in a file's bytes, which the reader may overwrite or free; see read_mesh.
   /// error Error{bad_input} naming the file, and the line where the format has lines
   SourceMesh (*read)(const std::string& path, std::string& bytes, MeshUvs uvs);
@@ -31,10 +28,14 @@ struct MeshFormat {
   std::uintmax_t (*announced_length)(std::istream& file) = nullptr;
 };
 
-extern const MeshFormat obj_format, ply_format, stl_format, off_format, glb_format, gltf_format;
+/// Each of kMeshFormats, by its index: what the format's file defines. One without does not link.
+template <std::size_t kIndex>
+struct FormatOf {
+  static const MeshFormat& format();
+};
 
-inline constexpr std::array mesh_formats{&obj_format, &ply_format, &stl_format,
-                                         &off_format, &glb_format, &gltf_format};
+/// Of its files' names: in lower case, with the dot.
+std::string extension_of(std::string_view format);
 
 /// The format that a file's name ends in, in upper or lower case; null if it is none of them.
 const MeshFormat* find_mesh_format(const std::string& path);

@@ -282,6 +282,10 @@ SourceMesh read_material(const std::string& path, const std::string& part, std::
 
 }  // namespace
 
-constinit const MeshFormat obj_format{.extension = ".obj", .read = read_obj, .read_part = read_material};
+template <>
+const MeshFormat& FormatOf<mesh_format_index("OBJ")>::format() {
+  static constexpr MeshFormat format{.read = read_obj, .read_part = read_material};
+  return format;
+}
 
 }  // namespace opaline

@@ -126,6 +126,10 @@ SourceMesh read_off(const std::string& path, std::string& bytes, MeshUvs) {
 
 }  // namespace
 
-constinit const MeshFormat off_format{.extension = ".off", .read = read_off};
+template <>
+const MeshFormat& FormatOf<mesh_format_index("OFF")>::format() {
+  static constexpr MeshFormat format{.read = read_off};
+  return format;
+}
 
 }  // namespace opaline

@@ -260,6 +260,10 @@ SourceMesh read_ply(const std::string& path, std::string& bytes, MeshUvs uvs) {
 
 }  // namespace
 
-constinit const MeshFormat ply_format{.extension = ".ply", .read = read_ply};
+template <>
+const MeshFormat& FormatOf<mesh_format_index("PLY")>::format() {
+  static constexpr MeshFormat format{.read = read_ply};
+  return format;
+}
 
 }  // namespace opaline

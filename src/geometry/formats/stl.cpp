@@ -164,7 +164,10 @@ std::uintmax_t announced_length(std::istream& file) {
 
 }  // namespace
 
-constinit const MeshFormat stl_format{
-    .extension = ".stl", .read = read_stl, .announced_length = announced_length};
+template <>
+const MeshFormat& FormatOf<mesh_format_index("STL")>::format() {
+  static constexpr MeshFormat format{.read = read_stl, .announced_length = announced_length};
+  return format;
+}
 
 }  // namespace opaline

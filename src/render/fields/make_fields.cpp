@@ -79,6 +79,11 @@ Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
   return fields;
 }
 
+int light_samples_of_ray(const Scene& scene) {
+  const int rays = scene.film.samples_per_pixel;
+  return (scene.settings.light_samples + rays - 1) / rays;
+}
+
 bool has_area_lights(const Scene& scene) {
   return !std::ranges::all_of(scene.lights, is_delta) || are_many(scene.lights);
 }

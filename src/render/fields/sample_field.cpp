@@ -23,6 +23,13 @@ RgbF crease_deviation(const RenderInput& input, const Body& group) {
   return RgbF{error[0], error[1], error[2]} * std::sqrt(float(std::numbers::pi) / 2);
 }
 
+/// Null: pictures hold nothing.
+std::shared_ptr<IrradianceLattice>* held_lattice(const RenderInput& input, const Body& group) {
+  if (input.view == nullptr) return nullptr;
+  input.view->lattices.resize(input.groups.size());
+  return &input.view->lattices[std::size_t(&group - input.groups.data())];
+}
+
 }  // namespace
 
 SampleField::SampleField(const RenderInput& input, const Body& group)
@@ -30,7 +37,8 @@ SampleField::SampleField(const RenderInput& input, const Body& group)
       group_(group),
       is_noisy_(has_area_lights(input.scene)),
       creases_(crease_deviation(input, group)) {
-  if (needs_irradiance(group)) near_field_.emplace(group);
+  if (needs_irradiance(group))
+    near_field_.emplace(group, light_samples_of_ray(input.scene), held_lattice(input, group));
 }
 
 LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
