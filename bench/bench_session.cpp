@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What an edit of a scene costs in a session and by which stages, a film of a mesh that bends, its first
 // light, and a start from the disk: user CPU of one thread, over that of a plain lambert frame made just
-// before; medians of 5 rounds, of the film one. usage: bench_session SCENE [CACHE_SAMPLES]
+// before; medians of 5 rounds, of the film one. usage: bench_session SCENE [CACHE_SAMPLES] [KEY=VALUE ...]
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <numbers>
 #include <numeric>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "opaline/lights/light.h"
 #include "opaline/scene/load_scene.h"
@@ -31,7 +33,8 @@ struct Edit {
 };
 
 // Where the time of an edit goes: loading and planning, the stages of Session::costs, the picture.
-constexpr std::array kParts = {"load", "rays", "sampling", "irradiance", "octree", "exitance", "picture"};
+constexpr std::array kParts = {"load",   "rays",     "sampling",  "irradiance",
+                               "octree", "exitance", "diffusion", "picture"};
 constexpr std::size_t kExitance = 5;
 using PartSeconds = std::array<double, kParts.size()>;
 
@@ -99,8 +102,8 @@ void print_edits(const Scene& base) {
       for (std::size_t i = 0; i < kParts.size(); ++i) parts[e][i].push_back(now[i] / floor.back());
     }
   }
-  fmt::print("lambert frame {:.4f} s, cold hierarchical {:.3f} s\n{:<36}{:>8}{:>10}", median(floor),
-             median(cold), "", "", "x lambert");
+  fmt::print("lambert frame {:.4f} s, cold {:.3f} s\n{:<36}{:>8}{:>10}", median(floor), median(cold), "", "",
+             "x lambert");
   for (const char* part : kParts) fmt::print("{:>11}", part);
   for (std::size_t e = 0; e < edits.size(); ++e) {
     fmt::print("\n{:<36}{:>6.4f} s{:>10.2f}", edits[e].name, median(seconds[e]), median(ratios[e]));
@@ -204,15 +207,22 @@ void print_disk_start(Scene scene, std::size_t samples) {
 
 int main(int argc, char** argv) try {
   if (argc < 2) {
-    fmt::print(stderr, "usage: bench_session SCENE [CACHE_SAMPLES]\n");
+    fmt::print(stderr, "usage: bench_session SCENE [CACHE_SAMPLES] [KEY=VALUE ...]\n");
     return 2;
   }
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Scene scene = load_scene(argv[1]);
+  std::size_t cache_samples = 1000000;
+  std::vector<std::string> overrides;
+  for (const std::string argument : std::span(argv + 2, argv + argc))
+    if (argument.find('=') != std::string::npos)
+      overrides.push_back(argument);
+    else
+      cache_samples = std::stoul(argument);
+  const Scene scene = load_scene(argv[1], overrides);
   print_edits(scene);
   print_film(scene);
   print_first_light(scene);
-  print_disk_start(scene, argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 1000000);
+  print_disk_start(scene, cache_samples);
   return 0;
 } catch (const std::exception& error) {
   fmt::print(stderr, "bench_session: {}\n", error.what());

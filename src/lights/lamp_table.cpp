@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "lights/light_of.h"
 
 namespace opaline {
 namespace {
@@ -19,25 +20,23 @@ constexpr float kLeastSquare = 1e-30f;
 }  // namespace
 
 LampTable::LampTable(std::span<const Light> lights, std::span<const std::uint32_t> order) {
-  constexpr double kDegree = std::numbers::pi / 180;
   Rgb total;
   for (const Light& light : lights) total += emission(light);
   for (const std::uint32_t l : order) {
     const Light& light = lights[l];
-    const LightExtent place = extent(light);
+    const Lamp lamp = lamp_of(light).value();
     const Rgb colour = emission(light);
-    x_.push_back(float(place.center->x));
-    y_.push_back(float(place.center->y));
-    z_.push_back(float(place.center->z));
+    x_.push_back(float(lamp.center.x));
+    y_.push_back(float(lamp.center.y));
+    z_.push_back(float(lamp.center.z));
     double intensity = 0;
     for (std::size_t c = 0; c < 3; ++c)
       if (total[c] > 0) intensity += colour[c] / total[c];
-    intensity_.push_back(float(intensity));
-    const auto* spot = std::get_if<SpotLight>(&light.source);
-    has_spots_ |= spot != nullptr;
-    const Vec3f way = spot != nullptr ? Vec3f(spot->direction) : Vec3f{};
-    const double rim = spot != nullptr ? std::cos(spot->outer_angle * kDegree) - double(kTrace) : -3,
-                 full = spot != nullptr ? std::cos(spot->inner_angle * kDegree) : -2;
+    intensity_.push_back(float(intensity * lamp.intensity));
+    has_spots_ |= lamp.facing.has_value();
+    const Vec3f way(lamp.facing.value_or(Vec3d{}));
+    const double rim = lamp.facing ? std::cos(lamp.reach) - double(kTrace) : -3,
+                 full = lamp.facing ? std::cos(lamp.full) : -2;
     way_x_.push_back(way.x);
     way_y_.push_back(way.y);
     way_z_.push_back(way.z);

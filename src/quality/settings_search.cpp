@@ -18,7 +18,6 @@ constexpr double kTolerancePerError = 0.5, kLeastTolerance = 5e-4, kMostToleranc
 
 void SettingsSearch::begin(double tolerance) {
   Settings& settings = scene.settings;
-  settings.samples.reset();
   settings.tolerance = tolerance;
   if (settings.evaluator == EvaluatorKind::automatic) settings.evaluator = EvaluatorKind::dual_tree;
   session.edit(scene);
@@ -32,6 +31,7 @@ void SettingsSearch::begin(double tolerance) {
 }
 
 void SettingsSearch::place(double samples) {
+  scene.settings.samples.reset();
   scene.settings.sample_spacing = std::sqrt(area / samples);
   prepare();
 }

@@ -47,9 +47,7 @@ class VolumeSearch {
       : search_{session, std::move(scene), monitor} {
     search_.probe_pixels = kProbePixels;
     search_.enough_points = kEnoughPoints;
-    const std::optional<std::size_t> samples = search_.scene.settings.samples;
     search_.begin(search_.scene.settings.tolerance);
-    search_.scene.settings.samples = samples;
   }
 
   const Plan& plan() const { return search_.session.plan(); }

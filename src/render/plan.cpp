@@ -94,15 +94,15 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
   group.spacing = std::sqrt(group.area / double(group.samples));
 }
 
-constexpr double kPartsOfThickness = 8;
-
-// One at least where a cell cuts the surface, in the nearest number of parts of a cell's edge to what is asked for.
+// At least one sample where a cell cuts the surface; the number of parts of a cell's edge that comes nearest to what is
+// asked for.
 void choose_cut(const Settings& settings, GroupPlan& group, std::vector<std::string>& warnings) {
   const double whole = kCutSamplesPerFace * group.area / (group.cell * group.cell);
   const double wanted = set_samples(settings, group.area).value_or(kFewestSamples);
   double parts = std::min(std::round(std::sqrt(wanted / whole)),
                           std::floor(std::sqrt(double(settings.max_samples) / whole)));
-  // A thread meets as many cells as it is long: finer ones are many, and tell nothing.
+  // A wire thinner than a cell meets cells by its length, not by its area: finer ones would be many, and tell nothing.
+  constexpr double kPartsOfThickness = 8;
   if (group.thickness > 0) parts = std::min(parts, kPartsOfThickness * group.thickness / group.cell);
   group.cell_parts = int(std::max(1., parts));
   group.samples =
@@ -356,9 +356,9 @@ Plan make_plan(const Scene& scene, const World& world) {
     if (scene.settings.method == Method::volume_diffusion) {
       choose_cells(scene, group, plan.warnings);
       choose_cut(scene.settings, group, plan.warnings);
-      const double in_threads =
+      const double in_wires =
           group.thickness > 0 ? 1.2 * needle_share(world, group) * group.cell / group.thickness : 0;
-      plan.bytes += std::size_t(std::max(1., in_threads) * double(group.samples)) *
+      plan.bytes += std::size_t(std::max(1., in_wires) * double(group.samples)) *
                     (kBytesOfCutSample + 4 * lights.size());
       plan.bytes += std::size_t(kBytesOfCell * expected_cells(group.area, group.cell));
       continue;

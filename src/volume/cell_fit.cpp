@@ -148,9 +148,9 @@ CellFit::Fit CellFit::fitted(const NearestSample::Member& own, std::span<const C
                              Surprise& surprise) const {
   const Cell& own_cell = cells[own.sample];
   const double scale = 1 / double(spacing_);
-  Fit fit{own.position, own.normal, {}, own_cell.error, {}};
   Vec3f along_u, along_v;
   tangent_frame(own.normal, along_u, along_v);
+  Fit fit{own.position, along_u, along_v, {}, own_cell.error, {}};
   const auto moment_of = [&](const Cell& cell) { return kCellMoment * double(cell.area) * scale * scale; };
   std::vector<Neighbour> near;
   near.reserve(32);
@@ -200,10 +200,8 @@ CellFit::Fit CellFit::fitted(const NearestSample::Member& own, std::span<const C
 }
 
 RgbF CellFit::value_of(const Fit& fit, const Vec3f& position) const {
-  Vec3f along_u, along_v;
-  tangent_frame(fit.normal, along_u, along_v);
   const Vec3f apart = (position - fit.center) * (1 / spacing_);
-  const float u = dot(apart, along_u), v = dot(apart, along_v);
+  const float u = dot(apart, fit.along_u), v = dot(apart, fit.along_v);
   const auto& t = fit.terms;
   return t[0] + t[1] * u + t[2] * v + t[3] * (u * u) + t[4] * (u * v) + t[5] * (v * v);
 }

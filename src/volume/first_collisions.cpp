@@ -114,7 +114,8 @@ class Depositor {
   };
 
   Stretch stretch_of(double length) const;
-  std::optional<Exit> exit_at(const Way& way, double length, double least, std::uint32_t last) const;
+  std::optional<Exit> exit_at(const Way& way, double length, double least, std::uint32_t last,
+                              std::uint32_t next) const;
   std::optional<Exit> collide(const Way& way, double start, std::uint32_t first, Rgb& flux);
   /// What collides at a place of its own in each channel; they lie near each other.
   struct Collided {
@@ -151,13 +152,12 @@ Depositor::Stretch Depositor::stretch_of(double length) const {
   return stretch;
 }
 
-// The plane of the boundary element nearest to where a way, that was in a cell at `least`, has left the body by `length`:
-// it has come to no cell, or behind a plane in the one that it has come to.
+// The plane of the boundary element nearest to where a way, that was in the cell `last` at `least`, has left the body by
+// `length`: it has come to no cell, or behind a plane in the one that it has come to, `next`.
 std::optional<Depositor::Exit> Depositor::exit_at(const Way& way, double length, double least,
-                                                  std::uint32_t last) const {
+                                                  std::uint32_t last, std::uint32_t next) const {
   const double cell = space_.lattice.cell;
   const Vec3d end = at(way, length);
-  const std::uint32_t next = space_.grid.at(Vec3f(end));
   const bool has_left = next == DiffusionGrid::kNone;
   Exit exit{length, ~0u, has_left ? last : next};
   const Vec3d about = has_left ? end - way.along * (.5 * kStep) : end;
@@ -188,12 +188,12 @@ std::optional<Depositor::Exit> Depositor::collide(const Way& way, double start, 
   for (double length = start; length < farthest;) {
     const double edge = std::max(kStep, double(space_.grid.cells()[last].size) - 1);
     const double step = edge * space_.lattice.cell;
-    const std::optional<Exit> exit = exit_at(way, length + step, length, last);
+    const std::uint32_t next = space_.grid.at(Vec3f(at(way, length + step)));
+    const std::optional<Exit> exit = exit_at(way, length + step, length, last, next);
     if (exit) {
       deposit(way, length, stretch_of(exit->length - length), last, flux);
       return exit;
     }
-    const std::uint32_t next = space_.grid.at(Vec3f(at(way, length + step)));
     if (next == DiffusionGrid::kNone) break;
     deposit(way, length, edge > kStep ? stretch_of(step) : step_, last, flux);
     length += step;

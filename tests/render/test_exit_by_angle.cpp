@@ -16,8 +16,7 @@ namespace {
 // Claim: in even light a ball of an absorbing medium, large beside it, has the radiance by angle of a half space: more at its
 // rim than in the middle. Source: reciprocity, and HalfSpace for what comes back of light that enters at an angle.
 // Tolerance: 1.5 % rms over the pixels of the ratio to that, its mean taken out, which is the ball's shape (measured 1.1;
-// 5.3 by Ft alone). Fails if: light leaves as
-// the boundary lets it.
+// 5.3 by Ft alone). Fails if: light leaves as the boundary lets it.
 TEST(ExitByAngle, BallInEvenLight) {
   constexpr double kEta = 1.3, kAbsorbed = .32;
   Scene scene = single_shape(SphereShape{{}, 15}, grey_medium(1, kAbsorbed, kEta), 500);

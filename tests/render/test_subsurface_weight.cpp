@@ -4,11 +4,8 @@
 
 #include <cmath>
 
-#include "core/scratch_folder.h"
-#include "opaline/render/direct.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
 #include "support/pictures.h"
+#include "support/scene_picture.h"
 #include "support/scenes.h"
 
 namespace opaline::test {
@@ -32,17 +29,6 @@ std::string scene_text(const std::string& medium, const std::string& method,
          "film": {"resolution": [16, 16], "pixel_type": "float"},
          "settings": {"samples": 1000, "light_samples": 16, "entry_samples": 16, "method": ")" +
          method + R"("}})";
-}
-
-Image picture_of(const ScratchFolder& folder, const std::string& text,
-                 const std::vector<std::string>& overrides = {}) {
-  Session session;
-  session.edit(parse_scene(text, folder.file("scene.json"), overrides));
-  session.prepare();
-  if (session.scene().settings.method != Method::direct) return session.render().image;
-  DirectState state;
-  return render_direct({session.scene(), session.world(), session.rays(), session.plan()}, state)
-      .picture.image;
 }
 
 /// expected(x, y, name) of all pixels' light that is not mirrored

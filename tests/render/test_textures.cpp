@@ -6,27 +6,16 @@
 #include <cstring>
 #include <filesystem>
 
-#include "../core/scratch_folder.h"
+#include "core/scratch_folder.h"
 #include "opaline/render/direct.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 #include "support/pictures.h"
+#include "support/scene_picture.h"
 #include "support/scenes.h"
 
 namespace opaline::test {
 namespace {
-
-/// The picture of a scene file in the folder.
-Image picture_of(const ScratchFolder& folder, std::string text,
-                 const std::vector<std::string>& overrides = {}) {
-  Session session;
-  session.edit(parse_scene(text, folder.file("scene.json"), overrides));
-  session.prepare();
-  if (session.scene().settings.method != Method::direct) return session.render().image;
-  DirectState state;
-  return render_direct({session.scene(), session.world(), session.rays(), session.plan()}, state)
-      .picture.image;
-}
 
 bool same_pixels(const Image& a, const Image& b) {
   return a.channels == b.channels && a.pixels.size() == b.pixels.size() &&

@@ -28,8 +28,8 @@ class CellFit {
 
  private:
   struct Fit {
-    Vec3f center, normal;
-    std::array<RgbF, 6> terms;  ///< of 1, u, v, u^2, u v, v^2; u, v: spacings along tangent_frame(normal)
+    Vec3f center, along_u, along_v;
+    std::array<RgbF, 6> terms;  ///< of 1, u, v, u^2, u v, v^2; u, v: spacings
     RgbF noise, shape;
   };
   /// What a cell has to do with another one.
@@ -37,11 +37,12 @@ class CellFit {
     std::uint32_t sample;
     float weight;
   };
-  /// What is known of a cell beside its fit while that of all is made.
+  /// What is fitted to.
   struct Cell {
     RgbF mean, error;
     float area;
   };
+  /// What is known of a cell beside its fit while that of all is made.
   struct Surprise {
     Rgb square{};
     std::vector<Share> near;  ///< the cells over which it is averaged

@@ -24,9 +24,9 @@ struct VolumeDiffusionInput {
   double cell = 1;                         ///< edge of the cells at the surface, world units
 };
 
-/// About how many cells a body has, and the bytes that they and its surface take: from area and edge of a cell.
+/// About how many cells a body has, from its area and the edge of a cell.
 double expected_cells(double area, double cell);
-/// Measured: 400 a cell, with both grids and the solver's vectors.
+/// Measured, of each: with both grids and the solver's vectors.
 inline constexpr double kBytesOfCell = 200;
 
 /// Light collides for the first time along the refracted rays and spreads by diffusion from there, on cells that

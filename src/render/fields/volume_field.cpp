@@ -8,6 +8,8 @@ namespace opaline {
 LeavingLight VolumeField::at(const SurfaceHits& hits, PointIrradianceInput, const Pass&,
                              HeldView::Surface*) const {
   LeavingLight light;
+  light.exitance.reserve(hits.points.size());
+  light.error.reserve(hits.points.size());
   for (const SurfacePoint& point : hits.points) {
     const CellFit::Value found = body_.volume_fit->at(point.position, point.normal);
     light.exitance.push_back(found.value);
