@@ -75,16 +75,17 @@ class Builder {
     for (std::size_t v = 0; v < at_vertices.size(); ++v) cache_.vertices[v].value = at_vertices[v];
     set_floor();
     set_slopes();
+    leave_sharp_to_points();
     std::vector<Refined> active = ill_told_patches();
     while (!active.empty()) {
       for (Refined& r : active) set_nodes(r);
       if (cache_.places() > input_.most_places) return {};
       std::vector<PlaceDoubt> doubts;
       const std::vector<Exitance> at_nodes = evaluated(doubts);
-      node_noise_.resize(cache_.nodes.size());
+      node_doubts_.resize(cache_.nodes.size());
       for (std::size_t i = 0; i < at_nodes.size(); ++i) {
         cache_.nodes[new_nodes_[i]] = at_nodes[i];
-        node_noise_[new_nodes_[i]] = doubts[i].noise;
+        node_doubts_[new_nodes_[i]] = doubts[i];
       }
       new_nodes_.clear();
       std::erase_if(active, [&](Refined& r) { return !wants_more(r); });
@@ -162,9 +163,17 @@ class Builder {
     return false;
   }
 
+  void leave_sharp_to_points() {
+    for (SurfaceCache::Patch& patch : cache_.patches)
+      if (std::ranges::any_of(patch.vertices,
+                              [&](std::uint32_t v) { return vertex_doubts_[v].is_too_sharp; }))
+        patch.lattice = SurfaceCache::kLeftToPoints;
+  }
+
   std::vector<Refined> ill_told_patches() const {
     std::vector<Refined> all;
     for (std::uint32_t p = 0; p < cache_.patches.size(); ++p) {
+      if (cache_.patches[p].lattice == SurfaceCache::kLeftToPoints) continue;
       const bool edge =
           longest_side(p) > float(kBlur) * input_.kernel.radius &&
           any_edge(p, [&](std::uint32_t a, std::uint32_t b) { return may_hide_shadow_edge(a, b); });
@@ -220,8 +229,8 @@ class Builder {
     cache_.nodes.emplace_back();
     if (key.n == 0) {
       cache_.nodes.back() = cache_.vertices[key.where].value;
-      node_noise_.resize(cache_.nodes.size());
-      node_noise_.back() = vertex_doubts_[key.where].noise;
+      node_doubts_.resize(cache_.nodes.size());
+      node_doubts_.back() = vertex_doubts_[key.where];
     } else {
       new_nodes_.push_back(known->second);
       queries_.push_back(place_of(r, i, j));
@@ -257,6 +266,10 @@ class Builder {
 
   // Keeps the lattice, or doubles it if its nodes were ill predicted by those of the one before.
   bool wants_more(Refined& r) {
+    if (std::ranges::any_of(r.nodes, [&](std::uint32_t node) { return node_doubts_[node].is_too_sharp; })) {
+      cache_.patches[r.patch].lattice = SurfaceCache::kLeftToPoints;
+      return false;
+    }
     const bool may_grow = longest_side(r.patch) > float(kFinest) * input_.kernel.radius * float(r.segments);
     if (may_grow && is_ill_predicted(r)) {
       r.segments *= 2;
@@ -283,7 +296,7 @@ class Builder {
       for (std::uint32_t i = 0; i + j <= r.segments; ++i) {
         if (i % 2 == 0 && j % 2 == 0) continue;
         const Exitance& known = value(r, i, j);
-        const RgbF& noise = node_noise_[r.nodes[lattice_index(r.segments, i, j)]];
+        const RgbF& noise = node_doubts_[r.nodes[lattice_index(r.segments, i, j)]].noise;
         if (is_too_much((predicted(r, i, j) - known.exitance) * kRest, whole(known), noise)) return true;
       }
     return false;
@@ -293,8 +306,7 @@ class Builder {
   SurfaceCache cache_;
   std::vector<Vec3f> normals_;  // of its vertices
   std::vector<Query> queries_;  // to evaluate: of vertices at first, then of nodes
-  std::vector<PlaceDoubt> vertex_doubts_;
-  std::vector<RgbF> node_noise_;
+  std::vector<PlaceDoubt> vertex_doubts_, node_doubts_;
   std::vector<std::uint32_t> new_nodes_;  // where the latter go
   std::unordered_map<PlaceKey, std::uint32_t, PlaceHash> places_;
   RgbF floor_{};

@@ -21,16 +21,31 @@ Exitance on_lattice(const SurfaceCache& cache, const SurfaceCache::Lattice& latt
   return sum;
 }
 
+struct PlaceOnPatch {
+  const SurfaceCache::Patch& patch;
+  CellPlace place;
+};
+
+PlaceOnPatch place_on_patch(const SurfaceCache& cache, std::uint32_t mesh, std::uint32_t triangle, float u,
+                            float v) {
+  const SurfaceCache::Split& split = cache.splits[mesh][triangle];
+  CellPlace place{0, 0, true, u, v};
+  if (split.segments > 1) place = cell_place(split.segments, u, v);
+  return {cache.patches[split.first + place.index(split.segments)], place};
+}
+
 }  // namespace
+
+bool SurfaceCache::is_left_to_points(std::uint32_t mesh, std::uint32_t triangle, float u, float v) const {
+  return place_on_patch(*this, mesh, triangle, u, v).patch.lattice == kLeftToPoints;
+}
 
 Exitance SurfaceCache::at(std::uint32_t mesh, std::uint32_t triangle, float u, float v,
                           const RgbF* irradiance) const {
-  const Split& split = splits[mesh][triangle];
-  CellPlace place{0, 0, true, u, v};
-  if (split.segments > 1) place = cell_place(split.segments, u, v);
-  const Patch& patch = patches[split.first + place.index(split.segments)];
-  Exitance e = patch.lattice == kNone ? between_vertices(*this, patch, place.u, place.v)
-                                      : on_lattice(*this, lattices[patch.lattice], place.u, place.v);
+  const auto& [patch, place] = place_on_patch(*this, mesh, triangle, u, v);
+  const bool has_lattice = patch.lattice != kNone && patch.lattice != kLeftToPoints;
+  Exitance e = has_lattice ? on_lattice(*this, lattices[patch.lattice], place.u, place.v)
+                           : between_vertices(*this, patch, place.u, place.v);
   const RgbF& entered = irradiance != nullptr ? *irradiance : e.irradiance;
   e.exitance = component_max(e.exitance, RgbF{}) + own_part(own_irradiance, e, entered);
   e.error = component_max(e.error, RgbF{});

@@ -15,7 +15,8 @@ namespace opaline {
 /// path far below the sample spacing are too sharp to interpolate; light that bounces is known at the picture's points.
 bool can_hold_own_light(const Scene& scene, const World& world, const Body& group);
 
-/// The light that the shader adds at its points.
+/// The light that the shader adds at its points. Beside shadow edges a cache that the settings ask for leaves it to the
+/// points, so that its tolerance holds; one that `automatic` takes for its speed holds what a few shadow rays tell.
 class OwnLight {
  public:
   /// Both must outlive it.
@@ -33,6 +34,7 @@ class OwnLight {
   const Body& group_;
   std::vector<Light> lights_;
   NearFieldSampler near_field_;
+  bool holds_edges_;
 };
 
 }  // namespace opaline

@@ -194,8 +194,9 @@ std::span<const Member<Settings>> settings_members() {
       read_by(read_tolerance,
               member<&Settings::tolerance>(
                   "tolerance", number, "", {kLeastTolerance, 1}, "",
-                  "dual tree and surface cache: 99 % of the points are at least this close to the exact sum, "
-                  "relatively; what is smaller single precision does not keep")),
+                  "dual tree, and a surface cache that is asked for: 99 % of the points are at least this "
+                  "close to "
+                  "the exact sum, relatively; what is smaller single precision does not keep")),
       member<&Settings::instruction_set>(
           "instruction_set", choice, "", kFiniteNumber, "",
           "dual tree: `\"automatic\"`: the widest vectors of the machine; `\"baseline\"`, `\"avx2\"`, "

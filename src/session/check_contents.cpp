@@ -169,7 +169,8 @@ bool is_exitance_of(const SurfaceCache& cache, const World& world, std::span<con
       return false;
   const auto is_patch = [&](const SurfaceCache::Patch& patch) {
     return std::ranges::all_of(patch.vertices, [&](std::uint32_t v) { return v < cache.vertices.size(); }) &&
-           (patch.lattice == SurfaceCache::kNone || patch.lattice < cache.lattices.size());
+           (patch.lattice == SurfaceCache::kNone || patch.lattice == SurfaceCache::kLeftToPoints ||
+            patch.lattice < cache.lattices.size());
   };
   const auto is_lattice = [&](const SurfaceCache::Lattice& lattice) {
     return lattice.segments >= 2 && lattice.segments % 2 == 0 && lattice.segments < (1u << 16) &&

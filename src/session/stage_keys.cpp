@@ -11,7 +11,7 @@ namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
 constexpr std::uint64_t kSamplesVersion = 2, kCutSurfaceVersion = 1, kCarriedVersion = 3,
-                        kTransferVersion = 3, kOctreeVersion = 1, kExitanceVersion = 7, kWalksVersion = 3,
+                        kTransferVersion = 3, kOctreeVersion = 1, kExitanceVersion = 8, kWalksVersion = 3,
                         kWalkedProfileVersion = 1;
 
 const char* widest_instructions() {
@@ -206,6 +206,7 @@ StageKey exitance_key(const StageKey& tree, const StageKey& kernel, std::span<co
                       const GroupPlan& group, const Settings& settings) {
   KeyBuilder key("exitance", kExitanceVersion);
   key.add(tree).add(kernel).add(settings.tolerance).add(settings.instruction_set);
+  key.add(settings.evaluator == EvaluatorKind::surface_cache);
   key.add(settings.light_samples).add(settings.seed);
   key.add(std::string(widest_instructions()));
   for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);

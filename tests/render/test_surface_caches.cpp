@@ -56,12 +56,13 @@ TEST(SurfaceCaches, NeedlesFallBackToPoints) {
   EXPECT_GT(bytes, Prepared(scene).plan.bytes + 500 * kBytesOfPlace);
 }
 
-// Claim: the picture through a surface cache is that of the exact sum within the tolerance, mean over the
-// object's pixels. Source: the promise of surface_cache.h. Tolerance: the setting's, .5 %; p99 3 %, for
-// beside shadow edges both pictures trace a few rays a point (measured 2.3 %; against `direct` ShadowEdge
-// holds both). Fails if: the cache's own part is left out, or counted twice.
+// Claim: the picture through a surface cache that is asked for is that of the exact sum, beside shadow edges, too, at
+// 99 % of the object's pixels. Source: the promise of surface_cache.h. Tolerance: 1.5 times the setting's .5 %
+// (measured .65 %: the dipole's bumps over single samples between a torus's vertices). Fails if: the cache's
+// own part is left out, or counted twice, or lattices hold shadow edges (2.6 %).
 TEST(SurfaceCaches, PictureOfTheExactSum) {
-  Scene scene = torus_scene(64, 1);
+  Scene scene = torus_scene(512, 1);
+  scene.film.crop = {{128, 128, 384, 384}};
   scene.settings.evaluator = EvaluatorKind::surface_cache;
   const Image interpolated = Prepared(scene).picture();
   scene.settings.evaluator = EvaluatorKind::brute_force;
@@ -69,8 +70,8 @@ TEST(SurfaceCaches, PictureOfTheExactSum) {
   const RelativeErrors errors = relative_errors(extract_layer(interpolated, "diffuse"),
                                                 extract_layer(exact, "diffuse"), object_pixels(exact));
   for (const std::vector<double>& channel : errors.channels) {
-    EXPECT_LT(error_statistics(channel).mean, .005);
-    EXPECT_LT(error_statistics(channel).p99, .03);
+    RecordProperty("p99", std::to_string(error_statistics(channel).p99));
+    EXPECT_LT(error_statistics(channel).p99, .0075);
   }
 }
 
@@ -78,8 +79,7 @@ TEST(SurfaceCaches, PictureOfTheExactSum) {
 // least twice the places. Source: kBumps and kEdgeNoise are shares of it. Fails if: they are fixed shares of
 // the exitance.
 TEST(SurfaceCaches, FollowTheTolerance) {
-  Scene scene = torus_scene(64, 1);
-  scene.settings.evaluator = EvaluatorKind::surface_cache;
+  Scene scene = torus_scene(2500, 1);
   const auto places = [&](double tolerance) {
     scene.settings.tolerance = tolerance;
     return Prepared(scene).bodies[0].surface_cache->places();
@@ -91,11 +91,12 @@ TEST(SurfaceCaches, FollowTheTolerance) {
 }
 
 // Claim: where the mean free path is not far below the sample spacing and normals are smooth, a picture
-// through a surface cache traces camera rays alone; on facets and in a denser medium it traces shadow rays as
-// well. Source: can_hold_own_light. Fails if: caches never hold the own light, or always.
+// through the surface cache of `automatic` traces camera rays alone; on facets, in a denser medium, and beside
+// shadow edges through one that is asked for, shadow rays as well. Source: can_hold_own_light, OwnLight. Fails if:
+// caches never hold the own light, or always.
 TEST(SurfaceCaches, SpareTheShadowRays) {
-  Scene scene = torus_scene(64, 1);
-  scene.settings.evaluator = EvaluatorKind::surface_cache;
+  Scene scene = torus_scene(2500, 1);
+  scene.film.crop = {{1216, 1440, 1280, 1504}};
   const auto rays = [](const Scene& of) {
     const Prepared prepared(of);
     const std::uint64_t before = prepared.rays.statistics().rays;
@@ -109,6 +110,9 @@ TEST(SurfaceCaches, SpareTheShadowRays) {
   Scene dense = scene;
   dense.media = {grey_medium(.05, .02, 1.3)};
   EXPECT_GT(rays(dense), 64u * 64u);
+  scene.settings.evaluator = EvaluatorKind::surface_cache;
+  scene.film.crop = {{1280, 1136, 1344, 1200}};
+  EXPECT_GT(rays(scene), 64u * 64u);
 }
 
 }  // namespace

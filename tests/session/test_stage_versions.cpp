@@ -57,7 +57,7 @@ TEST(StageVersions, ComputeWhatTheyDidButForRounding) {
   double exitance = 0;
   for (const SurfaceCache::Vertex& vertex : cached.bodies[0].surface_cache.value().vertices)
     exitance += double(vertex.value.exitance[0]);
-  EXPECT_NEAR(exitance / 3.095856200, 1, 1e-5) << "raise kExitanceVersion";
+  EXPECT_NEAR(exitance / 3.0959120294, 1, 1e-5) << "raise kExitanceVersion";
 
   Shape wall;
   wall.source = QuadShape{{-20, -12, 20}, {40, 0, 0}, {0, 0, -40}};

@@ -118,13 +118,14 @@ class StrokedView {
       model_.take(text.get<std::string>());
       sets.push_back(Json::parse(text.get<std::string>()).value("values", Json::object()));
     }
-    for (const auto& [path, value] : std::exchange(strokes_.typed, {}))
-      EXPECT_TRUE(std::ranges::any_of(sets,
-                                      [&](const Json& set) {
-                                        return set.contains(path) && std::abs(set.at(path).get<double>() -
-                                                                              value.get<double>()) < 1e-9;
-                                      }))
-          << path << " = " << value << " was typed and not sent";
+    for (const auto& typed : std::exchange(strokes_.typed, {})) {
+      const auto is_of = [&](const Json& set) {
+        return set.contains(typed.first) &&
+               std::abs(set.at(typed.first).get<double>() - typed.second.get<double>()) < 1e-9;
+      };
+      EXPECT_TRUE(std::ranges::any_of(sets, is_of))
+          << typed.first << " = " << typed.second << " was typed and not sent";
+    }
   }
 
   void expect_final() {

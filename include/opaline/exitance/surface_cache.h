@@ -21,7 +21,7 @@ namespace opaline {
 /// Triangles that are large against the near field are split first. Irradiance, near field and error are
 /// interpolated alike.
 struct SurfaceCache {
-  static constexpr std::uint32_t kNone = ~0u;
+  static constexpr std::uint32_t kNone = ~0u, kLeftToPoints = ~0u - 1;
   struct Vertex {
     Exitance value;
     Vec3f position;
@@ -29,7 +29,7 @@ struct SurfaceCache {
   };
   struct Patch {
     std::array<std::uint32_t, 3> vertices;
-    std::uint32_t lattice = kNone;  ///< kNone: the vertices do
+    std::uint32_t lattice = kNone;  ///< kNone: the vertices do; kLeftToPoints: no lattice would
   };
   /// Nodes at (i, j) / segments of a patch's second and third corner, row after row of constant j.
   struct Lattice {
@@ -57,20 +57,25 @@ struct SurfaceCache {
   /// Where the exitance was evaluated.
   std::size_t places() const { return vertices.size() + nodes.size(); }
 
+  /// Whether the exitance is too sharp here to be held, beside a shadow's edge: `at` tells only what lies
+  /// between the vertices, and what a picture shows is to be found at its points.
+  bool is_left_to_points(std::uint32_t mesh, std::uint32_t triangle, float u, float v) const;
+
   /// As `evaluate` at a place of a triangle of the group; irradiance: there, if the cache needs it, or null
   /// to interpolate it.
   /// error p99 of the difference from brute force over max(it, 1e-3 of its p99) <= tolerance, per channel,
-  ///       over the surface (test_surface_cache), of a cache without the light of AddOwnLight; with it the
-  ///       mean is (test_surface_caches), and beside shadow edges it is as close to `direct` as shadow rays
-  ///       at each point (test_shadow_edge)
+  ///       over the surface (test_surface_cache), of a cache without the light of AddOwnLight; with it where
+  ///       nothing sharper is held (test_surface_caches), else the mean is, and beside shadow edges it is as
+  ///       close to `direct` as shadow rays at each point (test_shadow_edge)
   Exitance at(std::uint32_t mesh, std::uint32_t triangle, float u, float v,
               const RgbF* irradiance = nullptr) const;
 };
 
 /// What of the light at a place a cache should not take at its word.
 struct PlaceDoubt {
-  RgbF noise{};              ///< of the exitance, W/mm^2: less is no reason for a finer lattice
-  bool beside_edge = false;  ///< a shadow's edge is near, between this place and the next perhaps
+  RgbF noise{};               ///< of the exitance, W/mm^2: less is no reason for a finer lattice
+  bool beside_edge = false;   ///< a shadow's edge is near, between this place and the next perhaps
+  bool is_too_sharp = false;  ///< no lattice around this place holds what a picture shows: left to its points
 };
 
 /// Adds to the exitance of places what depends on the irradiance at the place itself, and puts that

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/fields/sample_field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,33 @@ namespace {
 
 bool needs_irradiance(const Body& group) {
   return group.surface_cache ? group.surface_cache->needs_irradiance() : group.kernel.needs_irradiance();
+}
+
+bool leaves_some_to_points(const SurfaceCache& cache) {
+  return std::ranges::any_of(cache.patches, [](const SurfaceCache::Patch& patch) {
+    return patch.lattice == SurfaceCache::kLeftToPoints;
+  });
+}
+
+SurfaceHits chosen_hits(const SurfaceHits& hits, std::span<const std::uint32_t> chosen) {
+  SurfaceHits some;
+  for (const std::uint32_t i : chosen) {
+    some.points.push_back(hits.points[i]);
+    some.hits.push_back(hits.hits[i]);
+    some.keys.push_back(hits.keys[i]);
+    some.rays.push_back(hits.rays[i]);
+    if (!hits.textures.empty()) some.textures.push_back(hits.textures[i]);
+  }
+  return some;
+}
+
+// Nothing where the field does not know the values.
+template <class T>
+void put(const std::vector<T>& values, std::span<const std::uint32_t> places, std::size_t count,
+         std::vector<T>& all) {
+  if (values.empty()) return;
+  all.resize(count);
+  for (std::size_t i = 0; i < places.size(); ++i) all[places[i]] = values[i];
 }
 
 RgbF crease_deviation(const RenderInput& input, const Body& group) {
@@ -36,15 +64,47 @@ SampleField::SampleField(const RenderInput& input, const Body& group)
     : input_(input),
       group_(group),
       is_noisy_(has_area_lights(input.scene)),
+      asks_irradiance_(needs_irradiance(group)),
       creases_(crease_deviation(input, group)) {
-  if (needs_irradiance(group))
+  if (asks_irradiance_ || (group.surface_cache && leaves_some_to_points(*group.surface_cache)))
     near_field_.emplace(group, light_samples_of_ray(input.scene), held_lattice(input, group));
 }
 
 LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                              HeldView::Surface* held) const {
-  LeavingLight light;
   const bool looks_near = near_field_ && pass.is_seen;
+  if (!group_.surface_cache || asks_irradiance_) return at_points(hits, lighting, looks_near, held);
+  LeavingLight light;
+  put_exitance(looked_up(hits, {}), light);
+  if (looks_near) replace_left(hits, lighting, light);
+  return light;
+}
+
+// What a surface cache leaves to the points.
+void SampleField::replace_left(const SurfaceHits& hits, const PointIrradianceInput& lighting,
+                               LeavingLight& light) const {
+  std::vector<std::uint32_t> left;
+  const std::size_t count = hits.hits.size();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Hit& hit = hits.hits[i];
+    if (group_.surface_cache->is_left_to_points(hit.mesh, hit.triangle, hit.u, hit.v)) left.push_back(i);
+  }
+  if (left.empty()) return;
+  const SurfaceHits some = chosen_hits(hits, left);
+  PointIrradianceInput some_lighting = lighting;
+  some_lighting.points = some.points;
+  some_lighting.keys = some.keys;
+  const LeavingLight found = at_points(some, some_lighting, true, nullptr);
+  put(found.exitance, left, count, light.exitance);
+  put(found.irradiance, left, count, light.irradiance);
+  put(found.error, left, count, light.error);
+  put(found.noise, left, count, light.noise);
+  put(found.bias, left, count, light.bias);
+}
+
+LeavingLight SampleField::at_points(const SurfaceHits& hits, PointIrradianceInput lighting, bool looks_near,
+                                    HeldView::Surface* held) const {
+  LeavingLight light;
   if (looks_near) {
     light.noise.resize(hits.points.size());
     if (is_noisy_) lighting.variance = light.noise;
@@ -53,18 +113,25 @@ LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput light
     tint_entering(hits.textures, light.irradiance, light.noise);
   }
   std::vector<Exitance> exitance =
-      group_.surface_cache ? looked_up(hits, light.irradiance)
-                           : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
+      group_.surface_cache && asks_irradiance_
+          ? looked_up(hits, light.irradiance)
+          : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
   // Beside a tint's edges the samples' irradiance differs from that of the point without a shadow's edge near.
   if (looks_near && group_.entering.empty()) refine_near_field(lighting, exitance, light);
+  put_exitance(exitance, light);
+  return light;
+}
+
+// With the irradiance, if it was not traced at the hits.
+void SampleField::put_exitance(std::span<const Exitance> exitance, LeavingLight& light) const {
+  const bool is_traced = !light.irradiance.empty();
   for (std::vector<RgbF>* values : {&light.exitance, &light.error, &light.irradiance})
     values->reserve(exitance.size());
   for (const Exitance& e : exitance) {
     light.exitance.push_back(e.exitance);
     light.error.push_back(e.error + e.exitance * creases_);
-    if (!looks_near) light.irradiance.push_back(e.irradiance);
+    if (!is_traced) light.irradiance.push_back(e.irradiance);
   }
-  return light;
 }
 
 std::vector<Exitance> SampleField::summed(const SurfaceHits& hits, std::span<const RgbF> irradiance,

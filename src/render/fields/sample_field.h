@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The exitance of a group's samples: summed at the hits (dual_tree, classic, brute_force), or looked up in
-// its surface cache. What a sharp near field adds to either is traced at the hits.
+// its surface cache. What a sharp near field adds to either is traced at the hits; what a cache leaves to the
+// points is summed there.
 #pragma once
 
 #include <optional>
@@ -18,10 +19,14 @@ class SampleField : public Field {
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
   float eta() const override { return float(group_.profile.eta); }
-  bool asks_irradiance() const override { return near_field_.has_value(); }
+  bool asks_irradiance() const override { return asks_irradiance_; }
   bool asks_samples() const override { return true; }
 
  private:
+  LeavingLight at_points(const SurfaceHits& hits, PointIrradianceInput lighting, bool looks_near,
+                         HeldView::Surface* held) const;
+  void replace_left(const SurfaceHits& hits, const PointIrradianceInput& lighting, LeavingLight& light) const;
+  void put_exitance(std::span<const Exitance> exitance, LeavingLight& light) const;
   std::vector<Exitance> summed(const SurfaceHits& hits, std::span<const RgbF> irradiance,
                                QueryPackets* packets) const;
   std::vector<Exitance> looked_up(const SurfaceHits& hits, std::span<const RgbF> irradiance) const;
@@ -30,8 +35,8 @@ class SampleField : public Field {
 
   const RenderInput& input_;
   const Body& group_;
-  bool is_noisy_;
-  std::optional<NearFieldSampler> near_field_;  ///< none: the samples tell all
+  bool is_noisy_, asks_irradiance_;
+  std::optional<NearFieldSampler> near_field_;  ///< none: samples or cache tell all
   RgbF creases_{};  ///< what a near field misses beside creases, over the exitance, as a standard deviation
 };
 
