@@ -11,6 +11,13 @@
 namespace opaline {
 namespace {
 
+// Of smaller discs single precision tells no direction from another, nor holds the radiance.
+constexpr double kLeastAngle = .004;
+
+bool is_parallel(const DirectionalLight& light) {
+  return light.angle < kLeastAngle;
+}
+
 /// The squared sine of half the disc's angle.
 double half_sine2(const DirectionalLight& light) {
   const double sine = std::sin(light.angle * std::numbers::pi / 360);
@@ -39,7 +46,8 @@ std::vector<KeyInfo> LightReader<DirectionalLight>::rows() {
            .unit = "degrees",
            .range = {0, 90},
            .default_value = "0",
-           .meaning = "of the disc that it is in the sky; the sun has .53; wider blurs shadows"}};
+           .meaning = "of the disc that it is in the sky; the sun has .53; wider blurs shadows; less than "
+                      ".004 counts as 0"}};
 }
 
 template <>
@@ -58,7 +66,7 @@ Rgb LightOf<DirectionalLight>::emission(const DirectionalLight& light) {
 
 template <>
 bool LightOf<DirectionalLight>::is_delta(const DirectionalLight& light) {
-  return light.angle == 0;
+  return is_parallel(light);
 }
 
 template <>
@@ -71,7 +79,7 @@ template <>
 LightSample LightOf<DirectionalLight>::sample(const DirectionalLight& light, const Vec3f&, const Vec3f&,
                                               std::array<double, 2> unit_square, int samples) {
   constexpr float kFar = std::numeric_limits<float>::infinity();
-  if (light.angle == 0) return {Vec3f(-light.direction), kFar, 1};
+  if (is_parallel(light)) return {Vec3f(-light.direction), kFar, 1};
   const double sine2 = half_sine2(light), drop = cap(sine2) * unit_square[0];
   const double cosine = 1 - drop, sine = std::sqrt(std::max(0.0, drop * (2 - drop)));
   const double phi = 2 * std::numbers::pi * unit_square[1];
@@ -84,7 +92,7 @@ LightSample LightOf<DirectionalLight>::sample(const DirectionalLight& light, con
 template <>
 float LightOf<DirectionalLight>::density(const DirectionalLight& light, const Vec3f&, const Vec3f&,
                                          const Vec3f& direction) {
-  if (light.angle == 0) return 0;
+  if (is_parallel(light)) return 0;
   const double drop = cap(half_sine2(light));
   return -dot(Vec3d(direction), light.direction) < 1 - drop ? 0 : float(1 / (2 * std::numbers::pi * drop));
 }
@@ -96,7 +104,7 @@ EmitterHit LightOf<DirectionalLight>::intersect(const DirectionalLight&, const V
 
 template <>
 RgbF LightOf<DirectionalLight>::background(const DirectionalLight& light, const Vec3f& direction) {
-  if (light.angle == 0) return {};
+  if (is_parallel(light)) return {};
   const double sine2 = half_sine2(light);
   if (-dot(Vec3d(direction), light.direction) < 1 - cap(sine2)) return {};
   return RgbF(light.irradiance / (std::numbers::pi * sine2));
@@ -104,7 +112,7 @@ RgbF LightOf<DirectionalLight>::background(const DirectionalLight& light, const 
 
 template <>
 LightExtent LightOf<DirectionalLight>::extent(const DirectionalLight& light) {
-  if (light.angle > 0) return {};  // no one direction: taken as all around
+  if (!is_parallel(light)) return {};  // no one direction: taken as all around
   return {.towards = -light.direction};
 }
 

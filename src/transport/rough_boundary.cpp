@@ -14,6 +14,8 @@ namespace {
 constexpr float kPi = std::numbers::pi_v<float>;
 // Against facets that are level in one direction, whose density has no bound.
 constexpr float kLeastAcross = 1e-3f;
+// Of roughness .001: what is smoother spreads light by less than single precision tells directions apart.
+constexpr float kLeastAlpha = 1e-6f;
 constexpr std::size_t kSides = 9;
 
 /// Of a view by its tangent_share.
@@ -32,14 +34,16 @@ float share_of_side(const FacetAlphas& alphas, float part) {
 }  // namespace
 
 FacetAlphas facet_alphas(float roughness, float anisotropy) {
-  const float alpha = roughness * roughness;
+  const float alpha = std::max(roughness * roughness, kLeastAlpha);
   if (!(anisotropy > 0)) return {alpha, alpha};
   const float ratio = 1 - anisotropy, along = alpha * std::sqrt(2 / (1 + ratio * ratio));
   return {along, std::max(ratio * along, std::min(kLeastAcross, along))};
 }
 
 RoughBoundary::RoughBoundary(double roughness, double eta)
-    : RoughBoundary({float(roughness * roughness), float(roughness * roughness)}, eta, 0) {}
+    : RoughBoundary({std::max(float(roughness * roughness), kLeastAlpha),
+                     std::max(float(roughness * roughness), kLeastAlpha)},
+                    eta, 0) {}
 
 RoughBoundary::RoughBoundary(const FacetAlphas& alphas, double eta, float tangent_share)
     : alphas_(alphas), eta_(float(eta)) {

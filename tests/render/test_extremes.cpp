@@ -114,6 +114,20 @@ TEST(Extremes, Pictures) {
          EXPECT_GT(min_component(s.radiance), 0);
          EXPECT_LT(s.radiance.x, plain.radiance.x);
        }},
+      {"a coat of roughness 1e-14 under a lamp: finite",
+       [](Scene& s) {
+         s.media[0].specular_roughness = 1e-14;
+         s.lights.push_back(Light{"lamp", QuadLight{{-5, 30, 40}, {10, 0, 0}, {0, 0, 10}, Rgb(6)}});
+       },
+       kLit},
+      {"a bright sun of 1e-17 degrees in a coat: as parallel light",
+       [](Scene& s) {
+         s.lights = {Light{"sun", DirectionalLight{normalized(Vec3d{-1, -1, -2}), Rgb(1e23), 1e-17}}};
+       },
+       [](const Sums& s, const Sums&) {
+         EXPECT_GT(min_component(s.radiance), 0);
+         EXPECT_EQ(s.radiance, s.diffuse);  // no disc to be mirrored
+       }},
       {"a needle of ratio 1e8: ends",
        [](Scene& s) {
          s.shapes[0].source = BoxShape{{-10, 0, 0}, {10, 2e-7, 2e-7}};
