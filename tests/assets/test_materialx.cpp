@@ -109,7 +109,7 @@ TEST(MaterialX, StandardSurfaceIsFoundByName) {
     expect_artist(parse_scene(import.text, "a.json").media.at(0), {1, 1, 1}, {.3, .2, .1}, 0, 1.5);
     EXPECT_TRUE(has(import.not_carried, "what subsurface_color is connected to: its default is taken"));
     EXPECT_TRUE(has(import.translated, "subsurface 0.5 -> subsurface_weight; base colour -> base_color 0.8"));
-    const Medium& medium = parse_scene(import.text, "a.json").media.at(0);
+    const Medium medium = parse_scene(import.text, "a.json").media.at(0);
     EXPECT_EQ(medium.subsurface_weight, .5);
     EXPECT_EQ(medium.base_color, Rgb(.8));
   }
