@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/volume/cell_fit.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "opaline/core/parallel.h"
@@ -11,12 +13,14 @@ namespace {
 
 // Measured on smooth fields without noise and with (src/volume/README.md).
 constexpr float kFitRadius = 2.6f, kBlendRadius = 1.2f, kSurpriseRadius = 2.4f;  // spacings
+// Spacings: a reader's cells serve points that far off; those that are expected, at most; and what is added for rounding.
+constexpr float kTakenBeyond = .5f, kFarthestTaken = 1.5f, kRounding = 1e-3f;
 constexpr int kSurpriseRounds = 3;
 constexpr float kCube =
     2.6f;  // spacings: against 1, three quarters of the time on the bunny; above 2 all alike
 constexpr double kShapePerSurprise = 1.4;
 constexpr float kBlendedNoise = .9f;  ///< over that of one fit
-constexpr double kLeastCosine = .4;   // between normals that have to do with each other
+constexpr float kLeastCosine = .4f;   // between normals that have to do with each other
 /// Mean square, along any axis, of a cell's points about its middle, over its area: of a hexagon .0802, of a
 /// square .0833.
 constexpr double kCellMoment = .0815;
@@ -26,7 +30,7 @@ using Terms = std::array<double, kTerms>;
 
 /// 1 where normals agree; 0 where the surface has turned too far.
 double alike(const Vec3f& a, const Vec3f& b) {
-  return std::max(0.0, (double(dot(a, b)) - kLeastCosine) / (1 - kLeastCosine));
+  return std::max(0.0, double(dot(a, b) - kLeastCosine) / double(1 - kLeastCosine));
 }
 
 /// Falls from 1 to 0 at the radius.
@@ -107,7 +111,7 @@ void CellFit::for_alike(const Vec3f& position, const Vec3f& normal, float spacin
 
 CellFit::CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> means,
                  std::span<const RgbF> errors)
-    : middles_(at_centroids(samples), nullptr, kCube), fits_(samples.size()) {
+    : middles_(at_centroids(samples), nullptr, kCube), fits_(samples.size()), places_(samples.size()) {
   double area = 0;
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -118,8 +122,10 @@ CellFit::CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> m
   std::vector<Surprise> surprises(samples.size());
   const std::span<const NearestSample::Member> members = middles_.members();  // near each other: in the cache
   parallel_chunks(members.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (const NearestSample::Member& member : members.subspan(begin, end - begin))
-      fits_[member.sample] = fitted(member, cells, surprises[member.sample]);
+    for (std::size_t m = begin; m < end; ++m) {
+      places_[members[m].sample] = std::uint32_t(m);
+      fits_[m] = fitted(members[m], cells, surprises[members[m].sample]);
+    }
   });
   // That of one cell is mostly chance. Means of means reach as far as a wide one, past fewer cells.
   std::vector<Rgb> smoothed(surprises.size());
@@ -137,9 +143,10 @@ CellFit::CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> m
     });
     for (std::size_t i = 0; i < surprises.size(); ++i) surprises[i].square = smoothed[i];
   }
-  for (std::size_t i = 0; i < samples.size(); ++i)
+  for (std::size_t m = 0; m < members.size(); ++m)
     for (std::size_t c = 0; c < 3; ++c)
-      fits_[i].shape[c] = float(kShapePerSurprise * std::sqrt(std::max(0.0, smoothed[i][c])));
+      fits_[m].shape[int(c)] =
+          float(kShapePerSurprise * std::sqrt(std::max(0.0, smoothed[members[m].sample][c])));
 }
 
 // Least squares, neighbours weighted by area. The surprise is the square of what the fit's mean over the cell misses of
@@ -150,7 +157,7 @@ CellFit::Fit CellFit::fitted(const NearestSample::Member& own, std::span<const C
   const double scale = 1 / double(spacing_);
   Vec3f along_u, along_v;
   tangent_frame(own.normal, along_u, along_v);
-  Fit fit{own.position, along_u, along_v, {}, own_cell.error, {}};
+  Fit fit{along_u, along_v, {}, channels_of(own_cell.error), {}};
   const auto moment_of = [&](const Cell& cell) { return kCellMoment * double(cell.area) * scale * scale; };
   std::vector<Neighbour> near;
   near.reserve(32);
@@ -169,7 +176,7 @@ CellFit::Fit CellFit::fitted(const NearestSample::Member& own, std::span<const C
     weights += weight;
   });
   if (!(weights > 0)) {
-    fit.terms[0] = own_cell.mean;
+    fit.terms[0] = channels_of(own_cell.mean);
     return fit;
   }
   for (Neighbour& n : near) equations.add(n.terms, n.weight /= weights);
@@ -192,39 +199,76 @@ CellFit::Fit CellFit::fitted(const NearestSample::Member& own, std::span<const C
   }
   for (std::size_t c = 0; c < 3; ++c) {
     const Terms solved = equations.solve(sums[c]);
-    for (std::size_t t = 0; t < kTerms; ++t) fit.terms[t][c] = float(solved[t]);
-    fit.noise[c] = float(std::sqrt(noise2[c]));
+    for (std::size_t t = 0; t < kTerms; ++t) fit.terms[t][int(c)] = float(solved[t]);
+    fit.noise[int(c)] = float(std::sqrt(noise2[c]));
   }
   surprise.square = missed * missed - missed_noise2;
   return fit;
 }
 
-RgbF CellFit::value_of(const Fit& fit, const Vec3f& position) const {
-  const Vec3f apart = (position - fit.center) * (1 / spacing_);
-  const float u = dot(apart, fit.along_u), v = dot(apart, fit.along_v);
-  const auto& t = fit.terms;
-  return t[0] + t[1] * u + t[2] * v + t[3] * (u * u) + t[4] * (u * v) + t[5] * (v * v);
+CellFit::Reader::Reader(const CellFit& fit) : fit_(fit), taken_(std::numeric_limits<float>::infinity()) {}
+
+void CellFit::Reader::expect(std::span<const Vec3f> positions) {
+  Vec3f low(std::numeric_limits<float>::infinity()), high = -low;
+  for (const Vec3f& position : positions)
+    low = component_min(low, position), high = component_max(high, position);
+  const float beyond = length(high - low) * .5f / fit_.spacing_ + kRounding;
+  if (beyond <= kFarthestTaken) take_around((low + high) * .5f, beyond);
 }
 
-CellFit::Value CellFit::at(const Vec3f& position, const Vec3f& normal) const {
-  Value value;
-  float weights = 0;
-  for_alike(position, normal, kBlendRadius, [&](const NearestSample::Member& member, double w) {
-    const Fit& fit = fits_[member.sample];
-    const auto weight = float(w);
-    value.value += value_of(fit, position) * weight;
-    value.noise += fit.noise * weight;
-    value.shape += fit.shape * weight;
-    weights += weight;
+// In the order of the cubes that they lie in, whatever point they are taken around: sums have the same bits.
+void CellFit::Reader::take_around(const Vec3f& position, float beyond) {
+  taken_ = position, beyond_ = beyond;
+  near_.clear();
+  const float radius = (kBlendRadius + beyond + kRounding) * fit_.spacing_, radius2 = radius * radius;
+  const std::span<const NearestSample::Member> members = fit_.middles_.members();
+  fit_.middles_.for_near(position, radius, [&](const NearestSample::Member& member) {
+    const Vec3f apart = member.position - position;
+    if (dot(apart, apart) < radius2) near_.push_back(std::uint32_t(&member - members.data()));
   });
-  if (weights > 0) {
-    value = {value.value / weights, value.noise * (kBlendedNoise / weights), value.shape / weights};
-  } else if (!fits_.empty()) {
-    const Fit& fit = fits_[middles_.at(position, normal)];
-    value = {fit.terms[0], fit.noise, fit.shape};
+  fours_.assign((near_.size() + 3) / 4, {});  // those past the last have no normal: their weight is 0
+  for (std::size_t i = 0; i < near_.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      fours_[i / 4].middle[axis][i % 4] = members[near_[i]].position[axis];
+      fours_[i / 4].normal[axis][i % 4] = members[near_[i]].normal[axis];
+    }
+}
+
+CellFit::Value CellFit::Reader::at(const Vec3f& position, const Vec3f& normal) {
+  const float per_spacing = 1 / fit_.spacing_;
+  const Vec3f moved = (position - taken_) * per_spacing;
+  if (!(dot(moved, moved) <= beyond_ * beyond_)) take_around(position, kTakenBeyond);
+  constexpr float kPerRadius2 = 1 / (kBlendRadius * kBlendRadius);
+  Channels value{}, noise{}, shape{};
+  float weights = 0;
+  for (std::size_t four = 0; four < fours_.size(); ++four) {
+    const auto& [middle, other] = fours_[four];
+    const Four x = (position.x - middle[0]) * per_spacing, y = (position.y - middle[1]) * per_spacing,
+               z = (position.z - middle[2]) * per_spacing;
+    const Four left = 1 - (x * x + y * y + z * z) * kPerRadius2,
+               turned = other[0] * normal.x + other[1] * normal.y + other[2] * normal.z - kLeastCosine;
+    const Four weight4 = left * left * turned;
+    for (int lane = 0; lane < 4; ++lane) {
+      if (!(left[lane] > 0 && turned[lane] > 0)) continue;
+      const Fit& fit = fit_.fits_[near_[4 * four + std::size_t(lane)]];
+      const Vec3f apart{x[lane], y[lane], z[lane]};
+      const float weight = weight4[lane], u = dot(apart, fit.along_u), v = dot(apart, fit.along_v);
+      const auto& t = fit.terms;
+      value += (t[0] + t[1] * u + t[2] * v + t[3] * (u * u) + t[4] * (u * v) + t[5] * (v * v)) * weight;
+      noise += fit.noise * weight;
+      shape += fit.shape * weight;
+      weights += weight;
+    }
   }
-  value.value = component_max(value.value, RgbF{});
-  return value;
+  if (weights > 0) {
+    value /= weights;
+    noise *= kBlendedNoise / weights;
+    shape /= weights;
+  } else if (!fit_.fits_.empty()) {
+    const Fit& fit = fit_.fits_[fit_.places_[fit_.middles_.at(position, normal)]];
+    value = fit.terms[0], noise = fit.noise, shape = fit.shape;
+  }
+  return {component_max(rgb_of(value), RgbF{}), rgb_of(noise), rgb_of(shape)};
 }
 
 }  // namespace opaline

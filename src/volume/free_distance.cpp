@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume/free_distance.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "opaline/core/parallel.h"
@@ -28,7 +29,8 @@ bool crosses(const Vec3d& corner, const Vec3d& normal, const Vec3d& middle, doub
 FreeDistance::FreeDistance(const World& world, const Bounds& box, double edge, double reach) {
   const Vec3d size = box.high - box.low;
   const auto count = [](double length, double e) { return std::floor(length / e) + 3; };
-  edge_ = std::max(edge, max_component(size) * 1e-3);
+  edge_ = std::clamp(edge, max_component(size) * 1e-3,
+                     max_component(size) * 1e6);  // a clear medium's is infinite
   if (!(edge_ > 0)) edge_ = 1;
   while (count(size.x, edge_) * count(size.y, edge_) * count(size.z, edge_) > double(kMostVoxels))
     edge_ *= 1.1;

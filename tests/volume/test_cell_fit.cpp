@@ -145,6 +145,29 @@ TEST(CellFit, ShapeIsForetold) {
   }
 }
 
+// Claim: what a reader was told to expect, and what it read before, changes no bit of what it reads. Source: the header;
+// crops and tiles have the bytes of the whole picture. Fails if: cells at the rim of
+// what is expected are missing.
+TEST(CellFit, ReadersAgree) {
+  const Sampled sampled(world_of({SphereShape{{}, 10}}), 800);
+  const FieldOf field = [](const Vec3d& p) { return 20 + p.x + std::sin(p.y); };
+  const CellFit fit(sampled.surface.samples, sampled.means(field), sampled.no_errors());
+  CellFit::Reader reader(fit);
+  const auto position = [&](std::size_t i) { return Vec3f(sampled.pieces[i].position); };
+  std::mt19937 engine(1);
+  for (std::size_t i = 0; i + 40 < sampled.pieces.size(); i += 97) {
+    const std::size_t other = engine() % sampled.pieces.size();
+    if (i % 2 == 0) reader.expect(std::array{position(i), position(i + 1), position(i + 2)});
+    if (i % 5 == 0) reader.expect(std::array{position(i), position(other)});
+    for (const std::size_t at : {i, i + 2, i + 40, other}) {
+      const Vec3f& normal = sampled.pieces[at].geometric;
+      const CellFit::Value read = reader.at(position(at), normal), alone = fit.at(position(at), normal);
+      ASSERT_EQ(read.value, alone.value);
+      ASSERT_EQ(read.shape, alone.shape);
+    }
+  }
+}
+
 // Claim: extremes are finite: no cell, one, cells in a row, all in one place, a point far away. Source: the header. Fails
 // if: an equation without neighbours is divided by.
 TEST(CellFit, Extremes) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -23,14 +24,38 @@ class CellFit {
     RgbF noise;  ///< standard error that the means' errors give it
     RgbF shape;  ///< estimated standard error that the fit gives it, where it does not follow the field
   };
-  /// At a point of the surface, by its position and shading normal.
-  Value at(const Vec3f& position, const Vec3f& normal) const;
+  /// Reads the field at one point after another, fastest where it was told which follow.
+  class Reader {
+    typedef float Four __attribute__((vector_size(16)));
+    struct FourCells {
+      std::array<Four, 3> middle, normal;
+    };
+
+   public:
+    /// It must outlive the reader.
+    explicit Reader(const CellFit& fit);
+    /// Says which points are asked for next; they change how long it takes, not what comes out.
+    void expect(std::span<const Vec3f> positions);
+    /// At a point of the surface, by its position and shading normal.
+    Value at(const Vec3f& position, const Vec3f& normal);
+
+   private:
+    void take_around(const Vec3f& position, float beyond);
+
+    const CellFit& fit_;
+    Vec3f taken_;                      // the place whose cells are taken, and of points so far off:
+    float beyond_ = 0;                 // spacings
+    std::vector<std::uint32_t> near_;  // these cells, by their places
+    std::vector<FourCells> fours_;
+  };
+  Value at(const Vec3f& position, const Vec3f& normal) const { return Reader(*this).at(position, normal); }
 
  private:
+  typedef float Channels __attribute__((vector_size(16)));  ///< red, green, blue, 0
   struct Fit {
-    Vec3f center, along_u, along_v;
-    std::array<RgbF, 6> terms;  ///< of 1, u, v, u^2, u v, v^2; u, v: spacings
-    RgbF noise, shape;
+    Vec3f along_u, along_v;
+    std::array<Channels, 6> terms;  ///< of 1, u, v, u^2, u v, v^2; u, v: spacings
+    Channels noise, shape;
   };
   /// What a cell has to do with another one.
   struct Share {
@@ -50,10 +75,12 @@ class CellFit {
   template <class Use>
   void for_alike(const Vec3f& position, const Vec3f& normal, float spacings, const Use& use) const;
   Fit fitted(const NearestSample::Member& own, std::span<const Cell> cells, Surprise& surprise) const;
-  RgbF value_of(const Fit& fit, const Vec3f& position) const;
+  static Channels channels_of(const RgbF& rgb) { return Channels{rgb[0], rgb[1], rgb[2], 0}; }
+  static RgbF rgb_of(const Channels& channels) { return {channels[0], channels[1], channels[2]}; }
 
-  NearestSample middles_;  ///< of the cells
-  std::vector<Fit> fits_;  ///< one a cell
+  NearestSample middles_;              ///< of the cells
+  std::vector<Fit> fits_;              ///< one for each of its members
+  std::vector<std::uint32_t> places_;  ///< of the cells there
   float spacing_ = 1;
 };
 

@@ -30,7 +30,8 @@ class NearestSample {
   /// Cube by cube.
   std::span<const Member> members() const { return members_; }
 
-  /// Calls visit(member) for all samples, of any sheet, in the cubes that the ball around a position meets.
+  /// Calls visit(member), an element of members(), for all samples, of any sheet, in the cubes that the ball around a
+  /// position meets.
   template <class Visit>
   void for_near(const Vec3f& position, float radius, const Visit& visit) const {
     const Place low = place_of(position - Vec3f(radius)), high = place_of(position + Vec3f(radius));
