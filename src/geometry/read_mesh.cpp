@@ -87,9 +87,13 @@ bool is_mesh_file_name(const std::string& path) {
   return find_mesh_format(path) != nullptr;
 }
 
-std::string mesh_contents(const std::string& path) {
+bool names_no_files(const std::string& path) {
   const MeshFormat* format = find_mesh_format(path);
-  return format != nullptr && format->contents != nullptr ? format->contents(path) : read_mesh_bytes(path);
+  return format == nullptr || format->contents == nullptr;
+}
+
+std::string mesh_contents(const std::string& path) {
+  return names_no_files(path) ? read_mesh_bytes(path) : find_mesh_format(path)->contents(path);
 }
 
 SourceMesh read_mesh(const std::string& path, const std::string& part, MeshUvs uvs) {

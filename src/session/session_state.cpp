@@ -9,7 +9,6 @@
 
 #include "opaline/render/choose_models.h"
 #include "opaline/render/surface_caches.h"
-#include "session/shape_key.h"
 
 namespace opaline {
 namespace {
@@ -33,7 +32,7 @@ std::vector<std::optional<std::size_t>> kept_shapes(const std::vector<StageKey>&
 void Session::State::edit(Scene scene) {
   std::vector<StageKey> sources, keys;
   for (const Shape& shape : scene.shapes) {
-    sources.push_back(source_key(shape, uvs_of(scene, shape)));
+    sources.push_back(source_keys_.key(shape, uvs_of(scene, shape)));
     keys.push_back(shape_key(shape, sources.back()));
   }
   SessionWork work;

@@ -4,6 +4,7 @@
 
 #include "opaline/session/session.h"
 #include "session/body_keys.h"
+#include "session/shape_key.h"
 
 namespace opaline {
 
@@ -77,6 +78,7 @@ struct Session::State {
   std::vector<StageKey> view_light_keys_;
   std::vector<GroupPlan> reference_;  ///< of the anchor; empty: none
   bool edits_ = true, prepared_ = false, anchored_ = false, matches_new_ = false;
+  SourceKeys source_keys_;
   WalkStore walk_store_;
   SessionWork work_;
   std::vector<std::string> decisions_;

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/shape_key.h"
 
+#include <sys/stat.h>
+
+#include <ctime>
+#include <optional>
+
 #include "opaline/geometry/mesh_file.h"
 
 namespace opaline {
@@ -8,8 +13,9 @@ namespace {
 
 struct AddSource {
   KeyBuilder& key;
+  const StageKey& contents;  // of a mesh file
   void operator()(const MeshFile& mesh) const {
-    key.add(mesh.path).add(mesh_contents(mesh.path)).add(mesh.part);
+    key.add(mesh.path).add(contents).add(mesh.part);
     key.add(mesh.fill_holes).add(mesh.fit_size.value_or(0));
   }
   void operator()(const SphereShape& s) const { key.add(s.center).add(s.radius).add(s.fineness); }
@@ -21,15 +27,37 @@ struct AddSource {
   }
 };
 
+/// None: nothing is known of the file, or it was changed so lately that another change could leave it the same.
+std::optional<StageKey> record_of(const std::string& path) {
+  constexpr std::time_t kSettled = 3;  // seconds: file systems keep times to 2 at the coarsest
+  struct stat file;
+  if (::stat(path.c_str(), &file) != 0 || std::time(nullptr) - file.st_ctim.tv_sec < kSettled) return {};
+  KeyBuilder key("record of a file", 1);
+  key.add(file.st_dev).add(file.st_ino).add(file.st_size);
+  key.add(file.st_mtim.tv_sec).add(file.st_mtim.tv_nsec).add(file.st_ctim.tv_sec).add(file.st_ctim.tv_nsec);
+  return key.key();
+}
+
 }  // namespace
 
-StageKey source_key(const Shape& shape, MeshUvs uvs) {
-  KeyBuilder key("source", 1);
+StageKey SourceKeys::contents(const std::string& path) {
+  const std::optional<StageKey> record = names_no_files(path) ? record_of(path) : std::nullopt;
+  const auto known = hashed_.find(path);
+  if (record && known != hashed_.end() && known->second.record == *record) return known->second.contents;
+  const StageKey contents = KeyBuilder("mesh file", 1).add(mesh_contents(path)).key();
+  if (record) hashed_.insert_or_assign(path, Hashed{*record, contents});
+  return contents;
+}
+
+StageKey SourceKeys::key(const Shape& shape, MeshUvs uvs) {
+  KeyBuilder key("source", 2);
   key.add(std::uint64_t(shape.source.index()));
   if (uvs == MeshUvs::required) key.add(true);
   if (uvs == MeshUvs::if_any || uvs == MeshUvs::with_tangents) key.add(uvs);
   try {
-    std::visit(AddSource{key}, shape.source);
+    const auto* const mesh = std::get_if<MeshFile>(&shape.source);
+    const StageKey of_file = mesh != nullptr ? contents(mesh->path) : StageKey{};
+    std::visit(AddSource{key, of_file}, shape.source);
   } catch (const Error& failure) {
     throw told_at(shape.place, failure);
   }

@@ -2,15 +2,30 @@
 // What a shape's mesh is loaded from.
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "opaline/cache/stage_key.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {
 
-/// Of the file's bytes or the built-in shape's measures, and how UVs are asked for.
-/// error Error{bad_input} naming a mesh file that is
-/// none
-StageKey source_key(const Shape& shape, MeshUvs uvs = MeshUvs::unread);
+/// Keys of what meshes are loaded from. A file's bytes are hashed once: again only where the system's record of it, with
+/// the time of its last change, is another, or so young that a change could have left it as it is.
+class SourceKeys {
+ public:
+  /// Of the file's bytes or the built-in shape's measures, and how UVs are asked for.
+  /// error Error{bad_input} naming a mesh file that is none
+  StageKey key(const Shape& shape, MeshUvs uvs = MeshUvs::unread);
+
+ private:
+  struct Hashed {
+    StageKey record, contents;
+  };
+  StageKey contents(const std::string& path);
+
+  std::map<std::string, Hashed> hashed_;  ///< by path
+};
 
 /// Of the source and all that loading does with it.
 StageKey shape_key(const Shape& shape, const StageKey& source);

@@ -46,10 +46,10 @@ TEST(GltfMeshes, ABufferThatChangesIsReadAgain) {
   expect_cube(mesh_of(folder.file("a.gltf"), "0/0"), "before");
   Shape shape;
   shape.source = MeshFile{folder.file("a.gltf"), false, {}, "0/0"};
-  const StageKey key = source_key(shape);
-  EXPECT_EQ(source_key(shape), key);
+  const StageKey key = SourceKeys().key(shape);
+  EXPECT_EQ(SourceKeys().key(shape), key);
   std::get<MeshFile>(shape.source).part = "0/1";
-  EXPECT_NE(source_key(shape), key);
+  EXPECT_NE(SourceKeys().key(shape), key);
   std::get<MeshFile>(shape.source).part = "0/0";
   for (std::size_t i = 0; i < 24 * 3; ++i) {
     float value;
@@ -59,7 +59,7 @@ TEST(GltfMeshes, ABufferThatChangesIsReadAgain) {
   }
   put_bytes(folder.file("a.bin"), asset.buffer);
   EXPECT_NEAR(enclosed_volume(mesh_of(folder.file("a.gltf"), "0/0").mesh), 64, 1e-5);
-  EXPECT_NE(source_key(shape), key);
+  EXPECT_NE(SourceKeys().key(shape), key);
 }
 
 /// A square in the plane z = 0 that faces +z, in the order in which the mode takes its corners.

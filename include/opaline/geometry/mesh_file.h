@@ -17,4 +17,7 @@ std::string read_mesh_bytes(const std::string& path);
 /// error as read_mesh_bytes, and of glTF as reading it
 std::string mesh_contents(const std::string& path);
 
+/// Whether these are the file's bytes alone.
+bool names_no_files(const std::string& path);
+
 }  // namespace opaline
