@@ -29,8 +29,9 @@ class SeenCells {
       : part_(part), columns_(count(part.x1 - part.x0)), rows_(count(part.y1 - part.y0)) {}
 
   CellBox around(const CameraRays::FilmPlace& place) const {
+    // Truncation of what is not negative: std::floor is a call without SSE 4.1.
     const auto cell = [](double at, int low, int high, int cells) {
-      return int(std::clamp(std::floor((at - low) / (high - low) * cells), -1.0, double(cells)));
+      return int(std::clamp((at - low) / (high - low) * cells + 1, 0.0, double(cells + 1))) - 1;
     };
     return {cell(place.x - kApart, part_.x0, part_.x1, columns_),
             cell(place.x + kApart, part_.x0, part_.x1, columns_),

@@ -40,6 +40,8 @@ struct BodyKeys {
 
   std::shared_ptr<const VolumeDiffusion> diffusion;  // its cells
   std::vector<Vec3f> cut_normals;                    // of the samples, where cells cut the surface
+  std::shared_ptr<const CellWeights> cell_weights;   // of the samples
+  StageKey cell_weights_key;                         // samples_key with which they were found
 
   bool is_carried() const { return samples_key != origin.key; }
 };

@@ -41,6 +41,7 @@ struct Session::State {
   void carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input, const StageKey& key);
   void update_lights(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
                      const std::vector<Light>& lights);
+  void fit_cells(Body& body, BodyKeys& known);
   void update_tint(Body& body, BodyKeys& known);
   void update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights);
   void hold_tree(Body& body, BodyKeys& known, const StageKey& key);

@@ -237,8 +237,7 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
   if (key.key() != known.volume_key || !body.volume) {
     known.volume_key = {};
     body.volume = exitance_of(walks, body.walks);
-    body.volume_fit =
-        std::make_shared<const CellFit>(body.surface.samples, body.volume->exitance, body.volume->error);
+    fit_cells(body, known);
     known.volume_key = key.key();
   }
   note_decision(body, passes > before ? "walked at random" : "random walks kept");
@@ -274,9 +273,21 @@ void Session::State::update_diffusion(Body& body, BodyKeys& known, const Precomp
     note_decision(body, at_hand ? "diffusion solved in the cells at hand" : "diffusion solved");
     if (!edits_) known.diffusion = nullptr;
   }
-  body.volume_fit =
-      std::make_shared<const CellFit>(body.surface.samples, body.volume->exitance, body.volume->error);
+  fit_cells(body, known);
   known.volume_key = key;
+}
+
+// Where edits are to come, what the fit takes of the samples' places alone is kept for them.
+void Session::State::fit_cells(Body& body, BodyKeys& known) {
+  const std::span<const RgbF> means = body.volume->exitance, errors = body.volume->error;
+  if (!edits_) {
+    body.volume_fit = std::make_shared<const CellFit>(body.surface.samples, means, errors);
+    return;
+  }
+  if (known.cell_weights == nullptr || known.cell_weights_key != known.samples_key)
+    known.cell_weights = std::make_shared<const CellWeights>(body.surface.samples);
+  known.cell_weights_key = known.samples_key;
+  body.volume_fit = std::make_shared<const CellFit>(*known.cell_weights, means, errors);
 }
 
 void Session::State::update_tint(Body& body, BodyKeys& known) {

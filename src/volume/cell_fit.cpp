@@ -77,133 +77,168 @@ class NormalEquations {
   std::array<Terms, kTerms> rows_{};
 };
 
-struct Neighbour {
+/// A mean that a cell's quadratic is fitted to.
+struct FittedMean {
   std::uint32_t sample;
   double weight;
   Terms terms;  ///< means over its cell
 };
 
+constexpr std::size_t kChunk = 256;  // cells
+
+/// Centroids in place of positions.
 std::vector<SurfaceSample> at_centroids(std::span<const SurfaceSample> samples) {
   std::vector<SurfaceSample> moved(samples.begin(), samples.end());
   for (SurfaceSample& s : moved) s.position = s.centroid;
   return moved;
 }
 
-double product(const Terms& a, const Terms& b) {
-  double sum = 0;
-  for (std::size_t t = 0; t < kTerms; ++t) sum += a[t] * b[t];
-  return sum;
-}
-
 }  // namespace
 
-/// Calls use(member, weight) for the cells within so many spacings whose normals are alike.
-template <class Use>
-void CellFit::for_alike(const Vec3f& position, const Vec3f& normal, float spacings, const Use& use) const {
-  const float radius = spacings * spacing_;
-  middles_.for_near(position, radius, [&](const NearestSample::Member& member) {
-    const double near = bump(member.position - position, radius);
-    if (!(near > 0)) return;
-    const double weight = near * alike(member.normal, normal);
-    if (weight > 0) use(member, weight);
+CellWeights::Places::Places(std::span<const SurfaceSample> samples)
+    : middles(at_centroids(samples), nullptr, kCube), of_sample(samples.size()) {
+  double area = 0;
+  for (const SurfaceSample& s : samples) area += double(s.area);
+  if (area > 0) spacing = float(std::sqrt(area / double(samples.size())));
+  const std::span<const NearestSample::Member> members = middles.members();
+  for (std::size_t m = 0; m < members.size(); ++m) of_sample[members[m].sample] = std::uint32_t(m);
+}
+
+CellWeights::CellWeights(std::span<const SurfaceSample> samples)
+    : places_(std::make_shared<const Places>(samples)), chunks_(chunk_count(samples.size(), kChunk)) {
+  parallel_chunks(samples.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    chunks_[c] = chunk_of(*places_, samples, begin, end);
+    chunks_[c].neighbours.shrink_to_fit();
+    chunks_[c].terms.shrink_to_fit();
   });
+}
+
+// Least squares, neighbours weighted by area: the inverse of the normal equations times what each mean adds to them.
+CellWeights::Chunk CellWeights::chunk_of(const Places& places, std::span<const SurfaceSample> samples,
+                                         std::size_t begin, std::size_t end) {
+  const float radius = kFitRadius * places.spacing;
+  const double scale = 1 / double(places.spacing);
+  const auto moment_of = [&](std::uint32_t sample) {
+    return kCellMoment * double(samples[sample].area) * scale * scale;
+  };
+  Chunk chunk;
+  std::vector<FittedMean> means;
+  for (const NearestSample::Member& own : places.middles.members().subspan(begin, end - begin)) {
+    Frame frame{{}, {}, float(moment_of(own.sample))};
+    tangent_frame(own.normal, frame.along_u, frame.along_v);
+    means.clear();
+    double weights = 0;
+    places.middles.for_near(own.position, radius, [&](const NearestSample::Member& member) {
+      const Vec3f apart = member.position - own.position;
+      const double turned = alike(member.normal, own.normal),
+                   weight = bump(apart, radius) * turned * double(samples[member.sample].area);
+      if (!(weight > 0)) return;
+      const double u = double(dot(apart, frame.along_u)) * scale,
+                   v = double(dot(apart, frame.along_v)) * scale, moment = moment_of(member.sample);
+      means.push_back({member.sample, weight, {1, u, v, u * u + moment, u * v, v * v + moment}});
+      chunk.neighbours.push_back(
+          {member.sample, float(bump(apart, kSurpriseRadius * places.spacing) * turned)});
+      weights += weight;
+    });
+    if (means.empty()) {
+      chunk.neighbours.push_back({own.sample, 1});
+      chunk.terms.push_back({1});
+    }
+    NormalEquations equations;
+    for (FittedMean& mean : means) equations.add(mean.terms, mean.weight /= weights);
+    equations.factor();
+    for (const FittedMean& mean : means) {
+      Terms weighted = mean.terms;
+      for (double& term : weighted) term *= mean.weight;
+      const Terms solved = equations.solve(weighted);
+      std::ranges::transform(solved, chunk.terms.emplace_back().begin(), [](double t) { return float(t); });
+    }
+    chunk.frames.push_back(frame);
+    chunk.ends.push_back(std::uint32_t(chunk.neighbours.size()));
+  }
+  return chunk;
 }
 
 CellFit::CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> means,
                  std::span<const RgbF> errors)
-    : middles_(at_centroids(samples), nullptr, kCube), fits_(samples.size()), places_(samples.size()) {
-  double area = 0;
-  std::vector<Cell> cells;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    area += double(samples[i].area);
-    cells.push_back({means[i], errors[i], samples[i].area});
-  }
-  if (area > 0) spacing_ = float(std::sqrt(area / double(samples.size())));
-  std::vector<Surprise> surprises(samples.size());
-  const std::span<const NearestSample::Member> members = middles_.members();  // near each other: in the cache
-  parallel_chunks(members.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t m = begin; m < end; ++m) {
-      places_[members[m].sample] = std::uint32_t(m);
-      fits_[m] = fitted(members[m], cells, surprises[members[m].sample]);
-    }
+    : places_(std::make_shared<const CellWeights::Places>(samples)), fits_(means.size()) {
+  std::vector<Rgb> surprises(means.size());
+  std::vector<CellWeights::Chunk> chunks(chunk_count(means.size(), kChunk));
+  parallel_chunks(means.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    chunks[c] = CellWeights::chunk_of(*places_, samples, begin, end);
+    fit(chunks[c], begin, means, errors, surprises);
+    chunks[c].terms = {};  // most of its memory
   });
-  // That of one cell is mostly chance. Means of means reach as far as a wide one, past fewer cells.
+  smooth(chunks, std::move(surprises));
+}
+
+CellFit::CellFit(const CellWeights& weights, std::span<const RgbF> means, std::span<const RgbF> errors)
+    : places_(weights.places_), fits_(means.size()) {
+  std::vector<Rgb> surprises(means.size());
+  parallel_chunks(means.size(), kChunk, [&](std::size_t begin, std::size_t, std::size_t c) {
+    fit(weights.chunks_[c], begin, means, errors, surprises);
+  });
+  smooth(weights.chunks_, std::move(surprises));
+}
+
+// The surprise is the square of what the fit's mean over the cell misses of the cell's mean, less what the means' errors
+// make of it on average.
+void CellFit::fit(const CellWeights::Chunk& chunk, std::size_t begin, std::span<const RgbF> means,
+                  std::span<const RgbF> errors, std::span<Rgb> surprises) {
+  const auto add_square = [](Rgb& sum, const Channels& channels) {  // in double: it leaves a float's range
+    for (int c = 0; c < 3; ++c) sum[std::size_t(c)] += double(channels[c]) * double(channels[c]);
+  };
+  const std::span<const NearestSample::Member> members = places_->middles.members();
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < chunk.frames.size(); ++i) {
+    const CellWeights::Frame& frame = chunk.frames[i];
+    const std::uint32_t own = members[begin + i].sample;
+    Fit fit{frame.along_u, frame.along_v, {}, {}, {}};
+    Channels missed{};
+    Rgb noise2{}, missed_noise2{};
+    for (; next < chunk.ends[i]; ++next) {
+      const std::uint32_t sample = chunk.neighbours[next].sample;
+      const std::array<float, kTerms>& terms = chunk.terms[next];
+      const Channels mean = channels_of(means[sample]), error = channels_of(errors[sample]);
+      for (std::size_t t = 0; t < kTerms; ++t) fit.terms[t] += mean * terms[t];
+      add_square(noise2, error * terms[0]);
+      const float over_cell = terms[0] + frame.moment * (terms[3] + terms[5]),
+                  miss = (sample == own ? 1 : 0) - over_cell;
+      missed += mean * miss;
+      add_square(missed_noise2, error * miss);
+    }
+    for (int c = 0; c < 3; ++c) {
+      fit.noise[c] = float(std::sqrt(noise2[std::size_t(c)]));
+      surprises[own][std::size_t(c)] = double(missed[c]) * double(missed[c]) - missed_noise2[std::size_t(c)];
+    }
+    fits_[begin + i] = fit;
+  }
+}
+
+// That of one cell is mostly chance. Means of means reach as far as a wide one, past fewer cells.
+void CellFit::smooth(std::span<const CellWeights::Chunk> chunks, std::vector<Rgb> surprises) {
+  const std::span<const NearestSample::Member> members = places_->middles.members();
   std::vector<Rgb> smoothed(surprises.size());
   for (int round = 0; round < kSurpriseRounds; ++round) {
-    parallel_chunks(samples.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t i = begin; i < end; ++i) {
+    parallel_chunks(members.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+      std::size_t next = 0;
+      for (std::size_t m = begin; m < end; ++m) {
         Rgb sum{};
         double weights = 0;
-        for (const auto& [other, weight] : surprises[i].near) {
-          sum += surprises[other].square * double(weight);
-          weights += double(weight);
+        for (; next < chunks[c].ends[m - begin]; ++next) {
+          const auto& [sample, closeness] = chunks[c].neighbours[next];
+          sum += surprises[sample] * double(closeness);
+          weights += double(closeness);
         }
-        smoothed[i] = weights > 0 ? sum / weights : Rgb{};
+        smoothed[members[m].sample] = weights > 0 ? sum / weights : Rgb{};
       }
     });
-    for (std::size_t i = 0; i < surprises.size(); ++i) surprises[i].square = smoothed[i];
+    surprises.swap(smoothed);
   }
   for (std::size_t m = 0; m < members.size(); ++m)
     for (std::size_t c = 0; c < 3; ++c)
       fits_[m].shape[int(c)] =
-          float(kShapePerSurprise * std::sqrt(std::max(0.0, smoothed[members[m].sample][c])));
-}
-
-// Least squares, neighbours weighted by area. The surprise is the square of what the fit's mean over the cell misses of
-// the cell's mean, less what the means' errors make of it on average.
-CellFit::Fit CellFit::fitted(const NearestSample::Member& own, std::span<const Cell> cells,
-                             Surprise& surprise) const {
-  const Cell& own_cell = cells[own.sample];
-  const double scale = 1 / double(spacing_);
-  Vec3f along_u, along_v;
-  tangent_frame(own.normal, along_u, along_v);
-  Fit fit{along_u, along_v, {}, channels_of(own_cell.error), {}};
-  const auto moment_of = [&](const Cell& cell) { return kCellMoment * double(cell.area) * scale * scale; };
-  std::vector<Neighbour> near;
-  near.reserve(32);
-  surprise.near.reserve(24);
-  NormalEquations equations;
-  double weights = 0;
-  for_alike(own.position, own.normal, kFitRadius, [&](const NearestSample::Member& member, double weight) {
-    const Cell& cell = cells[member.sample];
-    weight *= double(cell.area);
-    const Vec3f apart = member.position - own.position;
-    if (const double close = bump(apart, kSurpriseRadius * spacing_); close > 0)
-      surprise.near.push_back({member.sample, float(close * alike(member.normal, own.normal))});
-    const double u = double(dot(apart, along_u)) * scale, v = double(dot(apart, along_v)) * scale,
-                 moment = moment_of(cell);
-    near.push_back({member.sample, weight, {1, u, v, u * u + moment, u * v, v * v + moment}});
-    weights += weight;
-  });
-  if (!(weights > 0)) {
-    fit.terms[0] = channels_of(own_cell.mean);
-    return fit;
-  }
-  for (Neighbour& n : near) equations.add(n.terms, n.weight /= weights);
-  equations.factor();
-  const double own_moment = moment_of(own_cell);
-  const Terms at_center = equations.solve({1}),
-              over_cell = equations.solve({1, 0, 0, own_moment, 0, own_moment});
-  std::array<Terms, 3> sums{};
-  Rgb noise2{}, missed{}, missed_noise2{};
-  for (const Neighbour& n : near) {
-    const Cell& cell = cells[n.sample];
-    const Rgb mean(cell.mean), error2 = Rgb(cell.error) * Rgb(cell.error);
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t t = 0; t < kTerms; ++t) sums[c][t] += n.weight * mean[c] * n.terms[t];
-    const double share = n.weight * product(at_center, n.terms),
-                 miss = (n.sample == own.sample ? 1 : 0) - n.weight * product(over_cell, n.terms);
-    noise2 += error2 * (share * share);
-    missed += mean * miss;
-    missed_noise2 += error2 * (miss * miss);
-  }
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Terms solved = equations.solve(sums[c]);
-    for (std::size_t t = 0; t < kTerms; ++t) fit.terms[t][int(c)] = float(solved[t]);
-    fit.noise[int(c)] = float(std::sqrt(noise2[c]));
-  }
-  surprise.square = missed * missed - missed_noise2;
-  return fit;
+          float(kShapePerSurprise * std::sqrt(std::max(0.0, surprises[members[m].sample][c])));
 }
 
 CellFit::Reader::Reader(const CellFit& fit) : fit_(fit), taken_(std::numeric_limits<float>::infinity()) {}
@@ -212,7 +247,7 @@ void CellFit::Reader::expect(std::span<const Vec3f> positions) {
   Vec3f low(std::numeric_limits<float>::infinity()), high = -low;
   for (const Vec3f& position : positions)
     low = component_min(low, position), high = component_max(high, position);
-  const float beyond = length(high - low) * .5f / fit_.spacing_ + kRounding;
+  const float beyond = length(high - low) * .5f / fit_.places_->spacing + kRounding;
   if (beyond <= kFarthestTaken) take_around((low + high) * .5f, beyond);
 }
 
@@ -220,13 +255,15 @@ void CellFit::Reader::expect(std::span<const Vec3f> positions) {
 void CellFit::Reader::take_around(const Vec3f& position, float beyond) {
   taken_ = position, beyond_ = beyond;
   near_.clear();
-  const float radius = (kBlendRadius + beyond + kRounding) * fit_.spacing_, radius2 = radius * radius;
-  const std::span<const NearestSample::Member> members = fit_.middles_.members();
-  fit_.middles_.for_near(position, radius, [&](const NearestSample::Member& member) {
+  const float radius = (kBlendRadius + beyond + kRounding) * fit_.places_->spacing, radius2 = radius * radius;
+  const std::span<const NearestSample::Member> members = fit_.places_->middles.members();
+  fit_.places_->middles.for_near(position, radius, [&](const NearestSample::Member& member) {
     const Vec3f apart = member.position - position;
     if (dot(apart, apart) < radius2) near_.push_back(std::uint32_t(&member - members.data()));
   });
   fours_.assign((near_.size() + 3) / 4, {});  // those past the last have no normal: their weight is 0
+  weighed_.resize(fours_.size());
+  blended_.resize(4 * fours_.size() + 1);
   for (std::size_t i = 0; i < near_.size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) {
       fours_[i / 4].middle[axis][i % 4] = members[near_[i]].position[axis];
@@ -235,37 +272,44 @@ void CellFit::Reader::take_around(const Vec3f& position, float beyond) {
 }
 
 CellFit::Value CellFit::Reader::at(const Vec3f& position, const Vec3f& normal) {
-  const float per_spacing = 1 / fit_.spacing_;
+  const float per_spacing = 1 / fit_.places_->spacing;
   const Vec3f moved = (position - taken_) * per_spacing;
   if (!(dot(moved, moved) <= beyond_ * beyond_)) take_around(position, kTakenBeyond);
   constexpr float kPerRadius2 = 1 / (kBlendRadius * kBlendRadius);
-  Channels value{}, noise{}, shape{};
-  float weights = 0;
+  std::size_t count = 0;
   for (std::size_t four = 0; four < fours_.size(); ++four) {
     const auto& [middle, other] = fours_[four];
     const Four x = (position.x - middle[0]) * per_spacing, y = (position.y - middle[1]) * per_spacing,
                z = (position.z - middle[2]) * per_spacing;
     const Four left = 1 - (x * x + y * y + z * z) * kPerRadius2,
                turned = other[0] * normal.x + other[1] * normal.y + other[2] * normal.z - kLeastCosine;
-    const Four weight4 = left * left * turned;
-    for (int lane = 0; lane < 4; ++lane) {
-      if (!(left[lane] > 0 && turned[lane] > 0)) continue;
-      const Fit& fit = fit_.fits_[near_[4 * four + std::size_t(lane)]];
-      const Vec3f apart{x[lane], y[lane], z[lane]};
-      const float weight = weight4[lane], u = dot(apart, fit.along_u), v = dot(apart, fit.along_v);
-      const auto& t = fit.terms;
-      value += (t[0] + t[1] * u + t[2] * v + t[3] * (u * u) + t[4] * (u * v) + t[5] * (v * v)) * weight;
-      noise += fit.noise * weight;
-      shape += fit.shape * weight;
-      weights += weight;
+    weighed_[four] = {{x, y, z}, left * left * turned};
+    const auto counts = (left > 0) & (turned > 0);  // -1 or 0
+    for (std::size_t lane = 0; lane < 4; ++lane) {  // without a branch, which would be a guess
+      blended_[count] = std::uint32_t(4 * four + lane);
+      count += std::size_t(-counts[lane]);
     }
+  }
+  Channels value{}, noise{}, shape{};
+  float weights = 0;
+  for (const std::uint32_t i : std::span(blended_).first(count)) {
+    const auto& [from, weight4] = weighed_[i / 4];
+    const std::size_t lane = i % 4;
+    const Fit& fit = fit_.fits_[near_[i]];
+    const Vec3f apart{from[0][lane], from[1][lane], from[2][lane]};
+    const float weight = weight4[lane], u = dot(apart, fit.along_u), v = dot(apart, fit.along_v);
+    const auto& t = fit.terms;
+    value += (t[0] + t[1] * u + t[2] * v + t[3] * (u * u) + t[4] * (u * v) + t[5] * (v * v)) * weight;
+    noise += fit.noise * weight;
+    shape += fit.shape * weight;
+    weights += weight;
   }
   if (weights > 0) {
     value /= weights;
     noise *= kBlendedNoise / weights;
     shape /= weights;
   } else if (!fit_.fits_.empty()) {
-    const Fit& fit = fit_.fits_[fit_.places_[fit_.middles_.at(position, normal)]];
+    const Fit& fit = fit_.fits_[fit_.places_->of_sample[fit_.places_->middles.at(position, normal)]];
     value = fit.terms[0], noise = fit.noise, shape = fit.shape;
   }
   return {component_max(rgb_of(value), RgbF{}), rgb_of(noise), rgb_of(shape)};

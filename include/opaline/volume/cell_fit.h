@@ -4,12 +4,50 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "opaline/volume/nearest_sample.h"
 
 namespace opaline {
+
+/// What each cell's quadratic takes of the means around it. It depends on where the cells lie alone, so fits to other
+/// means of the same cells can share it; 700 bytes a cell.
+class CellWeights {
+ public:
+  explicit CellWeights(std::span<const SurfaceSample> samples);
+
+ private:
+  friend class CellFit;
+  /// Where the cells lie.
+  struct Places {
+    explicit Places(std::span<const SurfaceSample> samples);
+    NearestSample middles;
+    std::vector<std::uint32_t> of_sample;  ///< its place among middles.members()
+    float spacing = 1;                     ///< root of the cells' mean area, mm
+  };
+  struct Frame {
+    Vec3f along_u, along_v;
+    float moment;  ///< mean of u^2 and of v^2 over the cell, spacings
+  };
+  struct Neighbour {
+    std::uint32_t sample;
+    float closeness;  ///< weight with which its surprise counts here
+  };
+  /// What kChunk cells take, in the order of their places.
+  struct Chunk {
+    std::vector<Frame> frames;                ///< one a cell
+    std::vector<std::uint32_t> ends;          ///< of each cell's neighbours
+    std::vector<Neighbour> neighbours;        ///< those of a cell after those of the one before
+    std::vector<std::array<float, 6>> terms;  ///< one a neighbour: of the quadratic, for a mean of 1 there
+  };
+  static Chunk chunk_of(const Places& places, std::span<const SurfaceSample> samples, std::size_t begin,
+                        std::size_t end);
+
+  std::shared_ptr<const Places> places_;
+  std::vector<Chunk> chunks_;
+};
 
 /// Around each cell a quadratic of the place in its tangent plane is fitted to the means of the cells near it; at a
 /// point the fits of the cells around are blended. A quadratic field on a plane comes out exactly. All is linear
@@ -18,6 +56,8 @@ class CellFit {
  public:
   /// in    means, errors: of the samples' cells, one each; errors: standard, independent of each other
   CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> means, std::span<const RgbF> errors);
+  /// The same, bit for bit, by weights of these samples.
+  CellFit(const CellWeights& weights, std::span<const RgbF> means, std::span<const RgbF> errors);
 
   struct Value {
     RgbF value;  ///< >= 0
@@ -29,6 +69,10 @@ class CellFit {
     typedef float Four __attribute__((vector_size(16)));
     struct FourCells {
       std::array<Four, 3> middle, normal;
+    };
+    struct FourWeights {
+      std::array<Four, 3> apart;  // of the point from their middles, spacings
+      Four weight;
     };
 
    public:
@@ -43,10 +87,12 @@ class CellFit {
     void take_around(const Vec3f& position, float beyond);
 
     const CellFit& fit_;
-    Vec3f taken_;                      // the place whose cells are taken, and of points so far off:
-    float beyond_ = 0;                 // spacings
-    std::vector<std::uint32_t> near_;  // these cells, by their places
-    std::vector<FourCells> fours_;
+    Vec3f taken_;                         // the place whose cells are taken, and of points so far off:
+    float beyond_ = 0;                    // spacings
+    std::vector<std::uint32_t> near_;     // these cells, by their places
+    std::vector<FourCells> fours_;        // the same
+    std::vector<FourWeights> weighed_;    // of a point: scratch of `at`
+    std::vector<std::uint32_t> blended_;  // those of near_ that it is blended from: the same
   };
   Value at(const Vec3f& position, const Vec3f& normal) const { return Reader(*this).at(position, normal); }
 
@@ -57,31 +103,16 @@ class CellFit {
     std::array<Channels, 6> terms;  ///< of 1, u, v, u^2, u v, v^2; u, v: spacings
     Channels noise, shape;
   };
-  /// What a cell has to do with another one.
-  struct Share {
-    std::uint32_t sample;
-    float weight;
-  };
-  /// What is fitted to.
-  struct Cell {
-    RgbF mean, error;
-    float area;
-  };
-  /// What is known of a cell beside its fit while that of all is made.
-  struct Surprise {
-    Rgb square{};
-    std::vector<Share> near;  ///< the cells over which it is averaged
-  };
-  template <class Use>
-  void for_alike(const Vec3f& position, const Vec3f& normal, float spacings, const Use& use) const;
-  Fit fitted(const NearestSample::Member& own, std::span<const Cell> cells, Surprise& surprise) const;
+
+  void fit(const CellWeights::Chunk& chunk, std::size_t begin, std::span<const RgbF> means,
+           std::span<const RgbF> errors, std::span<Rgb> surprises);
+  void smooth(std::span<const CellWeights::Chunk> chunks, std::vector<Rgb> surprises);
+
   static Channels channels_of(const RgbF& rgb) { return Channels{rgb[0], rgb[1], rgb[2], 0}; }
   static RgbF rgb_of(const Channels& channels) { return {channels[0], channels[1], channels[2]}; }
 
-  NearestSample middles_;              ///< of the cells
-  std::vector<Fit> fits_;              ///< one for each of its members
-  std::vector<std::uint32_t> places_;  ///< of the cells there
-  float spacing_ = 1;
+  std::shared_ptr<const CellWeights::Places> places_;
+  std::vector<Fit> fits_;  ///< one a cell, in the order of their places
 };
 
 }  // namespace opaline

@@ -3,15 +3,31 @@
 
 #include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 namespace opaline {
 namespace {
 
+constexpr std::size_t kBlocks = 16;
+
 /// Hits that lie close together: of 4 x 4 pixels of a tile of 16 x 16, whose rays go row by row.
-std::array<std::vector<std::uint32_t>, 16> blocks_of(const SurfaceHits& hits) {
-  std::array<std::vector<std::uint32_t>, 16> blocks;
-  for (std::uint32_t i = 0; i < hits.rays.size(); ++i)
-    blocks[hits.rays[i] / 64 % 4 * 4 + hits.rays[i] / 4 % 4].push_back(i);
+std::size_t block_of(std::uint32_t ray) {
+  return ray / 64 % 4 * 4 + ray / 4 % 4;
+}
+
+struct Blocks {
+  std::vector<std::uint32_t> hits;               ///< those of one block after those of the one before
+  std::array<std::size_t, kBlocks + 1> first{};  ///< of each
+};
+
+Blocks blocks_of(const SurfaceHits& hits) {
+  Blocks blocks;
+  blocks.hits.resize(hits.rays.size());
+  for (const std::uint32_t ray : hits.rays) ++blocks.first[block_of(ray) + 1];
+  for (std::size_t b = 1; b <= kBlocks; ++b) blocks.first[b] += blocks.first[b - 1];
+  auto next = blocks.first;
+  for (std::uint32_t i = 0; i < hits.rays.size(); ++i) blocks.hits[next[block_of(hits.rays[i])]++] = i;
   return blocks;
 }
 
@@ -24,7 +40,9 @@ LeavingLight VolumeField::at(const SurfaceHits& hits, PointIrradianceInput, cons
   light.error.resize(hits.points.size());
   CellFit::Reader reader(*body_.volume_fit);
   std::vector<Vec3f> positions;
-  for (const std::vector<std::uint32_t>& block : blocks_of(hits)) {
+  const Blocks blocks = blocks_of(hits);
+  for (std::size_t b = 0; b < kBlocks; ++b) {
+    const auto block = std::span(blocks.hits).subspan(blocks.first[b], blocks.first[b + 1] - blocks.first[b]);
     positions.clear();
     for (const std::uint32_t hit : block) positions.push_back(hits.points[hit].position);
     reader.expect(positions);
