@@ -25,7 +25,7 @@ Json settings_in_use(const Scene& scene, const World& world, std::span<const Bod
                               {"samples", group.surface.samples.size()},
                               {"spacing_mm", group.surface.spacing() * world.unit},
                               {"profile", name_of(model.profile.kind)}});
-    const std::optional<double>& error = scene.settings.method == Method::volume_diffusion
+    const std::optional<double>& error = group.plan.method == Method::volume_diffusion
                                              ? model.expected_error_of_diffusion
                                              : model.expected_error;
     if (error && scene.settings.method != Method::volume)

@@ -42,9 +42,9 @@ std::string lights_text(const std::vector<Light>& lights) {
 }
 
 /// With methods that have one: profile and error, a row each.
-void print_model(Method method, const GroupPlan& group) {
-  if (!has_cells(method)) print_row("", "profile " + model_text(group.model));
-  const std::string error = model_error_text(group.model, method);
+void print_model(const GroupPlan& group) {
+  if (!has_cells(group.method)) print_row("", "profile " + model_text(group.model));
+  const std::string error = model_error_text(group.model, group.method);
   if (!error.empty()) print_row("", error);
 }
 
@@ -52,7 +52,7 @@ void print_group(const Scene& scene, const GroupPlan& group) {
   print_row("translucent",
             fmt::format("{} in {}: {:.4g} mm^2, mean free path {:.4g} mm (its smallest channel)", group.name,
                         scene.media[group.medium].name, group.area, group.smallest_mean_free_path));
-  print_model(scene.settings.method, group);
+  print_model(group);
   if (!has_samples(scene.settings.method)) return;
   print_row("", fmt::format("{}, {:.4g} mm apart: {}", counted(group.samples, "sample"), group.spacing,
                             group.reason));

@@ -22,11 +22,12 @@ constexpr int kMostSteps = 6, kMostLightSamples = 4096;
 constexpr double kProbePixels = 64 * 64;
 constexpr std::size_t kEnoughPoints = 1500;
 
-/// Of the worst body; none where a mesh is open, or so thin that light crosses it almost without scattering.
+/// Of the worst body; none where a mesh is open, or so thin that light crosses it almost without scattering, or so large
+/// that it has no cells.
 std::optional<double> model_error(const Plan& plan) {
   double worst = 0;
   for (const GroupPlan& group : plan.groups) {
-    if (!group.model.expected_error_of_diffusion ||
+    if (group.method != Method::volume_diffusion || !group.model.expected_error_of_diffusion ||
         group.thickness < kThinnest * group.smallest_mean_free_path)
       return {};
     worst = std::max(worst, kModelSafety * *group.model.expected_error_of_diffusion);
@@ -37,7 +38,8 @@ std::optional<double> model_error(const Plan& plan) {
 /// The edge of the smallest cells of all bodies, mm.
 double smallest_cell(const Plan& plan) {
   double smallest = INFINITY;
-  for (const GroupPlan& group : plan.groups) smallest = std::min(smallest, group.cell);
+  for (const GroupPlan& group : plan.groups)
+    if (group.method == Method::volume_diffusion) smallest = std::min(smallest, group.cell);
   return smallest;
 }
 

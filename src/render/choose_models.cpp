@@ -104,13 +104,15 @@ std::string model_error_text(const BodyModel& model, Method method) {
   const auto percent = [](double error) {
     return fmt::format("{:.{}f} %", 100 * error, error < .0995 ? 1 : 0);
   };
-  if (method == Method::volume || method == Method::lambert || !model.expected_error_of_diffusion) return {};
-  const std::string of_diffusion = percent(*model.expected_error_of_diffusion),
-                    meaning = " off random walks is expected, rms of the worst channel";
-  if (method == Method::volume_diffusion) return "about " + of_diffusion + meaning;
-  if (!model.expected_error) return {};
-  return fmt::format("about {}{}; --method volume_diffusion: {}", percent(*model.expected_error), meaning,
-                     of_diffusion);
+  if (method == Method::volume || method == Method::lambert) return {};
+  const std::optional<double>& own =
+      method == Method::volume_diffusion ? model.expected_error_of_diffusion : model.expected_error;
+  if (!own) return {};
+  std::string text =
+      fmt::format("about {} off random walks is expected, rms of the worst channel", percent(*own));
+  if (method != Method::volume_diffusion && model.expected_error_of_diffusion)
+    text += "; --method volume_diffusion: " + percent(*model.expected_error_of_diffusion);
+  return text;
 }
 
 BodyModel planned_model(const Scene& scene, const GroupPlan& group) {

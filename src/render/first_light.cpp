@@ -102,7 +102,8 @@ std::vector<Body> draft_groups(const PrecomputeInput& input) {
   const SurfaceTextures textures(input.scene, input.world);
   std::vector<Body> groups;
   for (std::size_t g = 0; g < input.plan.groups.size(); ++g) {
-    const GroupPlan& plan = input.plan.groups[g];
+    GroupPlan plan = input.plan.groups[g];
+    plan.method = Method::hierarchical;
     const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
     SurfaceSamples surface =
         draft_samples(input.world, plan.meshes, std::max(kFewest, plan.samples / kFewer));

@@ -124,13 +124,23 @@ double shortest_fading(Medium medium) {
   return shortest;
 }
 
+constexpr double kMostCells = 1.2e6;  // of volume_diffusion in a body: what memory should hold
+constexpr double kTooWide = 3;        // mean free paths, of a cell
+
+/// Whether cells that tell where light goes would be too many: the surface is then flat on the scale of a mean free path,
+/// and a radial profile is right.
+bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group) {
+  const double widest = std::max(kTooWide, settings.cell_size) * group.smallest_mean_free_path;
+  return widest > 0 && expected_cells(group.area, widest) > kMostCells;
+}
+
 // The cells of volume_diffusion: as asked for, but smaller where light fades within them, no more than memory should
 // hold, and several across a thin body.
 void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
-  constexpr double kMostCells = 1.2e6, kAcrossThin = 4, kSmallest = .25;
-  constexpr double kFewestFaces = 60;           // of cells, on the surface
-  constexpr double kTooWide = 3, kTooThin = 3;  // mean free paths
-  constexpr double kPerFading = .45;            // of settings.cell_size: measured, src/volume/README.md
+  constexpr double kAcrossThin = 4, kSmallest = .25;
+  constexpr double kFewestFaces = 60;  // of cells, on the surface
+  constexpr double kTooThin = 3;       // mean free paths
+  constexpr double kPerFading = .45;   // of settings.cell_size: measured, src/volume/README.md
   const double length = group.smallest_mean_free_path;
   group.cell =
       scene.settings.cell_size * std::min(length, kPerFading * shortest_fading(scene.media[group.medium]));
@@ -141,11 +151,10 @@ void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>
       std::min(kMostCells / expected_cells(1, 1), double(scene.settings.max_samples) / kCutSamplesPerFace);
   group.cell = std::max(group.cell, std::sqrt(group.area / most_faces));
   if (group.cell > std::max(kTooWide, scene.settings.cell_size) * length)
-    warnings.push_back(
-        fmt::format("{}: light leaves within {:.3g} mm and cells smaller than {:.3g} mm would be too many; "
-                    "on its scale the "
-                    "surface is flat: --method hierarchical has no such limit",
-                    group.name, length, group.cell));
+    warnings.push_back(fmt::format(
+        "{}: light leaves within {:.3g} mm and cells smaller than {:.3g} mm would be too many for "
+        "settings.max_samples",
+        group.name, length, group.cell));
   if (group.thickness > 0 && group.thickness < kTooThin * length)
     warnings.push_back(
         fmt::format("{}: it is {:.3g} mean free paths thick in the mean; light crosses it almost without "
@@ -208,9 +217,11 @@ constexpr std::size_t kBytesOfCutSample = 640;
 // sums.
 constexpr std::size_t kBytesOfWalkedCell = 300, kBytesOfWalkedChannel = 64, kBytesOfWalkSums = 24;
 
-std::string shading_stage(const Settings& settings) {
+std::string shading_stage(const Settings& settings, bool has_tree) {
   if (settings.method == Method::lambert) return "shading: lambert";
   if (settings.method == Method::hierarchical) return "shading: hierarchical";
+  if (settings.method == Method::volume_diffusion && has_tree)
+    return "shading: cells, interpolated, and hierarchical";
   if (has_cells(settings.method)) return "shading: cells, interpolated";
   if (settings.until_error)
     return fmt::format("shading: direct, until the noise is {:.3g} %", 100 * *settings.until_error);
@@ -263,6 +274,8 @@ std::string irradiance_stage(const Scene& scene, std::span<const Light> traced) 
 
 void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) {
   const Method method = scene.settings.method;
+  const bool has_tree = std::ranges::any_of(
+      plan.groups, [](const GroupPlan& group) { return group.method == Method::hierarchical; });
   if (has_samples(method) && !plan.groups.empty()) {
     plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
     if (method == Method::volume) {
@@ -271,13 +284,20 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
       plan.stages.push_back(irradiance_stage(scene, lights));
     }
     for (const GroupPlan& group : plan.groups)
-      if (method == Method::volume_diffusion)
+      if (group.method == Method::volume_diffusion)
         plan.stages.push_back(
             fmt::format("diffusion: about {:.2g} cells in {}, {:.3g} mm at the surface: {:.3g} mean "
                         "free paths",
                         expected_cells(group.area, group.cell), group.name, group.cell,
                         group.cell / group.smallest_mean_free_path));
-    if (method == Method::hierarchical) {
+      else if (method == Method::volume_diffusion)
+        plan.stages.push_back(
+            fmt::format("{} by a radial profile: it takes more than {:.2g} cells of {:.3g} mean free paths, "
+                        "and its surface is flat "
+                        "on the scale of one",
+                        group.name, kMostCells, std::max(kTooWide, scene.settings.cell_size)));
+    if (std::ranges::any_of(plan.groups,
+                            [](const GroupPlan& g) { return g.method == Method::hierarchical; })) {
       plan.stages.push_back("octree");
       plan.stages.push_back(evaluation_stage(scene.settings));
     }
@@ -288,7 +308,7 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
             ? "bounces: light between things, once, by a ray from each place where light enters"
             : "bounces: light between things, once, gathered at the samples and at 64 x 64 places of the "
               "picture");
-  plan.stages.push_back(shading_stage(scene.settings));
+  plan.stages.push_back(shading_stage(scene.settings, has_tree));
 }
 
 // Measured (world.h): a quick build saves .3 us a triangle and costs 5 ns a ray of the picture, which lie
@@ -353,7 +373,12 @@ Plan make_plan(const Scene& scene, const World& world) {
   plan.bytes += texture_bytes(scene);
   std::size_t samples = 0;
   for (GroupPlan& group : plan.groups) {
-    if (scene.settings.method == Method::volume_diffusion) {
+    group.method = scene.settings.method;
+    if (is_too_large_for_cells(scene.settings, group)) {
+      group.model.expected_error_of_diffusion.reset();
+      if (group.method == Method::volume_diffusion) group.method = Method::hierarchical;
+    }
+    if (group.method == Method::volume_diffusion) {
       choose_cells(scene, group, plan.warnings);
       choose_cut(scene.settings, group, plan.warnings);
       const double in_wires =
@@ -364,10 +389,10 @@ Plan make_plan(const Scene& scene, const World& world) {
       continue;
     }
     choose_samples(scene, group, plan.warnings);
-    if (scene.settings.method == Method::volume)
+    if (group.method == Method::volume)
       plan.bytes += group.samples *
                     (191 + kBytesOfWalkedCell + 6 * kBytesOfWalkedChannel + lights.size() * kBytesOfWalkSums);
-    if (scene.settings.method != Method::hierarchical) continue;
+    if (group.method != Method::hierarchical) continue;
     warn_of_near_lights(scene, world, group, plan.warnings);
     warn_of_thin_body(group, plan.warnings);
     // Measured at 1 and 10 million: samples, weights and tree while its nodes are written.

@@ -37,11 +37,11 @@ std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size
                                          std::span<const SurfaceSample> samples,
                                          std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
-  const DiffuseProfile profile =
-      make_diffuse_profile(input.scene.media[input.plan.groups[group].medium], input.world.unit);
+  const GroupPlan& plan = input.plan.groups[group];
+  const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
   return compute_irradiance({input.rays, samples, lights, profile.eta, settings.light_samples,
                              irradiance_seed(settings, group), input.monitor,
-                             settings.method == Method::volume_diffusion});
+                             plan.method == Method::volume_diffusion});
 }
 
 std::vector<Light> recentred_lights(const Scene& scene, const World& world) {

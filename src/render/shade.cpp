@@ -35,7 +35,8 @@ Appearance opaque_appearance(const Shape& shape) {
   return appearance;
 }
 
-Appearance mesh_appearance(const Scene& scene, const Shape& shape) {
+/// follows_light: whether its light is followed inside, and so leaves by angle as it does a half space
+Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool follows_light) {
   if (!shape.medium) return opaque_appearance(shape);
   const Medium& medium = scene.media[*shape.medium];
   const DiffuseProfile profile = make_diffuse_profile(medium);
@@ -43,7 +44,7 @@ Appearance mesh_appearance(const Scene& scene, const Shape& shape) {
                         true};
   roughen(appearance, medium.specular_roughness, medium.roughness_texture.has_value(), medium.grain,
           medium.eta);
-  if (has_cells(scene.settings.method))
+  if (follows_light)
     appearance.exit = std::make_shared<const AngularExit>(reduced_absorption(medium), medium.eta);
   return appearance;
 }
@@ -108,7 +109,11 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
   for (const Light& light : lights_) emitted_.emplace_back(emission(light));
   for (const Light& light : lights_)
     if (is_visible(light)) (extent(light).center ? emitters_ : surroundings_).push_back(light);
-  for (const Shape& shape : input.scene.shapes) appearances_.push_back(mesh_appearance(input.scene, shape));
+  std::vector<bool> follows_light(input.scene.shapes.size());
+  for (const Body& body : input.groups)
+    for (const std::uint32_t mesh : body.plan.meshes) follows_light[mesh] = has_cells(body.plan.method);
+  for (std::size_t i = 0; i < input.scene.shapes.size(); ++i)
+    appearances_.push_back(mesh_appearance(input.scene, input.scene.shapes[i], follows_light[i]));
   light_samples_ = light_samples_of_ray(input.scene);
   if (input.view != nullptr && can_hold_coats())
     for (const Light& light : lights_) unit_lights_.push_back(with_emission(light, {1, 1, 1}));

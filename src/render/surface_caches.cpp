@@ -54,13 +54,16 @@ std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::sp
                                            std::size_t pictures) {
   const EvaluatorKind evaluator = input.scene.settings.evaluator;
   std::vector<std::size_t> most(groups.size());
+  const auto may_have_one = [&](const Body& body) {
+    return body.plan.method == Method::hierarchical && body.entering.empty();
+  };
   if (evaluator == EvaluatorKind::surface_cache)
     for (std::size_t g = 0; g < groups.size(); ++g)
-      if (groups[g].entering.empty()) most[g] = most_wanted_places(groups[g].plan, input.world);
+      if (may_have_one(groups[g])) most[g] = most_wanted_places(groups[g].plan, input.world);
   if (groups.empty() || evaluator != EvaluatorKind::automatic) return most;
   const std::vector<double> points = expected_points(input);
   for (std::size_t g = 0; g < groups.size(); ++g)
-    if (groups[g].entering.empty())
+    if (may_have_one(groups[g]))
       for (const std::uint32_t m : groups[g].plan.meshes)
         most[g] += std::size_t(kMost * double(pictures) * points[m]);
   return most;

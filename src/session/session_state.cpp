@@ -121,11 +121,13 @@ void Session::State::anchor(Scene scene, Monitor* monitor) {
   if (places_samples) scene.settings.method = Method::hierarchical;
   edit(std::move(scene));
   reference_ = plan_.groups;
-  if (!places_samples) return;
+  const auto has_placed = [](const GroupPlan& group) { return group.method == Method::hierarchical; };
+  if (!has_samples(method) || std::ranges::none_of(plan_.groups, has_placed)) return;
   arrange_bodies();
   update_rays();
   for (std::size_t g = 0; g < bodies_.size(); ++g)
-    update_samples(bodies_[g], keys_[g], {scene_, *world_, *rays_, plan_, monitor}, g);
+    if (has_placed(bodies_[g].plan))
+      update_samples(bodies_[g], keys_[g], {scene_, *world_, *rays_, plan_, monitor}, g);
   anchored_ = true;
 }
 
@@ -166,6 +168,16 @@ void bound_far_side(Body& body) {
   if (body.kernel.far_side != nullptr && body.octree.normal_cones.empty()) bound_normals(body.octree);
 }
 
+/// Calls work(body, known, index) for the bodies of a method, as one stage; without such bodies there is none.
+void Session::State::each_of(Method method, const char* stage, const BodyWork& work) {
+  const auto is_of = [&](const Body& body) { return body.plan.method == method; };
+  if (std::ranges::none_of(bodies_, is_of)) return;
+  const Stopwatch watch;
+  for (std::size_t g = 0; g < bodies_.size(); ++g)
+    if (is_of(bodies_[g])) work(bodies_[g], keys_[g], g);
+  costs_.push_back(watch.cost(stage));
+}
+
 void Session::State::prepare(Monitor* monitor) {
   if (prepared_) return;
   prepare_rays();
@@ -189,13 +201,15 @@ void Session::State::prepare(Monitor* monitor) {
   }
   each("irradiance",
        [&](Body& body, BodyKeys& known, std::size_t g) { update_lights(body, known, input, g, lights); });
-  if (scene_.settings.method == Method::volume_diffusion) {
-    each("diffusion",
-         [&](Body& body, BodyKeys& known, std::size_t) { update_diffusion(body, known, input, lights); });
-    prepared_ = true;
-    return;
-  }
-  each("octree", [&](Body& body, BodyKeys& known, std::size_t) {
+  each_of(Method::volume_diffusion, "diffusion",
+          [&](Body& body, BodyKeys& known, std::size_t) { update_diffusion(body, known, input, lights); });
+  update_sums(input, lights);
+  prepared_ = true;
+}
+
+/// Of the bodies whose exitance is a sum over samples: trees, kernels, bounced light, surface caches.
+void Session::State::update_sums(const PrecomputeInput& input, const std::vector<Light>& lights) {
+  each_of(Method::hierarchical, "octree", [&](Body& body, BodyKeys& known, std::size_t) {
     update_tree(body, known, lights);
     update_kernel(body, known);
   });
@@ -204,16 +218,15 @@ void Session::State::prepare(Monitor* monitor) {
     update_bounces(input, lights);
     costs_.push_back(watch.cost("bounces"));
   }
-  for (Body& body : bodies_) {
+  const std::vector<std::size_t> most = most_cache_places(input, bodies_, pictures_);
+  bool has_caches = false;
+  each_of(Method::hierarchical, "exitance", [&](Body& body, BodyKeys& known, std::size_t g) {
     bound_far_side(body);
     body.cloud = cloud_error(body, *world_, scene_);
-  }
-  const std::vector<std::size_t> most = most_cache_places(input, bodies_, pictures_);
-  each("exitance",
-       [&](Body& body, BodyKeys& known, std::size_t g) { update_exitance(body, known, input, most[g]); });
-  if (std::ranges::none_of(bodies_, [](const Body& body) { return body.surface_cache.has_value(); }))
-    costs_.pop_back();
-  prepared_ = true;
+    update_exitance(body, known, input, most[g]);
+    has_caches |= body.surface_cache.has_value();
+  });
+  if (!has_caches && !costs_.empty() && costs_.back().stage == "exitance") costs_.pop_back();
 }
 
 RenderResult Session::State::render(Monitor* monitor, const AfterTile& after_tile) {

@@ -2,6 +2,8 @@
 // What a session keeps, and how each part of it is brought up to date with the scene.
 #pragma once
 
+#include <functional>
+
 #include "opaline/session/session.h"
 #include "session/body_keys.h"
 #include "session/shape_key.h"
@@ -26,6 +28,9 @@ struct Session::State {
   void prepare(Monitor* monitor);
   RenderResult render(Monitor* monitor, const AfterTile& after_tile);
 
+  using BodyWork = std::function<void(Body& body, BodyKeys& known, std::size_t index)>;
+  void each_of(Method method, const char* stage, const BodyWork& work);
+  void update_sums(const PrecomputeInput& input, const std::vector<Light>& lights);
   bool is_needed() const { return has_samples(scene_.settings.method) && !plan_.groups.empty(); }
   void arrange_memories(const Scene& scene, const std::vector<StageKey>& sources);
   World loaded_world(const Scene& scene, const std::vector<StageKey>& sources,

@@ -73,7 +73,7 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
   key.add_array(std::span<const double>(geometry(light)));
   if (!is_delta(light))
     key.add(settings.light_samples).add(light_seed(irradiance_seed(settings, group), light));
-  if (settings.method == Method::volume_diffusion) key.add(std::string("geometric normals"));
+  if (plan.method == Method::volume_diffusion) key.add(std::string("geometric normals"));
   for (std::uint32_t m = 0; m < meshes.size(); ++m)
     if (may_shadow(meshes, m, plan, light, input.world.unit)) key.add(meshes[m].shape);
   return key.key();

@@ -44,7 +44,7 @@ Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_s
 
 std::unique_ptr<Field> make_field(const RenderInput& input, const Source& source,
                                   const SurfaceTextures& textures, std::span<const RgbF> albedos) {
-  if (source.group != nullptr && has_cells(input.scene.settings.method))
+  if (source.group != nullptr && has_cells(source.group->plan.method))
     return std::make_unique<VolumeField>(*source.group);
   if (source.group != nullptr) return std::make_unique<SampleField>(input, *source.group);
   if (source.entries != nullptr) return std::make_unique<DirectField>(*source.entries, textures, source.eta);
