@@ -46,6 +46,11 @@ void print_model(Method method, const GroupPlan& group) {
   if (!has_cells(method)) print_row("", "profile " + model_text(group.model));
   const std::string error = model_error_text(group.model, method);
   if (!error.empty()) print_row("", error);
+  constexpr double kWorthSaying = .02;
+  if (group.across_air > kWorthSaying)
+    print_row("", fmt::format("light jumps across the air between parts that face each other, {:.0f} % of "
+                              "what the profile carries; with --method volume_diffusion it does not",
+                              100 * group.across_air));
 }
 
 void print_group(const Scene& scene, const GroupPlan& group) {
@@ -96,6 +101,7 @@ Json group_json(const Scene& scene, const GroupPlan& group) {
           {"area_mm2", group.area},
           {"smallest_mean_free_path_mm", group.smallest_mean_free_path},
           {"model", model_json(group.model)},
+          {"across_air", group.across_air},
           {"spacing_mm", group.spacing},
           {"samples", group.samples},
           {"reason", group.reason}};

@@ -19,6 +19,7 @@
 #include "opaline/scene/names.h"
 #include "opaline/volume/volume_diffusion.h"
 #include "opaline/volume/volume_exitance.h"
+#include "render/across_air.h"
 #include "render/body_groups.h"
 #include "render/check_reach.h"
 #include "render/light_distance.h"
@@ -331,7 +332,12 @@ Plan make_plan(const Scene& scene, const World& world) {
   const std::vector<Light> lights = recentred_lights(scene, world);
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
-  for (GroupPlan& group : plan.groups) group.model = planned_model(scene, group);
+  const Method method = scene.settings.method;
+  for (GroupPlan& group : plan.groups) {
+    group.model = planned_model(scene, group);
+    if (method == Method::hierarchical || method == Method::direct)
+      group.across_air = share_across_air(world, group, make_diffuse_profile(scene.media[group.medium]));
+  }
   std::set<std::string> said;  // by the first of several shapes from one file
   for (const MeshReport& report : world.reports)
     for (const std::string& warning : report.warnings)

@@ -22,6 +22,7 @@ struct GroupPlan {
   double thickness = 0;               ///< mean, mm: twice the volume over the area; 0 if a mesh is open
   double alignment = 0;               ///< BodyShape::alignment
   BodyModel model = {};
+  double across_air = 0;               ///< share of what a radial kernel carries: share_across_air
   double smallest_mean_free_path = 0;  ///< over the channels that scatter, mm
   double spacing = 0;                  ///< sqrt(area / samples), mm
   std::size_t samples = 0;
