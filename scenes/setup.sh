@@ -16,9 +16,11 @@ build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev 
 # The pages of the view and of reports are tested in a browser, 98 MB to fetch and 300 MB on the disk.
 # shellcheck disable=SC2034
 test_packages=(libgtest-dev parallel clang-format chromium-headless-shell)
-# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. python3-venv: for Mitsuba.
+# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. python3-venv: for Mitsuba
+# and Blender, which needs the others.
 # shellcheck disable=SC2034
-long_test_packages=(assimp-testmodels python3-venv)
+long_test_packages=(assimp-testmodels python3-venv libvulkan1 libxrender1 libxi6 libxkbcommon0 libsm6 libgl1 libegl1
+  libxxf86vm1 libxfixes3)
 
 say() { printf 'opaline: %s\n' "$*"; }
 
@@ -93,6 +95,21 @@ fetch_mitsuba() {
     touch "$folder/done"
   else
     say "Mitsuba cannot be had from PyPI: the tests against it are skipped" >&2
+    rm -rf "$folder"
+  fi
+}
+
+# The program that writes many of the .glb files there are, for the slow tests that read one; the same holds.
+# bpy 4.5 is for Python 3.11, Debian 12's.
+fetch_blender() {
+  local folder=$root/build-blender
+  [[ ! -e $folder/done ]] || return 0
+  say "fetching Blender from PyPI (370 MB)"
+  if python3 -m venv "$folder" && "$folder/bin/python3" -m pip install --quiet 'bpy>=4.5,<4.6' &&
+    "$folder/bin/python3" -c 'import bpy'; then
+    touch "$folder/done"
+  else
+    say "Blender cannot be had from PyPI: the tests against it are skipped" >&2
     rm -rf "$folder"
   fi
 }
