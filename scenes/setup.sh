@@ -86,6 +86,27 @@ fetch_bunny() {
     bff773d28c62e80187b2dfa8c6c8cc771a4c7707ddcdcf2e515913d322d1f548
 }
 
+# A file of an archive that is a file of a Debian package, as fetch.
+# in    as fetch, then the archive's path in the package and its sha256
+fetch_packed() (
+  package=$1 size=$2 path=$3 sha256=$4 archive=$5 archive_sha256=$6
+  file=$root/scenes/assets/${path##*/}
+  is_right() { [[ -f $1 ]] && sha256sum --status --check <<<"$sha256  $1"; }
+  if is_right "$file"; then exit 0; fi
+  packed=$root/scenes/assets/${archive##*/}
+  fetch "$package" "$size" "$archive" "$archive_sha256"
+  tar -xzOf "$packed" "$path" >"$file.tmp"
+  is_right "$file.tmp" || fail 3 "${file##*/} of $package is not the one the scenes were made for (sha256)"
+  mv -f "$file.tmp" "$file"
+  rm -f "$packed"
+)
+
+fetch_mannequin() {
+  fetch_packed libcgal-demo "24 MB" data/meshes/mannequin-devil.off \
+    9424b7132b58766984051fb7757543e88972f91fe7e9565d4e5b715b204f74a5 ./usr/share/doc/libcgal-dev/data.tar.gz \
+    027b0920ebb9d396e8b99704f84ce7a417e37c364bea87a2b24bdeab02df76ab
+}
+
 # An independent path tracer, for the slow tests that compare with it; they are skipped where it cannot be had.
 fetch_mitsuba() {
   local folder=$root/build-mitsuba
