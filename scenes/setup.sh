@@ -16,9 +16,11 @@ build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev 
 # The pages of the view and of reports are tested in a browser, 98 MB to fetch and 300 MB on the disk.
 # shellcheck disable=SC2034
 test_packages=(libgtest-dev parallel clang-format chromium-headless-shell)
-# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. python3-venv: for Mitsuba.
+# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. python3-venv: for Mitsuba
+# and Blender, which needs the others.
 # shellcheck disable=SC2034
-long_test_packages=(assimp-testmodels python3-venv)
+long_test_packages=(assimp-testmodels python3-venv libvulkan1 libxrender1 libxi6 libxkbcommon0 libsm6 libgl1 libegl1
+  libxxf86vm1 libxfixes3)
 
 say() { printf 'opaline: %s\n' "$*"; }
 
@@ -84,6 +86,27 @@ fetch_bunny() {
     bff773d28c62e80187b2dfa8c6c8cc771a4c7707ddcdcf2e515913d322d1f548
 }
 
+# A file of an archive that is a file of a Debian package, as fetch.
+# in    as fetch, then the archive's path in the package and its sha256
+fetch_packed() (
+  package=$1 size=$2 path=$3 sha256=$4 archive=$5 archive_sha256=$6
+  file=$root/scenes/assets/${path##*/}
+  is_right() { [[ -f $1 ]] && sha256sum --status --check <<<"$sha256  $1"; }
+  if is_right "$file"; then exit 0; fi
+  packed=$root/scenes/assets/${archive##*/}
+  fetch "$package" "$size" "$archive" "$archive_sha256"
+  tar -xzOf "$packed" "$path" >"$file.tmp"
+  is_right "$file.tmp" || fail 3 "${file##*/} of $package is not the one the scenes were made for (sha256)"
+  mv -f "$file.tmp" "$file"
+  rm -f "$packed"
+)
+
+fetch_mannequin() {
+  fetch_packed libcgal-demo "24 MB" data/meshes/mannequin-devil.off \
+    9424b7132b58766984051fb7757543e88972f91fe7e9565d4e5b715b204f74a5 ./usr/share/doc/libcgal-dev/data.tar.gz \
+    027b0920ebb9d396e8b99704f84ce7a417e37c364bea87a2b24bdeab02df76ab
+}
+
 # An independent path tracer, for the slow tests that compare with it; they are skipped where it cannot be had.
 fetch_mitsuba() {
   local folder=$root/build-mitsuba
@@ -93,6 +116,21 @@ fetch_mitsuba() {
     touch "$folder/done"
   else
     say "Mitsuba cannot be had from PyPI: the tests against it are skipped" >&2
+    rm -rf "$folder"
+  fi
+}
+
+# The program that writes many of the .glb files there are, for the slow tests that read one; the same holds.
+# bpy 4.5 is for Python 3.11, Debian 12's.
+fetch_blender() {
+  local folder=$root/build-blender
+  [[ ! -e $folder/done ]] || return 0
+  say "fetching Blender from PyPI (370 MB)"
+  if python3 -m venv "$folder" && "$folder/bin/python3" -m pip install --quiet 'bpy>=4.5,<4.6' &&
+    "$folder/bin/python3" -c 'import bpy'; then
+    touch "$folder/done"
+  else
+    say "Blender cannot be had from PyPI: the tests against it are skipped" >&2
     rm -rf "$folder"
   fi
 }

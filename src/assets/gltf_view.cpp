@@ -81,6 +81,9 @@ class LightTranslator {
 
   void add_cone(Json& json, const std::string& label) {
     double outer = light_.spot.outerConeAngle * kDegrees, inner = light_.spot.innerConeAngle * kDegrees;
+    // A hard rim, which glTF does not allow and Blender's exporter writes as it is: the narrowest that fades.
+    constexpr double kHardRim = .999, kRounding = 1e-6;
+    if (inner > kHardRim * outer && inner <= (1 + kRounding) * outer) inner = kHardRim * outer;
     if (!(outer > 0 && outer <= 90 && inner >= 0 && inner < outer)) {
       scene_.not_carried.push_back(
           label +

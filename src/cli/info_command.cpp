@@ -12,7 +12,7 @@ void info_command(const InfoArguments& arguments) {
   const World world = make_world(scene);
   choose_models(scene, world);
   const Plan plan = make_plan(scene, world);
-  print_plan(arguments.log, scene, plan);
+  print_plan(arguments.log, scene, world, plan);
   print_plates(arguments.log, compare_plates(scene, plan));
   if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
 }

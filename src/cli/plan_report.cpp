@@ -6,6 +6,7 @@
 #include "cli/report.h"
 #include "opaline/core/units.h"
 #include "opaline/lights/light.h"
+#include "opaline/render/across_air.h"
 #include "opaline/scene/names.h"
 
 namespace opaline {
@@ -42,17 +43,22 @@ std::string lights_text(const std::vector<Light>& lights) {
 }
 
 /// With methods that have one: profile and error, a row each.
-void print_model(const GroupPlan& group) {
+void print_model(const GroupPlan& group, double across_air) {
   if (!has_cells(group.method)) print_row("", "profile " + model_text(group.model));
   const std::string error = model_error_text(group.model, group.method);
   if (!error.empty()) print_row("", error);
+  constexpr double kWorthSaying = .02;
+  if (across_air > kWorthSaying)
+    print_row("", fmt::format("light jumps across the air between parts that face each other, {:.0f} % of "
+                              "what the profile carries; with --method volume_diffusion it does not",
+                              100 * across_air));
 }
 
-void print_group(const Scene& scene, const GroupPlan& group) {
+void print_group(const Scene& scene, const World& world, const GroupPlan& group) {
   print_row("translucent",
             fmt::format("{} in {}: {:.4g} mm^2, mean free path {:.4g} mm (its smallest channel)", group.name,
                         scene.media[group.medium].name, group.area, group.smallest_mean_free_path));
-  print_model(group);
+  print_model(group, share_across_air(scene, world, group));
   if (!has_samples(scene.settings.method)) return;
   print_row("", fmt::format("{}, {:.4g} mm apart: {}", counted(group.samples, "sample"), group.spacing,
                             group.reason));
@@ -65,13 +71,13 @@ std::string marble_text(const Scene& scene) {
                      scene.shapes[0].name, scene.shapes[0].name);
 }
 
-void print_text(const Scene& scene, const Plan& plan) {
+void print_text(const Scene& scene, const World& world, const Plan& plan) {
   print_row("scene", fmt::format("{}: {}, {}", scene.file, counted(scene.shapes.size(), "shape"),
                                  counted(plan.triangles, "triangle")));
   if (!scene.translation.empty()) print_row("asset", scene.translation);
   print_row("picture", picture_text(scene.film));
   print_row("lights", lights_text(scene.lights));
-  for (const GroupPlan& group : plan.groups) print_group(scene, group);
+  for (const GroupPlan& group : plan.groups) print_group(scene, world, group);
   if (plan.groups.empty()) print_row("translucent", "nothing: no samples are needed" + marble_text(scene));
   for (std::size_t i = 0; i < plan.stages.size(); ++i) print_row(i == 0 ? "stages" : "", plan.stages[i]);
   print_row("memory", "about " + short_bytes(plan.bytes) + " at the peak");
@@ -87,7 +93,7 @@ Json model_json(const BodyModel& model) {
   return json;
 }
 
-Json group_json(const Scene& scene, const GroupPlan& group) {
+Json group_json(const Scene& scene, const World& world, const GroupPlan& group) {
   Json shapes = Json::array();
   for (const std::uint32_t mesh : group.meshes) shapes.push_back(scene.shapes[mesh].name);
   return {{"name", group.name},
@@ -96,17 +102,18 @@ Json group_json(const Scene& scene, const GroupPlan& group) {
           {"area_mm2", group.area},
           {"smallest_mean_free_path_mm", group.smallest_mean_free_path},
           {"model", model_json(group.model)},
+          {"across_air", share_across_air(scene, world, group)},
           {"spacing_mm", group.spacing},
           {"samples", group.samples},
           {"reason", group.reason}};
 }
 
-Json plan_json(const Scene& scene, const Plan& plan) {
+Json plan_json(const Scene& scene, const World& world, const Plan& plan) {
   Json lights = Json::array(), groups = Json::array();
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
     if (l == 0 || !share_rays(scene.lights[l - 1], scene.lights[l]))
       lights.push_back({{"name", scene.lights[l].name}, {"type", name_of(scene.lights[l].source)}});
-  for (const GroupPlan& group : plan.groups) groups.push_back(group_json(scene, group));
+  for (const GroupPlan& group : plan.groups) groups.push_back(group_json(scene, world, group));
   Json json{{"scene", scene.file},
             {"method", name_of(scene.settings.method)},
             {"evaluator", name_of(scene.settings.evaluator)},
@@ -177,9 +184,9 @@ void print_plates(const Log& log, const std::vector<PlateModel>& plates) {
       print_plate(plate);
 }
 
-void print_plan(const Log& log, const Scene& scene, const Plan& plan) {
-  if (!log.quiet && log.format == LogFormat::json) print_event(log, "plan", plan_json(scene, plan));
-  if (!log.quiet && log.format == LogFormat::text) print_text(scene, plan);
+void print_plan(const Log& log, const Scene& scene, const World& world, const Plan& plan) {
+  if (!log.quiet && log.format == LogFormat::json) print_event(log, "plan", plan_json(scene, world, plan));
+  if (!log.quiet && log.format == LogFormat::text) print_text(scene, world, plan);
   for (const std::string& warning : plan.warnings) print_warning(log, warning);
 }
 

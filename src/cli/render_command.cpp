@@ -225,7 +225,7 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   const std::size_t layer_bytes = asked_layer_bytes(arguments.layers, scene);
   check_memory(scene, session.plan(), layer_bytes);
   KnownErrors errors = choose_settings(stages, arguments, session);
-  print_plan(arguments.log, scene, announced_plan(arguments, session));
+  print_plan(arguments.log, scene, session.world(), announced_plan(arguments, session));
   check_memory(scene, session.plan(), layer_bytes);  // of the settings that were chosen
   return errors;
 }

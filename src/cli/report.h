@@ -18,7 +18,7 @@
 namespace opaline {
 
 /// What the scene requires and why, then the plan's warnings; nothing but the warnings with --quiet.
-void print_plan(const Log& log, const Scene& scene, const Plan& plan);
+void print_plan(const Log& log, const Scene& scene, const World& world, const Plan& plan);
 
 /// The model's own error in thin plates, three lines each.
 void print_plates(const Log& log, const std::vector<PlateModel>& plates);

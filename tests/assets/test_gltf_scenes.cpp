@@ -131,6 +131,24 @@ TEST(GltfScenes, PunctualLightsKeepTheirRatios) {
   EXPECT_TRUE(has(imported(asset).not_carried, "range 3 m"));
 }
 
+// Claim: a spot light whose light does not fade towards its rim, as Blender's exporter writes it, keeps its cone, and one
+// that fades inside out is told and has the defaults. Source: KHR_lights_punctual asks for an inner angle less than the
+// outer. Fails if: equal angles are refused (a cone of 45 degrees then).
+TEST(GltfScenes, HardRimsKeepTheirCone) {
+  for (const double inner : {.5, .6}) {
+    Asset asset = cube_asset();
+    asset.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "spot"}, {"intensity", 20}, {"spot", {{"outerConeAngle", .5}, {"innerConeAngle", inner}}}}};
+    asset.root(asset.node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
+    const Scene scene = scene_of(asset.glb(), "a.glb");
+    const auto& spot = std::get<SpotLight>(scene.lights.at(0).source);
+    const double degrees = .5 * 180 / std::numbers::pi;
+    EXPECT_NEAR(spot.outer_angle, inner > .5 ? 45 : degrees, 1e-12);
+    EXPECT_NEAR(spot.inner_angle, inner > .5 ? 0 : degrees, .03);
+    EXPECT_EQ(has(imported(asset).not_carried, "cone angles"), inner > .5);
+  }
+}
+
 // Claim: lights as bright as real lamps make an EXR of floats, since halves end at 65504. Fails if the brightness of
 // the file has no say in the pixels' type.
 TEST(GltfScenes, BrightLightsMakeFloats) {

@@ -40,8 +40,8 @@ TEST(Groups, LoneShapeJoinsNoGroupOfItsName) {
   EXPECT_EQ(make_plan(scene, make_world(scene)).groups.size(), 2u);
 }
 
-// Claim: a box cut in two and grouped is the box in one piece, within 2 % over the picture (the cut's inner
-// faces add area that no light reaches). Source: the extremes that must hold: grouped = one object. Fails
+// Claim: a box cut in two and grouped is the box in one piece, within 1 % over the picture (.27 %
+// measured; the cut's inner faces add area that no light reaches). Source: the extremes that must hold: grouped = one object. Fails
 // when: the group's second mesh is forgotten, or each member has a tree of its own.
 TEST(Groups, GroupedIsOneObject) {
   Scene whole = single_shape(BoxShape{{-8, -4, -4}, {8, 4, 4}}, grey_medium(.5, .02, 1.3), 20000);
@@ -58,7 +58,7 @@ TEST(Groups, GroupedIsOneObject) {
       difference += std::abs(channel(a, x, y, "G") - channel(b, x, y, "G"));
       sum += channel(a, x, y, "G");
     }
-  EXPECT_LT(difference / sum, 0.02);
+  EXPECT_LT(difference / sum, 0.01);
 }
 
 }  // namespace

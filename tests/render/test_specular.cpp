@@ -101,11 +101,12 @@ TEST(Coat, MirrorsTheFloorAsItIsLit) {
   }
 }
 
-// A picture of a scene file that has one sample a pixel, in white surroundings.
+// A picture of a scene file in white surroundings, of 16 samples a pixel. A rough metal is .5 % too dark by 16 facets, those
+// of a pixel of one sample, and .05 % by those of 64 samples: it is no bias, and goes with more of them.
 Image picture_of_text(const std::string& shapes) {
   return picture_of(
       parse_scene(R"({"shapes": [)" + shapes + R"(], "surroundings": 1, "settings": {"method": "lambert"},
-    "camera": {"position": [0, 0, 100], "field_of_view": 15}, "film": {"resolution": [32, 32], "pixel_type": "float"}})",
+    "camera": {"position": [0, 0, 100], "field_of_view": 15}, "film": {"resolution": [32, 32], "samples_per_pixel": 16, "pixel_type": "float"}})",
                   "text.json"));
 }
 
@@ -121,7 +122,7 @@ TEST(Coat, SpecularWeightKeepsTheFurnaceWhite) {
         const Image image = picture_of_text(
             std::string(R"({"sphere": {"radius": 10}, "reflectance": 1, "metalness": )") + metalness +
             R"(, "specular_roughness": )" + roughness + R"(, "specular_weight": )" + weight + "}");
-        EXPECT_NEAR(mean_over_ball(image, "G"), 1, .006);
+        EXPECT_NEAR(mean_over_ball(image, "G"), 1, .005);
       }
 }
 
@@ -138,7 +139,7 @@ TEST(Coat, SpecularWeightIsAShare) {
 
 // Claim: of a body, too, the coat mirrors the weight's share at right angles, .04 at weight 1, and all else enters: a white
 // ball in a white room is white at every weight, smooth or rough, by its samples as by the limit of no mean free path.
-// Source: OpenPBR 1.1, specular_weight; conservation. Tolerance: 1e-3 of the share; .6 % of the mean. Fails if the weight is taken off the mirror alone.
+// Source: OpenPBR 1.1, specular_weight; conservation. Tolerance: 1e-3 of the share; .5 % of the mean. Fails if the weight is taken off the mirror alone.
 TEST(Coat, SpecularWeightOfBodies) {
   for (const char* const method : {"lambert", "hierarchical"})
     for (const char* const roughness : {"0", "0.4"})
@@ -157,7 +158,7 @@ TEST(Coat, SpecularWeightOfBodies) {
         if (roughness[1] == 0) {
           EXPECT_NEAR(channel(image, 16, 16, "specular.G"), .04 * weight, 1e-3 * weight);
         }
-        EXPECT_NEAR(mean_over_ball(image, "G"), 1, .006);
+        EXPECT_NEAR(mean_over_ball(image, "G"), 1, .005);
       }
 }
 
