@@ -6,6 +6,7 @@
 
 #include "exitance/near_samples.h"
 #include "exitance/point_sums.h"
+#include "opaline/core/parallel.h"
 #include "opaline/exitance/refined_stake.h"
 #include "opaline/sampling/sample_surface.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr std::size_t kRuns = 16, kRun = 4;  // of trial sums, at samples that follow each other in the tree
 constexpr std::size_t kRoughnessTrials = 128;
-constexpr double kWider = 1.41421356;
 constexpr double kFineTolerance = 1.5e-3;
 // Samples so near each other, in spacings, are neighbours.
 constexpr float kNeighbours = 1.6f;
@@ -148,12 +148,15 @@ CloudError tell_cloud_error(const CloudErrorInput& input) {
                      .instruction_set = input.instruction_set,
                      .cloud = none});
   };
-  const std::vector<Exitance> fine = sums(input.kernel, fine_tolerance);
-  const std::vector<Exitance> coarse =
-      fine_tolerance < input.tolerance ? sums(input.kernel, input.tolerance) : fine;
-  const std::vector<Exitance> wide = sums(input.kernel_of(kWider * spacing), fine_tolerance);
-  const std::vector<Exitance> classic =
-      input.evaluator == EvaluatorKind::classic ? classic_sums(input, trials) : std::vector<Exitance>{};
+  // Each is too few sums to occupy more than one thread.
+  std::vector<Exitance> fine, coarse, wide, classic;
+  parallel_chunks(4, 1, [&](std::size_t trial, std::size_t, std::size_t) {
+    if (trial == 0) fine = sums(input.kernel, fine_tolerance);
+    if (trial == 1 && fine_tolerance < input.tolerance) coarse = sums(input.kernel, input.tolerance);
+    if (trial == 2) wide = sums(input.wider, fine_tolerance);
+    if (trial == 3 && input.evaluator == EvaluatorKind::classic) classic = classic_sums(input, trials);
+  });
+  if (coarse.empty()) coarse = fine;
   std::vector<bool> refined;
   for (std::size_t i = 0; i < fine.size(); ++i)
     refined.push_back(stake_of(input.kernel.own_irradiance, trials.irradiance[i], fine[i]) > kRefinedStake);

@@ -107,7 +107,7 @@ std::vector<Body> draft_groups(const PrecomputeInput& input) {
     const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
     SurfaceSamples surface =
         draft_samples(input.world, plan.meshes, std::max(kFewest, plan.samples / kFewer));
-    SplitKernel kernel = group_kernel(profile, surface, input.world, input.scene);
+    SplitKernel kernel = group_kernel(profile, surface.spacing(), input.world, input.scene);
     std::vector<LightTransfer> transfers = light_samples(input, g, surface.samples, lights);
     groups.push_back({plan, profile, std::move(surface), std::move(transfers), {}, {}});
     Body& body = groups.back();

@@ -156,9 +156,9 @@ NearIrradiance near_irradiance(const Scene& scene) {
   return wanted == NearIrradiance::mixed && is_soft ? NearIrradiance::samples : wanted;
 }
 
-SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,
+SplitKernel group_kernel(const DiffuseProfile& profile, double spacing, const World& world,
                          const Scene& scene) {
-  return make_split_kernel(profile, surface.spacing(), world.diagonal, scene.settings.near_field,
+  return make_split_kernel(profile, spacing, world.diagonal, scene.settings.near_field,
                            near_irradiance(scene));
 }
 
@@ -193,13 +193,9 @@ std::array<float, 3> light_shift(const Body& group, const World& world, const Sc
 
 CloudError cloud_error(const Body& group, const World& world, const Scene& scene) {
   const Settings& settings = scene.settings;
-  const auto kernel = [&](double spacing) {
-    return make_split_kernel(group.profile, spacing, world.diagonal, settings.near_field,
-                             near_irradiance(scene));
-  };
   CloudError error =
-      tell_cloud_error({group.octree, group.kernel, kernel, settings.evaluator, settings.tolerance,
-                        settings.max_solid_angle, settings.instruction_set});
+      tell_cloud_error({group.octree, group.kernel, group.wider_kernel, settings.evaluator,
+                        settings.tolerance, settings.max_solid_angle, settings.instruction_set});
   error.light_shift = light_shift(group, world, scene);
   return error;
 }

@@ -159,6 +159,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     Node node;
     node.kind = kind;
     node.offset = cursor_.next();
+    node.end_offset = cursor_.end();
     node.override_index = override_index_;
     if (open_.empty()) return root = std::move(node);
     if (open_.back()->kind == Node::Kind::object) {
@@ -188,6 +189,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
 
   bool close() {
     cursor_.next();
+    open_.back()->end_offset = cursor_.end();
     open_.pop_back();
     keys_.pop_back();
     return true;

@@ -15,6 +15,7 @@
 #include "opaline/geometry/mesh_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/scene/nearest_name.h"
+#include "scene/edited_text.h"
 #include "scene/keyed_values.h"
 #include "scene/overrides.h"
 #include "scene/readers.h"
@@ -221,6 +222,12 @@ std::string merged_scene(std::string_view text, const std::string& file,
   Document document = merged_document(text, file, overrides, frame.value_or(1));
   if (frame && document.root.kind == Node::Kind::object) resolve_keyed_values(document);
   return to_json(document.root) + '\n';
+}
+
+std::string edited_scene(std::string_view text, const std::string& file,
+                         std::span<const std::string> overrides) {
+  const Document before = merged_document(text, file, {}, 1), now = merged_document(text, file, overrides, 1);
+  return edited_text(text, before.root, now.root);
 }
 
 Medium parse_medium(std::string_view text, const std::string& file) {

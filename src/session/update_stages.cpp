@@ -2,6 +2,7 @@
 // Each stage's result: kept, from the cache, or computed; under its key only once it is whole.
 #include <fmt/format.h>
 
+#include "opaline/exitance/cloud_error.h"
 #include "opaline/lights/light.h"
 #include "opaline/render/surface_caches.h"
 #include "opaline/render/surface_textures.h"
@@ -362,7 +363,8 @@ void Session::State::update_kernel(Body& body, BodyKeys& known) {
   if (key.key() == known.kernel_key) return;
   known.kernel_key = {};
   find_walked_profiles(body);
-  body.kernel = group_kernel(body.profile, body.surface, *world_, scene_);
+  body.kernel = group_kernel(body.profile, body.surface.spacing(), *world_, scene_);
+  body.wider_kernel = group_kernel(body.profile, kWiderField * body.surface.spacing(), *world_, scene_);
   known.kernel_key = key.key();
 }
 

@@ -187,7 +187,7 @@ std::string SceneEdits::json() const {
 }
 
 std::string SceneEdits::file_text() const {
-  return merged_scene(text_, file_, overrides());
+  return edited_scene(text_, file_, overrides());
 }
 
 }  // namespace opaline

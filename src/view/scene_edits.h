@@ -54,7 +54,7 @@ class SceneEdits {
 
   /// All of the scene's values as JSON, those that change as in the frame that is shown.
   std::string json() const;
-  /// A scene file with the edits in it.
+  /// The scene file with the edits in it: what they leave alone stays as it is written, comments too.
   std::string file_text() const;
 
  private:

@@ -84,5 +84,53 @@ TEST(SceneEdits, FileText) {
   EXPECT_EQ(seen.at("lights").at(1).at("radiance").at(1), 1e-9);
 }
 
+// Claim: the file with edits keeps the lines that they leave alone, comments included; a new value stands after the
+// others of its object, and comments stay beside what they explain. Fails if the text is written from the tree.
+TEST(SceneEdits, FileKeepsComments) {
+  const ScratchFolder folder;
+  const std::string file = folder.file("scene.json");
+  put_bytes(file, R"(// A ball of stone.
+{
+  "media": {"stone": {"preset": "marble" /* as measured */}},
+  "shapes": [ {"name": "ball", "sphere": {"center": [0,0,0], "radius": 10}, "medium": "stone"} ],
+  "lights": [
+    // the sun, "key": no {object}
+    {"name": "key", "type": "point", "position": [0, 100, 20],
+      "intensity": [3e4, 2e4, 1e4]  // warm
+    }
+  ],
+  "camera": {"position": [0,  30, 120], "look_at": [0, 8, 0]}  // from the front
+}
+// the end
+)");
+  SceneEdits edits(file, {});
+  EXPECT_EQ(edits.file_text(), bytes_of(file));
+  edits.set(one("media.stone.eta", "1.4"));
+  edits.set(one("lights.key.intensity", "[1, 2, 3]"));
+  edits.set(one("lights.key.name", "\"lamp\""));
+  edits.set(one("camera.position", "[0, 31, 120]"));
+  edits.set(one("film.resolution", "[48, 32]"));
+  edits.set(one("settings.seed", "7"));
+  EXPECT_EQ(edits.file_text(), R"(// A ball of stone.
+{
+  "media": {"stone": {"preset": "marble", "eta": 1.4 /* as measured */}},
+  "shapes": [ {"name": "ball", "sphere": {"center": [0,0,0], "radius": 10}, "medium": "stone"} ],
+  "lights": [
+    // the sun, "key": no {object}
+    {"name": "lamp", "type": "point", "position": [0, 100, 20],
+      "intensity": [1, 2, 3]  // warm
+    }
+  ],
+  "camera": {"position": [0,  31, 120], "look_at": [0, 8, 0]},  // from the front
+  "film": {"resolution": [48, 32]},
+  "settings": {"seed": 7}
+}
+// the end
+)");
+  edits.set(one("media.stone", R"({"sigma_a": [0.1, 0.1, 0.1], "sigma_s_prime": [1, 1, 1]})"));
+  EXPECT_EQ(parse_scene(edits.file_text(), file), edits.scene());
+  EXPECT_NE(edits.file_text().find("// warm"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace opaline

@@ -2,17 +2,18 @@
 // How far off sums over samples are, by trial sums at a few of them.
 #pragma once
 
-#include <functional>
-
 #include "opaline/exitance/evaluate.h"
 
 namespace opaline {
 
+/// How much wider the near field of the comparison is.
+inline constexpr double kWiderField = 1.41421356;
+
 struct CloudErrorInput {
   const Octree& octree;
   const SplitKernel& kernel;
-  std::function<SplitKernel(double spacing)> kernel_of;  ///< the same for another spacing
-  EvaluatorKind evaluator = EvaluatorKind::dual_tree;    ///< as EvaluateInput's
+  const SplitKernel& wider;                            ///< the same for kWiderField times the spacing
+  EvaluatorKind evaluator = EvaluatorKind::dual_tree;  ///< as EvaluateInput's
   double tolerance = 0.005;
   double max_solid_angle = 0.05;
   InstructionSet instruction_set = InstructionSet::automatic;

@@ -32,6 +32,7 @@ struct Body {
   std::vector<RgbF> irradiance;          ///< one a sample, all lights
   Octree octree;
   SplitKernel kernel = {};
+  SplitKernel wider_kernel = {};                   ///< CloudErrorInput::wider
   CloudError cloud = {};                           ///< of the samples with this irradiance and kernel
   std::optional<SurfaceCache> surface_cache = {};  ///< the exitance everywhere, where that is cheaper than at
                                                    ///< the points of the picture
@@ -97,11 +98,11 @@ Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF>
 /// those at the samples, and there are no sharp shadows to find (bunny-marble under `environment`, 256 x 256: mean
 /// difference from 2048 rays a point .9 % in .06 s of shading, traced .7 % in 1.2 s).
 NearIrradiance near_irradiance(const Scene& scene);
-/// The kernel of a body, split at a distance that its samples' spacing decides.
-SplitKernel group_kernel(const DiffuseProfile& profile, const SurfaceSamples& surface, const World& world,
+/// The kernel of a body, split at a distance that its samples' spacing, mm, decides.
+SplitKernel group_kernel(const DiffuseProfile& profile, double spacing, const World& world,
                          const Scene& scene);
 
-/// Of a group with its transfers, tree and kernel.
+/// Of a group with its transfers, tree and kernels.
 CloudError cloud_error(const Body& group, const World& world, const Scene& scene);
 
 /// Radiant exitance at points of a group's surface, for callers with points of their own. Where the mean free

@@ -25,6 +25,7 @@ struct Node {
   std::vector<Node> children;              ///< of an array or object, in the order of the text
   std::string key;                         ///< of a member of an object
   std::size_t key_offset = 0, offset = 0;  ///< bytes from the start of the text
+  std::size_t end_offset = 0;              ///< just behind the value's last byte
   int override_index = -1;                 ///< which override it came from; -1: the file
 };
 

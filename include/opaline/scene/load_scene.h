@@ -36,6 +36,12 @@ std::string read_scene_text(const std::string& path);
 std::string merged_scene(std::string_view text, const std::string& file,
                          std::span<const std::string> overrides, std::optional<int> frame = {});
 
+/// The same as a person would edit the file: what no override changes stays as it is written, comments included
+/// (src/scene/edited_text.h).
+/// error as merged_scene
+std::string edited_scene(std::string_view text, const std::string& file,
+                         std::span<const std::string> overrides);
+
 /// The last run of two or more # in a path as the frame's number, with zeros in front to fill them:
 /// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths stay as they are.
 std::string with_frame(const std::string& path, int frame);
