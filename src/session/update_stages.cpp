@@ -29,13 +29,6 @@ std::size_t carried_count(const SampleOrigin& origin, const GroupPlan& plan) {
   return std::size_t(std::min(1e9, double(origin.surface.samples.size()) * stretched));
 }
 
-std::size_t passes_of(const VolumeSums& sums) {
-  std::size_t passes = 0;
-  for (const SourceSums& source : sums.sources)
-    for (const WalkSums& channel : source.channels) passes += channel.passes;
-  return passes;
-}
-
 }  // namespace
 
 bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings) {
@@ -195,100 +188,6 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
   }
   known.light_keys = std::move(keys);
   body.transfers = std::move(transfers);
-}
-
-// Sums are of whole passes always: those that an interruption leaves stay.
-void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input,
-                                  const std::vector<Light>& lights) {
-  VolumeInput walks = walk_input(input, body, lights);
-  const StageKey tint =
-      tint_key(scene_.media[body.plan.medium], *world_, body.plan.meshes, known.samples_key);
-  std::optional<SurfaceTextures> textures;
-  if (tint != StageKey{}) {
-    textures.emplace(scene_, *world_);
-    walks.entering_tint = [&](std::uint32_t mesh, std::uint32_t triangle, float u, float v) {
-      return textures->tint(textures->place(mesh, triangle, u, v, {})).entering;
-    };
-  }
-  const std::vector<StageKey> keys =
-      walk_keys(walks, tint == StageKey{} ? known.samples_key : tint, mesh_keys_);
-  VolumeSums sums;
-  for (const StageKey& key : keys) {
-    const auto old = std::ranges::find(known.walk_keys, key);
-    std::optional<SourceSums> found;
-    if (old != known.walk_keys.end())
-      found = std::move(body.walks.sources[std::size_t(old - known.walk_keys.begin())]);
-    else if (walk_store_.find)
-      found = walk_store_.find(key);
-    sums.sources.push_back(found ? std::move(*found) : SourceSums());
-  }
-  body.walks = std::move(sums);
-  known.walk_keys = keys;
-  const std::size_t before = passes_of(body.walks);
-  const auto keep = [&](const VolumeSums& now) {
-    if (walk_store_.keep) walk_store_.keep(keys, now);
-  };
-  keep(body.walks);
-  walk_volume(walks, body.walks, keep);
-  const std::size_t passes = passes_of(body.walks);
-  work_.walk_passes += passes - before;
-  KeyBuilder key("exitance of random walks", 1);
-  key.add_array(std::span(keys)).add(std::uint64_t(passes));
-  for (const Light& light : lights) key.add(emission(light));
-  if (key.key() != known.volume_key || !body.volume) {
-    known.volume_key = {};
-    body.volume = exitance_of(walks, body.walks);
-    fit_cells(body, known);
-    known.volume_key = key.key();
-  }
-  note_decision(body, passes > before ? "walked at random" : "random walks kept");
-}
-
-void Session::State::update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
-                                      const std::vector<Light>& lights) {
-  update_tint(body, known);
-  KeyBuilder cells("diffusion cells", 5);
-  cells.add(known.samples_key).add(body.profile.eta).add(body.plan.cell);
-  cells.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
-  for (const std::uint32_t mesh : body.plan.meshes) cells.add(mesh_keys_[mesh].shape);
-  KeyBuilder builder("diffusion", 5);
-  const StageKey cells_key = cells.key();
-  const StageKey key = builder.add(cells_key)
-                           .add(octree_key(known.samples_key, known.light_keys, lights, known.tint_key))
-                           .key();
-  if (key == known.volume_key) return note_decision(body, "diffusion kept");
-  known.volume_key = {};
-  std::optional<VolumeExitance> found;
-  if (cache_ != nullptr) found = cache_->find_volume(key, body.surface.samples.size());
-  if (found) {
-    body.volume = std::move(found);
-    ++work_.found;
-    note_decision(body, "diffusion from the cache");
-  } else {
-    const bool at_hand = known.diffusion != nullptr && known.diffusion_key == cells_key;
-    if (!at_hand)
-      known.diffusion = std::make_shared<const VolumeDiffusion>(diffusion_of(input, body, known.cut_normals));
-    known.diffusion_key = cells_key;
-    body.volume = known.diffusion->exitance(lights, body.transfers, body.entering, input.monitor);
-    if (cache_ != nullptr) cache_->keep_volume(key, *body.volume);
-    note_decision(body, at_hand ? "diffusion solved in the cells at hand" : "diffusion solved");
-    if (!edits_) known.diffusion = nullptr;
-  }
-  fit_cells(body, known);
-  known.volume_key = key;
-}
-
-// Where edits are to come, what the fit takes of the samples' places alone is kept for them.
-void Session::State::fit_cells(Body& body, BodyKeys& known) {
-  const std::span<const RgbF> means = body.volume->exitance, errors = body.volume->error;
-  if (!edits_) {
-    body.volume_fit = std::make_shared<const CellFit>(body.surface.samples, means, errors);
-    return;
-  }
-  if (known.cell_weights == nullptr || known.cell_weights_key != known.samples_key)
-    known.cell_weights = std::make_shared<const CellWeights>(body.surface.samples);
-  known.cell_weights_key = known.samples_key;
-  body.volume_fit = std::make_shared<const CellFit>(*known.cell_weights, means, errors);
 }
 
 void Session::State::update_tint(Body& body, BodyKeys& known) {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many samples a body gets, or how large its cells are. Each fills what it decides into the body's plan, and says what
+// looks wrong.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "opaline/render/plan.h"
+
+namespace opaline {
+
+/// Of volume_diffusion in a body: what memory should hold.
+inline constexpr double kMostCells = 1.2e6;
+/// The widest cell that tells where light goes, mean free paths.
+double widest_cell(const Settings& settings);
+/// Whether cells as wide as that would be too many: the surface is then flat on the scale of a mean free path, and a radial
+/// profile is right.
+bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group);
+
+/// Samples spread over the surface: as the settings have it, or by the medium's mean free path.
+void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings);
+/// The edge of the cells of volume_diffusion.
+void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings);
+/// After choose_cells: the parts of that edge whose cubes cut the surface into samples.
+void choose_cut(const Settings& settings, GroupPlan& group, std::vector<std::string>& warnings);
+
+}  // namespace opaline
