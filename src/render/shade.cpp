@@ -110,8 +110,9 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
   for (const Light& light : lights_)
     if (is_visible(light)) (extent(light).center ? emitters_ : surroundings_).push_back(light);
   std::vector<bool> follows_light(input.scene.shapes.size());
-  for (const Body& body : input.groups)
-    for (const std::uint32_t mesh : body.plan.meshes) follows_light[mesh] = has_cells(body.plan.method);
+  if (has_samples(input.scene.settings.method))  // else bodies are left from another method
+    for (const Body& body : input.groups)
+      for (const std::uint32_t mesh : body.plan.meshes) follows_light[mesh] = has_cells(body.plan.method);
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i)
     appearances_.push_back(mesh_appearance(input.scene, input.scene.shapes[i], follows_light[i]));
   light_samples_ = light_samples_of_ray(input.scene);

@@ -46,6 +46,8 @@ TEST(LargeBodies, AreLeftToTheTree) {
 
   Session anew;
   EXPECT_TRUE(same_pixels(moved(session, scene), moved(anew, scene)));
+  const Scene plain = with_large_ball(Method::lambert);  // whose light leaves by another law of the angle
+  EXPECT_TRUE(same_pixels(picture_of(session, plain), cold_picture(plain)));
 }
 
 }  // namespace
