@@ -107,7 +107,7 @@ bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group) {
 void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
   constexpr double kAcrossThin = 4, kSmallest = .25;
   constexpr double kFewestFaces = 60;  // of cells, on the surface
-  constexpr double kTooThin = 3;       // mean free paths
+  constexpr double kTooThin = .6;      // mean free paths: measured, src/volume/README.md
   constexpr double kPerFading = .45;   // of settings.cell_size: measured, src/volume/README.md
   const double length = group.smallest_mean_free_path;
   group.cell =

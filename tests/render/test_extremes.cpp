@@ -206,6 +206,27 @@ TEST(Extremes, BodiesThinnerThanTheirSamplesAreSaid) {
   EXPECT_EQ(thin(), 1);
 }
 
+// Claim: with volume_diffusion a body is said to be too thin where its cells are as large as it is thick, .6 mean free
+// paths, and not before: plates of .7 are as near to random walks as thicker ones. Source: src/volume/README.md. Fails if:
+// thin bodies that are right are warned of, or those that are not pass in silence.
+TEST(Extremes, BodiesTooThinForCellsAreSaid) {
+  const auto is_said = [](double mean_free_paths) {
+    Scene scene = lit_sphere();
+    scene.settings.method = Method::volume_diffusion;
+    scene.settings.samples.reset();
+    scene.media = {grey_medium(1, .001, 1.3)};
+    // Twice the volume over the area: the rim of a plate 400 times wider than thick hardly counts.
+    scene.shapes[0].source = SlabShape{{}, 400 * mean_free_paths, 400 * mean_free_paths, mean_free_paths};
+    const Plan plan = make_plan(scene, make_world(scene));
+    return std::ranges::any_of(plan.warnings, [](const std::string& warning) {
+      return warning.find("--method volume can") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(is_said(2));
+  EXPECT_FALSE(is_said(.7));
+  EXPECT_TRUE(is_said(.5));
+}
+
 // Claim: samples do not depend on the camera. Source: what went wrong in earlier renderers (a peer's samples
 // follow the camera and are none when it looks away). Fails when: sampling sees the camera.
 TEST(Extremes, CameraDoesNotMoveSamples) {
