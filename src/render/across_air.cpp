@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <vector>
 
-#include "opaline/core/random.h"
 #include "opaline/core/vec3.h"
 #include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/geometry/surface_point.h"
+#include "opaline/sampling/draft_samples.h"
 
 namespace opaline {
 namespace {
 
-constexpr std::size_t kPlaces = 500, kMostTriangles = 20'000;
-constexpr std::uint64_t kSeed = 5100;
+constexpr std::size_t kPlaces = 500;
 // Cosine of a chord and the normal above which it starts outside: beside it surfaces that are merely concave go around.
 constexpr double kOutward = .5;
 
@@ -20,35 +20,12 @@ struct Place {
   Vec3d position, normal;  // mm
 };
 
-/// Spread over the area; where triangles are many, over some of them.
 std::vector<Place> places_on(const World& world, const std::vector<std::uint32_t>& meshes) {
-  std::size_t triangles = 0;
-  for (const std::uint32_t m : meshes) triangles += world.meshes[m].triangles.size();
-  const std::size_t step = triangles / kMostTriangles + 1;
-  struct Face {
-    Vec3d a, ab, ac;
-    double area_before;
-  };
-  std::vector<Face> faces;
-  double area = 0;
-  for (const std::uint32_t m : meshes) {
-    const Mesh& mesh = world.meshes[m];
-    for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
-      const auto& [i, j, k] = mesh.triangles[t];
-      const Vec3d a = mesh.positions[i] * world.unit;
-      faces.push_back({a, mesh.positions[j] * world.unit - a, mesh.positions[k] * world.unit - a, area});
-      area += .5 * length(cross(faces.back().ab, faces.back().ac));
-    }
-  }
   std::vector<Place> places;
-  std::size_t next = 0;
-  for (std::size_t p = 0; p < kPlaces && area > 0; ++p) {
-    const double wanted = area * (double(p) + unit_double(hash_bits(kSeed, p))) / double(kPlaces);
-    while (next + 1 < faces.size() && faces[next + 1].area_before <= wanted) ++next;
-    const Face& face = faces[next];
-    auto [u, v] = r2_point(p, {.5, .5});
-    if (u + v > 1) u = 1 - u, v = 1 - v;
-    places.push_back({face.a + face.ab * u + face.ac * v, normalized(cross(face.ab, face.ac))});
+  for (const SurfaceSample& sample : draft_samples(world, meshes, kPlaces).samples) {
+    const Mesh& mesh = world.meshes[sample.mesh];
+    const SurfacePoint point = surface_point(mesh, sample.triangle, sample.u, sample.v);
+    places.push_back({Vec3d(point.position) * world.unit, Vec3d(point.geometric)});
   }
   return places;
 }

@@ -159,8 +159,7 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
                         "and its surface is flat "
                         "on the scale of one",
                         group.name, kMostCells, widest_cell(scene.settings)));
-    if (std::ranges::any_of(plan.groups,
-                            [](const GroupPlan& g) { return g.method == Method::hierarchical; })) {
+    if (has_tree) {
       plan.stages.push_back("octree");
       plan.stages.push_back(evaluation_stage(scene.settings));
     }

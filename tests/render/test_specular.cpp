@@ -101,17 +101,18 @@ TEST(Coat, MirrorsTheFloorAsItIsLit) {
   }
 }
 
-// A picture of a scene file in white surroundings, of 16 samples a pixel. A rough metal is .5 % too dark by 16 facets, those
-// of a pixel of one sample, and .05 % by those of 64 samples: it is no bias, and goes with more of them.
-Image picture_of_text(const std::string& shapes) {
-  return picture_of(
-      parse_scene(R"({"shapes": [)" + shapes + R"(], "surroundings": 1, "settings": {"method": "lambert"},
-    "camera": {"position": [0, 0, 100], "field_of_view": 15}, "film": {"resolution": [32, 32], "samples_per_pixel": 16, "pixel_type": "float"}})",
-                  "text.json"));
+// A picture of a scene file in white surroundings.
+Image picture_of_text(const std::string& shapes, int samples_per_pixel = 1) {
+  return picture_of(parse_scene(R"({"shapes": [)" + shapes +
+                                    R"(], "surroundings": 1, "settings": {"method": "lambert"},
+    "camera": {"position": [0, 0, 100], "field_of_view": 15}, "film": {"resolution": [32, 32], "samples_per_pixel": )" +
+                                    std::to_string(samples_per_pixel) + R"(, "pixel_type": "float"}})",
+                                "text.json"));
 }
 
 // Claim: an opaque white ball under a coat of any specular_weight looks like its surroundings, metal or not. Source:
-// conservation; Turquin 2019 for what a metal's facets reflect more than once. Tolerance as of WhiteFurnace. Fails if the
+// conservation; Turquin 2019 for what a metal's facets reflect more than once. Tolerance: .6 % of the mean, as of
+// WhiteFurnace, and .5 % with 16 samples a pixel: the 16 facets of one leave a rough metal .5 % dark. Fails if the
 // weight is taken off what the coat mirrors and not given to what lies below, the coat's trace at 0 is none (metals are
 // then black), or facets reflect once (6.6 % off at roughness .4).
 TEST(Coat, SpecularWeightKeepsTheFurnaceWhite) {
@@ -119,10 +120,11 @@ TEST(Coat, SpecularWeightKeepsTheFurnaceWhite) {
     for (const char* const metalness : {"0", "1"})
       for (const char* const weight : {"0", "0.3", "1"}) {
         SCOPED_TRACE(std::string(roughness) + ' ' + metalness + ' ' + weight);
-        const Image image = picture_of_text(
+        const std::string ball =
             std::string(R"({"sphere": {"radius": 10}, "reflectance": 1, "metalness": )") + metalness +
-            R"(, "specular_roughness": )" + roughness + R"(, "specular_weight": )" + weight + "}");
-        EXPECT_NEAR(mean_over_ball(image, "G"), 1, .005);
+            R"(, "specular_roughness": )" + roughness + R"(, "specular_weight": )" + weight + "}";
+        EXPECT_NEAR(mean_over_ball(picture_of_text(ball), "G"), 1, .006);
+        EXPECT_NEAR(mean_over_ball(picture_of_text(ball, 16), "G"), 1, .005);
       }
 }
 

@@ -87,12 +87,13 @@ class CellFit {
     void take_around(const Vec3f& position, float beyond);
 
     const CellFit& fit_;
-    Vec3f taken_;                         // the place whose cells are taken, and of points so far off:
-    float beyond_ = 0;                    // spacings
-    std::vector<std::uint32_t> near_;     // these cells, by their places
-    std::vector<FourCells> fours_;        // the same
-    std::vector<FourWeights> weighed_;    // of a point: scratch of `at`
-    std::vector<std::uint32_t> blended_;  // those of near_ that it is blended from: the same
+    Vec3f taken_;                      // the place whose cells are taken, and of points so far off:
+    float beyond_ = 0;                 // spacings
+    std::vector<std::uint32_t> near_;  // these cells, by their places
+    std::vector<FourCells> fours_;     // the same cells, four to a vector
+    // Scratch of `at`: what it finds of these cells for its point, and which of them it blends.
+    std::vector<FourWeights> weighed_;
+    std::vector<std::uint32_t> blended_;
   };
   Value at(const Vec3f& position, const Vec3f& normal) const { return Reader(*this).at(position, normal); }
 
