@@ -54,11 +54,11 @@ void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan
 /// error where a method knows no light between things
 void check_bounces(const Scene& scene) {
   const Method method = scene.settings.method;
-  if (bounces_of(scene) == 0 || !has_cells(method)) return;
+  if (bounces_of(scene) == 0 || method != Method::volume) return;
   throw Error(
       ErrorKind::bad_input, scene.file, 0, 0,
       fmt::format("settings.bounces: 1: with the method {} things are lit by lights alone", name_of(method)),
-      "--set settings.bounces=0, or --method hierarchical");
+      "--set settings.bounces=0, or --method volume_diffusion");
 }
 
 // The share of the area in triangles far longer than high. Samples there stand in lines, each in a block of

@@ -19,7 +19,7 @@ bool are_one_thing(const Shape& a, const Shape& b) {
 int bounces_of(const Scene& scene) {
   if (scene.lights.empty()) return 0;
   if (scene.settings.bounces) return *scene.settings.bounces;
-  if (has_cells(scene.settings.method)) return 0;
+  if (scene.settings.method == Method::volume) return 0;
   const auto first = std::ranges::find_if(scene.shapes, sends_light);
   return std::any_of(first, scene.shapes.end(), [&](const Shape& other) {
     return &other != &*first && sends_light(other) && !are_one_thing(*first, other);

@@ -246,11 +246,11 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::reenter>(
           "reenter", flag, "", kFiniteNumber, "",
           "volume: light that has left a body, or was mirrored by it, may meet the same "
-          "body again and enter, as in hollows and between ears; `false`: it is gone, as "
-          "with all other methods"),
+          "body again and enter, as in hollows and between ears; `false`: it is gone. Other methods: "
+          "`bounces`"),
       member<&Settings::bounces>(
           "bounces", whole_number, "", {0, 1}, "1 where one thing can light another",
-          "hierarchical, lambert, direct: 1: light that leaves a surface lights others, once: "
+          "all methods but volume: 1: light that leaves a surface lights others, once: "
           "a floor the thing that stands on "
           "it, a red wall the marble beside it, and a body itself; 0: things are lit by lights alone"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",

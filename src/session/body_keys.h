@@ -33,12 +33,14 @@ struct BodyKeys {
   StageKey lights_key;                      // of the tree before bounced light is added
   StageKey volume_key;                      // of Body::volume; of walks, but for their number
   StageKey diffusion_key;                   // of the cells
+  StageKey bounced_key;                     // of Body::bounced
   std::vector<std::uint32_t> meshes;        // that the samples name
   std::vector<StageKey> light_keys;         // of the transfers
   std::vector<StageKey> walk_keys;          // of the walks' sources
   std::optional<SurfaceCache> spare_cache;  // kept, though this picture does not use it
 
   std::shared_ptr<const VolumeDiffusion> diffusion;  // its cells
+  std::shared_ptr<const CellFit> lit_fit;            // of Body::volume alone
   std::vector<Vec3f> cut_normals;                    // of the samples, where cells cut the surface
   std::shared_ptr<const CellWeights> cell_weights;   // of the samples
   StageKey cell_weights_key;                         // samples_key with which they were found

@@ -204,10 +204,14 @@ void Session::State::prepare(Monitor* monitor) {
   each_of(Method::volume_diffusion, "diffusion",
           [&](Body& body, BodyKeys& known, std::size_t) { update_diffusion(body, known, input, lights); });
   update_sums(input, lights);
+  for (std::size_t g = 0; !edits_ && g < keys_.size(); ++g) {
+    keys_[g].diffusion = nullptr;
+    keys_[g].cell_weights = nullptr;
+  }
   prepared_ = true;
 }
 
-/// Of the bodies whose exitance is a sum over samples: trees, kernels, bounced light, surface caches.
+/// Bounced light, and of the bodies whose exitance is a sum over samples: trees, kernels, surface caches.
 void Session::State::update_sums(const PrecomputeInput& input, const std::vector<Light>& lights) {
   each_of(Method::hierarchical, "octree", [&](Body& body, BodyKeys& known, std::size_t) {
     update_tree(body, known, lights);

@@ -46,11 +46,12 @@ struct Session::State {
   void carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input, const StageKey& key);
   void update_lights(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
                      const std::vector<Light>& lights);
-  void fit_cells(Body& body, BodyKeys& known);
+  std::shared_ptr<const CellFit> fit_of(const Body& body, BodyKeys& known, std::span<const RgbF> means,
+                                        std::span<const RgbF> errors) const;
   void update_tint(Body& body, BodyKeys& known);
   void update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights);
   void hold_tree(Body& body, BodyKeys& known, const StageKey& key);
-  std::vector<std::vector<RgbF>> kept_bounces(const std::function<StageKey(const BodyKeys&)>& key_of);
+  std::vector<std::vector<RgbF>> kept_bounces(std::span<const StageKey> keys);
   void update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights);
   void find_walked_profiles(const Body& body);
   void update_kernel(Body& body, BodyKeys& known);
@@ -59,6 +60,10 @@ struct Session::State {
                     const std::vector<Light>& lights);
   void update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
                         const std::vector<Light>& lights);
+  const VolumeDiffusion& cells_of(const Body& body, BodyKeys& known, const PrecomputeInput& input);
+  static void forget_bounced(Body& body, BodyKeys& known);
+  void diffuse_bounced(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                       std::span<const RgbF> bounced, const StageKey& key);
   HeldView* held_view();
   void update_bounced_places(const RenderInput& input);
   void note_decision(const Body& body, const std::string& text);

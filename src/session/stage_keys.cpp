@@ -198,6 +198,18 @@ StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers
   return key.key();
 }
 
+StageKey diffusion_cells_key(const Body& body, const StageKey& samples, std::span<const MeshKeys> meshes) {
+  KeyBuilder key("diffusion cells", 5);
+  key.add(samples).add(body.profile.eta).add(body.plan.cell);
+  key.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
+  for (const std::uint32_t mesh : body.plan.meshes) key.add(meshes[mesh].shape);
+  return key.key();
+}
+
+StageKey diffusion_key(const StageKey& cells, const StageKey& light) {
+  return KeyBuilder("diffusion", 5).add(cells).add(light).key();
+}
+
 StageKey walked_profile_key(double absorbed, double eta) {
   return KeyBuilder("walked profile", kWalkedProfileVersion).add(absorbed).add(eta).key();
 }

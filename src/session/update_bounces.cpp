@@ -8,19 +8,30 @@
 namespace opaline {
 namespace {
 
+void tint_bounced(const Body& body, std::span<RgbF> bounced) {
+  for (std::size_t i = 0; i < body.entering.size(); ++i) bounced[i] = bounced[i] * body.entering[i];
+}
+
 /// What other surfaces send to a body's samples, to what enters there from lights.
 void add_bounced(Body& body, std::span<const RgbF> bounced) {
-  for (std::size_t i = 0; i < bounced.size(); ++i)
-    body.irradiance[i] += body.entering.empty() ? bounced[i] : bounced[i] * body.entering[i];
+  for (std::size_t i = 0; i < bounced.size(); ++i) body.irradiance[i] += bounced[i];
 }
 
 /// While it lives, bodies have the light of lights alone, as what bounces once needs it, in place of all they have.
 class LitByLightsAlone {
  public:
-  LitByLightsAlone(std::vector<Body>& bodies, const std::vector<Light>& lights) : bodies_(bodies) {
-    for (Body& body : bodies) {
-      all_.push_back({std::move(body.irradiance), std::move(body.octree), std::move(body.surface_cache)});
+  LitByLightsAlone(std::vector<Body>& bodies, const std::vector<BodyKeys>& keys,
+                   const std::vector<Light>& lights)
+      : bodies_(bodies) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      Body& body = bodies[b];
+      all_.push_back({std::move(body.irradiance), std::move(body.octree), std::move(body.surface_cache),
+                      body.volume_fit});
       body.surface_cache.reset();
+      if (body.plan.method == Method::volume_diffusion) {
+        body.volume_fit = keys[b].lit_fit;
+        continue;
+      }
       body.irradiance = entered_irradiance(body, lights);
       body.octree = gather_flux(body.surface.samples, body.irradiance);
       bound_far_side(body);
@@ -31,6 +42,7 @@ class LitByLightsAlone {
       bodies_[b].irradiance = std::move(all_[b].irradiance);
       bodies_[b].octree = std::move(all_[b].octree);
       bodies_[b].surface_cache = std::move(all_[b].surface_cache);
+      bodies_[b].volume_fit = std::move(all_[b].volume_fit);
     }
   }
   LitByLightsAlone(const LitByLightsAlone&) = delete;
@@ -41,6 +53,7 @@ class LitByLightsAlone {
     std::vector<RgbF> irradiance;
     Octree octree;
     std::optional<SurfaceCache> surface_cache;
+    std::shared_ptr<const CellFit> volume_fit;
   };
   std::vector<Body>& bodies_;
   std::vector<AllLight> all_;
@@ -48,42 +61,58 @@ class LitByLightsAlone {
 
 }  // namespace
 
-// Trees with the light that bounces in place of those without it. What bounces depends on all bodies.
+// Trees and cells with the light that bounces in place of those without it. What bounces depends on all bodies.
 void Session::State::update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights) {
+  const auto has_cells = [&](std::size_t b) { return bodies_[b].plan.method == Method::volume_diffusion; };
   KeyBuilder all("bounces", 1);
   all.add(surfaces_key(input, mesh_keys_, lights));
-  for (const BodyKeys& known : keys_) all.add(known.lights_key).add(known.kernel_key);
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (has_cells(b))
+      all.add(keys_[b].volume_key);
+    else
+      all.add(keys_[b].lights_key).add(keys_[b].kernel_key);
   const StageKey bounces = all.key();
-  const auto key_of = [&](const BodyKeys& known) {
-    return KeyBuilder("octree with bounces", 1).add(bounces).add(known.lights_key).key();
-  };
-  if (std::ranges::all_of(keys_, [&](const BodyKeys& known) { return known.tree_key == key_of(known); }))
-    return;
-  std::vector<std::vector<RgbF>> bounced = kept_bounces(key_of);
+  std::vector<StageKey> wanted;
+  bool are_there = true;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const BodyKeys& known = keys_[b];
+    KeyBuilder key(has_cells(b) ? "diffusion with bounces" : "octree with bounces", 1);
+    wanted.push_back(key.add(bounces).add(has_cells(b) ? known.volume_key : known.lights_key).key());
+    are_there = are_there && (has_cells(b) ? known.bounced_key : known.tree_key) == wanted[b];
+  }
+  if (are_there) return;
+  std::vector<std::vector<RgbF>> bounced = kept_bounces(wanted);
   if (bounced.empty()) {
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
-      hold_tree(bodies_[b], keys_[b], keys_[b].lights_key);
-    }
-    std::ranges::for_each(bodies_, bound_far_side);
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      if (has_cells(b)) {
+        forget_bounced(bodies_[b], keys_[b]);
+      } else {
+        bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
+        hold_tree(bodies_[b], keys_[b], keys_[b].lights_key);
+        bound_far_side(bodies_[b]);
+      }
     bounced = bounced_at_samples(input, bodies_);
     for (std::size_t b = 0; cache_ != nullptr && b < bodies_.size(); ++b)
-      cache_->keep_bounced(key_of(keys_[b]), bounced[b]);
+      cache_->keep_bounced(wanted[b], bounced[b]);
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
-    add_bounced(bodies_[b], bounced[b]);
-    hold_tree(bodies_[b], keys_[b], key_of(keys_[b]));
+    tint_bounced(bodies_[b], bounced[b]);
+    if (has_cells(b)) {
+      diffuse_bounced(bodies_[b], keys_[b], input, bounced[b], wanted[b]);
+    } else {
+      bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
+      add_bounced(bodies_[b], bounced[b]);
+      hold_tree(bodies_[b], keys_[b], wanted[b]);
+    }
     note_decision(bodies_[b], "light of other surfaces gathered");
   }
 }
 
 /// From the cache; empty where it lacks one of them.
-std::vector<std::vector<RgbF>> Session::State::kept_bounces(
-    const std::function<StageKey(const BodyKeys&)>& key_of) {
+std::vector<std::vector<RgbF>> Session::State::kept_bounces(std::span<const StageKey> keys) {
   std::vector<std::vector<RgbF>> all;
   for (std::size_t b = 0; cache_ != nullptr && b < bodies_.size(); ++b) {
-    auto found = cache_->find_bounced(key_of(keys_[b]), bodies_[b].surface.samples.size());
+    auto found = cache_->find_bounced(keys[b], bodies_[b].surface.samples.size());
     if (!found) return {};
     all.push_back(std::move(*found));
   }
@@ -96,11 +125,12 @@ void Session::State::update_bounced_places(const RenderInput& input) {
   KeyBuilder builder("bounced places", 1);
   builder.add(view_key(precompute, mesh_keys_));
   builder.add(surfaces_key(precompute, mesh_keys_, recentred_lights(scene_, *world_)));
-  for (const BodyKeys& known : keys_) builder.add(known.tree_key).add(known.kernel_key);
+  for (const BodyKeys& known : keys_)
+    builder.add(known.tree_key).add(known.kernel_key).add(known.bounced_key);
   // The keys of bodies say nothing where none are prepared.
   const StageKey key = is_needed() ? builder.key() : StageKey{};
   if (bounced_ != nullptr && key != StageKey{} && key == bounced_key_) return;
-  const LitByLightsAlone lit(bodies_, recentred_lights(scene_, *world_));
+  const LitByLightsAlone lit(bodies_, keys_, recentred_lights(scene_, *world_));
   bounced_ = opaline::bounced_places(input);
   bounced_key_ = key;
 }

@@ -61,26 +61,33 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
   if (key.key() != known.volume_key || !body.volume) {
     known.volume_key = {};
     body.volume = exitance_of(walks, body.walks);
-    fit_cells(body, known);
+    body.volume_fit = fit_of(body, known, body.volume->exitance, body.volume->error);
     known.volume_key = key.key();
   }
   note_decision(body, passes > before ? "walked at random" : "random walks kept");
 }
 
+/// The cells at hand, or made anew where they are not the body's.
+const VolumeDiffusion& Session::State::cells_of(const Body& body, BodyKeys& known,
+                                                const PrecomputeInput& input) {
+  const StageKey key = diffusion_cells_key(body, known.samples_key, mesh_keys_);
+  if (known.diffusion == nullptr || known.diffusion_key != key)
+    known.diffusion = std::make_shared<const VolumeDiffusion>(diffusion_of(input, body, known.cut_normals));
+  known.diffusion_key = key;
+  return *known.diffusion;
+}
+
 void Session::State::update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                       const std::vector<Light>& lights) {
   update_tint(body, known);
-  KeyBuilder cells("diffusion cells", 5);
-  cells.add(known.samples_key).add(body.profile.eta).add(body.plan.cell);
-  cells.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
-  for (const std::uint32_t mesh : body.plan.meshes) cells.add(mesh_keys_[mesh].shape);
-  KeyBuilder builder("diffusion", 5);
-  const StageKey cells_key = cells.key();
-  const StageKey key = builder.add(cells_key)
-                           .add(octree_key(known.samples_key, known.light_keys, lights, known.tint_key))
-                           .key();
-  if (key == known.volume_key) return note_decision(body, "diffusion kept");
+  const StageKey key = diffusion_key(diffusion_cells_key(body, known.samples_key, mesh_keys_),
+                                     octree_key(known.samples_key, known.light_keys, lights, known.tint_key));
+  if (key == known.volume_key) {
+    if (bounces_of(scene_) == 0) forget_bounced(body, known);
+    return note_decision(body, "diffusion kept");
+  }
   known.volume_key = {};
+  const VolumeDiffusion* const before = known.diffusion.get();
   std::optional<VolumeExitance> found;
   if (cache_ != nullptr) found = cache_->find_volume(key, body.surface.samples.size());
   if (found) {
@@ -88,30 +95,54 @@ void Session::State::update_diffusion(Body& body, BodyKeys& known, const Precomp
     ++work_.found;
     note_decision(body, "diffusion from the cache");
   } else {
-    const bool at_hand = known.diffusion != nullptr && known.diffusion_key == cells_key;
-    if (!at_hand)
-      known.diffusion = std::make_shared<const VolumeDiffusion>(diffusion_of(input, body, known.cut_normals));
-    known.diffusion_key = cells_key;
-    body.volume = known.diffusion->exitance(lights, body.transfers, body.entering, input.monitor);
+    const VolumeDiffusion& cells = cells_of(body, known, input);
+    body.volume = cells.exitance(lights, body.transfers, body.entering, input.monitor);
     if (cache_ != nullptr) cache_->keep_volume(key, *body.volume);
-    note_decision(body, at_hand ? "diffusion solved in the cells at hand" : "diffusion solved");
-    if (!edits_) known.diffusion = nullptr;
+    note_decision(body, &cells == before ? "diffusion solved in the cells at hand" : "diffusion solved");
   }
-  fit_cells(body, known);
+  known.lit_fit = fit_of(body, known, body.volume->exitance, body.volume->error);
+  forget_bounced(body, known);
   known.volume_key = key;
 }
 
-// Where edits are to come, what the fit takes of the samples' places alone is kept for them.
-void Session::State::fit_cells(Body& body, BodyKeys& known) {
-  const std::span<const RgbF> means = body.volume->exitance, errors = body.volume->error;
-  if (!edits_) {
-    body.volume_fit = std::make_shared<const CellFit>(body.surface.samples, means, errors);
-    return;
+void Session::State::forget_bounced(Body& body, BodyKeys& known) {
+  known.bounced_key = {};
+  body.bounced.reset();
+  body.volume_fit = known.lit_fit;
+}
+
+/// key: of what light that bounced adds
+void Session::State::diffuse_bounced(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                                     std::span<const RgbF> bounced, const StageKey& key) {
+  if (key == known.bounced_key) return;
+  forget_bounced(body, known);
+  std::optional<VolumeExitance> found;
+  if (cache_ != nullptr) found = cache_->find_volume(key, body.surface.samples.size());
+  work_.found += found ? 1 : 0;
+  if (!found) {
+    found = cells_of(body, known, input).exitance_of_even(bounced, input.monitor);
+    if (cache_ != nullptr) cache_->keep_volume(key, *found);
   }
+  body.bounced = std::move(found);
+  std::vector<RgbF> all, errors;
+  for (std::size_t i = 0; i < body.surface.samples.size(); ++i) {
+    all.push_back(body.volume->exitance[i] + body.bounced->exitance[i]);
+    errors.push_back(body.volume->error[i] + body.bounced->error[i]);
+  }
+  body.volume_fit = fit_of(body, known, all, errors);
+  known.bounced_key = key;
+}
+
+// Where edits or a second fit are to come, what a fit takes of the samples' places alone is kept for them.
+std::shared_ptr<const CellFit> Session::State::fit_of(const Body& body, BodyKeys& known,
+                                                      std::span<const RgbF> means,
+                                                      std::span<const RgbF> errors) const {
+  if (!edits_ && bounces_of(scene_) == 0)
+    return std::make_shared<const CellFit>(body.surface.samples, means, errors);
   if (known.cell_weights == nullptr || known.cell_weights_key != known.samples_key)
     known.cell_weights = std::make_shared<const CellWeights>(body.surface.samples);
   known.cell_weights_key = known.samples_key;
-  body.volume_fit = std::make_shared<const CellFit>(*known.cell_weights, means, errors);
+  return std::make_shared<const CellFit>(*known.cell_weights, means, errors);
 }
 
 }  // namespace opaline

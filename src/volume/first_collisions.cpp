@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "opaline/core/random.h"
 #include "opaline/lights/light.h"
+#include "opaline/transport/fresnel.h"
 #include "opaline/transport/smooth_boundary.h"
 
 namespace opaline {
@@ -24,9 +26,10 @@ double golden_point(std::size_t i) {
   return turns - std::floor(turns);
 }
 
-constexpr std::size_t kDirections = 8;  // towards a light that is no point
+constexpr std::size_t kDirections = 8;  // towards what is no point
+constexpr std::size_t kAllAround = 3;   // of light from all sides; neighbours' are others
 
-/// Directions towards a light, each with its share of what enters there.
+/// Directions that light comes from, each with its share of what enters there.
 struct Directions {
   struct One {
     Vec3f outward;
@@ -54,6 +57,24 @@ Directions towards_light(const Light& light, const BoundaryElement& element, dou
     sum = 1;
   }
   for (std::size_t n = 0; n < found.count; ++n) found.some[n].share /= sum;
+  return found;
+}
+
+Directions all_around(const BoundaryElement& element, double eta, std::size_t i) {
+  Vec3f x, y;
+  tangent_frame(element.normal, x, y);
+  Directions found;
+  double sum = 0;
+  for (; found.count < kAllAround; ++found.count) {
+    const auto [u, v] = r2_point(i * kAllAround + found.count, {.5, .5});
+    const double sine = std::sqrt(u), cosine = std::sqrt(1 - u), angle = 2 * std::numbers::pi * v;
+    const double share = fresnel_transmittance(cosine, eta);
+    found.some[found.count] = {x * float(sine * std::cos(angle)) + y * float(sine * std::sin(angle)) +
+                                   element.normal * float(cosine),
+                               share};
+    sum += share;
+  }
+  for (Directions::One& one : found.some) one.share /= sum;
   return found;
 }
 
@@ -325,31 +346,48 @@ void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) 
   leave(way, *exit, i, arriving);
 }
 
-// What enters of a light at each element, W: all that enters at the samples.
-std::vector<Rgb> entering_flux(const DiffusionSpace& space, const EnteringLight& light, std::size_t l) {
+// What enters at each element, W: all that enters at the samples.
+template <class OfSample>
+std::vector<Rgb> entering_flux(const DiffusionSpace& space, const OfSample& entering) {
   std::vector<Rgb> flux(space.boundary.elements.size());
-  for (std::size_t s = 0; s < space.samples.size(); ++s) {
-    const double entering = double(space.samples[s].area) * double(light.transfers[l].weights[s]);
-    const Rgb tint = light.tints.empty() ? Rgb(1) : Rgb(light.tints[s]);
-    flux[space.boundary.of_sample[s]] += emission(light.lights[l]) * tint * entering;
-  }
+  for (std::size_t s = 0; s < space.samples.size(); ++s) flux[space.boundary.of_sample[s]] += entering(s);
   return flux;
+}
+
+// directions: of an element, by its index
+template <class DirectionsOf>
+void enter_everywhere(const DiffusionSpace& space, std::span<const Rgb> flux, const DirectionsOf& directions,
+                      Depositor& depositor) {
+  for (std::size_t i = 0; i < flux.size(); ++i) {
+    if (!(max_component(flux[i]) > 0) || space.attached[i].cell == DiffusionGrid::kNone) continue;
+    const Directions from = directions(i);
+    for (std::size_t n = 0; n < from.count; ++n)
+      depositor.enter(Vec3d(from.some[n].outward), flux[i] * from.some[n].share, i);
+  }
 }
 
 }  // namespace
 
 FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light) {
   Depositor depositor(space);
+  const std::vector<BoundaryElement>& elements = space.boundary.elements;
+  const double eta = space.media[0].eta;
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
-    const std::vector<Rgb> flux = entering_flux(space, light, l);
-    for (std::size_t i = 0; i < flux.size(); ++i) {
-      if (!(max_component(flux[i]) > 0) || space.attached[i].cell == DiffusionGrid::kNone) continue;
-      const Directions from =
-          towards_light(light.lights[l], space.boundary.elements[i], space.media[0].eta, i);
-      for (std::size_t n = 0; n < from.count; ++n)
-        depositor.enter(Vec3d(from.some[n].outward), flux[i] * from.some[n].share, i);
-    }
+    const std::vector<Rgb> flux = entering_flux(space, [&](std::size_t s) {
+      const Rgb tint = light.tints.empty() ? Rgb(1) : Rgb(light.tints[s]);
+      return emission(light.lights[l]) * tint *
+             (double(space.samples[s].area) * double(light.transfers[l].weights[s]));
+    });
+    enter_everywhere(
+        space, flux, [&](std::size_t i) { return towards_light(light.lights[l], elements[i], eta, i); },
+        depositor);
   }
+  if (!light.even.empty())
+    enter_everywhere(
+        space,
+        entering_flux(space,
+                      [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); }),
+        [&](std::size_t i) { return all_around(elements[i], eta, i); }, depositor);
   return depositor.take();
 }
 

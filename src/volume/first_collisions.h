@@ -14,11 +14,13 @@
 
 namespace opaline {
 
-/// Lights and what of them enters at the samples.
+/// What enters at the samples, of lights or from all around.
 struct EnteringLight {
   std::span<const Light> lights;             ///< recentred
   std::span<const LightTransfer> transfers;  ///< one a light
   std::span<const RgbF> tints;               ///< factors, one a sample; empty: none
+  std::span<const RgbF> even =
+      {};  ///< of equal radiance from all sides, W per area, one a sample; empty: none
 };
 
 /// A boundary element's cell.

@@ -36,6 +36,8 @@ struct VolumeDiffusion::State {
         fine(input.world, input.meshes, samples, media, lattice),
         coarse(input.world, input.meshes, samples, media, doubled(lattice)) {}
 
+  VolumeExitance exitance(const EnteringLight& light, Monitor* monitor) const;
+
   std::array<CalibratedMedium, 3> media;
   std::vector<BoundaryElement> samples;
   Lattice lattice;
@@ -65,10 +67,16 @@ std::size_t VolumeDiffusion::cells() const {
 VolumeExitance VolumeDiffusion::exitance(std::span<const Light> lights,
                                          std::span<const LightTransfer> transfers,
                                          std::span<const RgbF> tints, Monitor* monitor) const {
-  const EnteringLight light{lights, transfers, tints};
-  const DiffusionBody::Solution rough = state_->coarse.solve(light, {}, monitor);
-  const DiffusionBody::Solution solution =
-      state_->fine.solve(light, state_->coarse.carried(rough, state_->fine), monitor);
+  return state_->exitance({lights, transfers, tints}, monitor);
+}
+
+VolumeExitance VolumeDiffusion::exitance_of_even(std::span<const RgbF> entering, Monitor* monitor) const {
+  return state_->exitance({{}, {}, {}, entering}, monitor);
+}
+
+VolumeExitance VolumeDiffusion::State::exitance(const EnteringLight& light, Monitor* monitor) const {
+  const DiffusionBody::Solution rough = coarse.solve(light, {}, monitor);
+  const DiffusionBody::Solution solution = fine.solve(light, coarse.carried(rough, fine), monitor);
   VolumeExitance result;
   result.exitance = solution.exitance;
   for (const RgbF& before : rough.exitance) {

@@ -99,14 +99,13 @@ TEST(LightGroups, SumToThePicture) {
   }
 }
 
-// Claim: light that bounces is in the group of the light that it comes from, with hierarchical and lambert; and groups
-// are of volume_diffusion, too. Fails if groups are rendered without bounces, or bounced light is kept from the light
+// Claim: light that bounces is in the group of the light that it comes from, with all methods that have groups. Fails if groups are rendered without bounces, or bounced light is kept from the light
 // before.
 TEST(LightGroups, BouncedLightAndOtherMethods) {
   for (const Method method : {Method::hierarchical, Method::lambert, Method::volume_diffusion}) {
     Scene scene = lit_balls();
     scene.settings.method = method;
-    scene.settings.bounces = method == Method::volume_diffusion ? 0 : 1;
+    scene.settings.bounces = 1;
     const Grouped grouped(scene);
     expect_sum(scene, grouped.picture);
     for (const std::size_t light : {0, 1})

@@ -63,6 +63,30 @@ TEST(SessionCache, SurfaceCacheIsFound) {
   }
 }
 
+// Claim: diffusion is solved once, with light that bounced too: another session traces no ray from a sample and has the same
+// picture; a floor of another colour sends other light. Source: one notion of keys. Fails if: what bounced is kept under the
+// key of what the lights alone bring, or under one that does not know the floor.
+TEST(SessionCache, DiffusionOfBouncedLightIsFound) {
+  const ScratchFolder folder;
+  Scene scene = two_balls();
+  scene.settings.method = Method::volume_diffusion;
+  scene.settings.bounces = 1;
+  Scene lone = scene, red = scene;
+  lone.settings.bounces = 0;
+  red.shapes[2].reflectance = {.9, .1, .1};
+  for (const bool is_first : {true, false}) {
+    StageCache cache(folder.path.string());
+    Session session(&cache);
+    for (const Scene* each : {&scene, &lone, &red}) {
+      EXPECT_TRUE(same_pixels(picture_of(session, *each), cold_picture(*each)));
+      EXPECT_EQ(session.work().sample_rays > 0, is_first && each == &scene);
+    }
+    EXPECT_EQ(session.work().found, is_first ? 0u : 2u);  // what each ball sends of it
+    EXPECT_EQ(cache.warning(), "");
+  }
+  EXPECT_FALSE(same_pixels(cold_picture(scene), cold_picture(red)));
+}
+
 // Claim: a spoiled entry costs its stage alone and one warning; the picture is the same. Source: session.h.
 // Fails if: the result is computed but the key's entry not replaced (the second time warns again).
 TEST(SessionCache, SpoiledEntry) {

@@ -38,7 +38,8 @@ struct Body {
                                                    ///< the points of the picture
   VolumeSums walks = {};                           ///< of Method::volume
   std::optional<VolumeExitance> volume = {};       ///< what they amount to, or volume_diffusion
-  std::shared_ptr<const CellFit> volume_fit = {};  ///< the same at any point
+  std::optional<VolumeExitance> bounced = {};  ///< what light from other surfaces adds to volume_diffusion
+  std::shared_ptr<const CellFit> volume_fit = {};  ///< of both, at any point
   std::vector<RgbF> entering = {};                 ///< entering_tints, one a sample; empty: none
 };
 

@@ -78,6 +78,13 @@ StageKey view_light_key(const Light& light);
 std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& samples,
                                 std::span<const MeshKeys> meshes);
 
+/// Of the cells of volume_diffusion inside a body.
+/// in    samples: key of the body's
+StageKey diffusion_cells_key(const Body& body, const StageKey& samples, std::span<const MeshKeys> meshes);
+/// Of what leaves by diffusion.
+/// in    light: octree_key of what enters
+StageKey diffusion_key(const StageKey& cells, const StageKey& light);
+
 /// Whether a mesh could be in the way between a light and a group's meshes, to judge by the balls around them
 /// all; at most too cautious.
 /// in    light: recentred; unit: World::unit

@@ -45,6 +45,11 @@ class VolumeDiffusion {
   VolumeExitance exitance(std::span<const Light> lights, std::span<const LightTransfer> transfers,
                           std::span<const RgbF> tints = {}, Monitor* monitor = nullptr) const;
 
+  /// Of light that comes to each sample evenly from all sides, as that of the surfaces around is taken to be.
+  /// in    entering: what enters, W per area, one a sample
+  /// out   as above
+  VolumeExitance exitance_of_even(std::span<const RgbF> entering, Monitor* monitor = nullptr) const;
+
   /// Cells of the finer grid.
   std::size_t cells() const;
 
