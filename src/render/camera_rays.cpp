@@ -33,6 +33,8 @@ CameraRays::CameraRays(const Camera& camera, const Film& film, const World& worl
   const Vec3d right = normalized(cross(forward_, camera.up));
   right_ = right * pixel;
   down_ = cross(forward_, right) * pixel;
+  across_ = right / pixel;
+  below_ = cross(forward_, right) / pixel;
   for (int i = 0; i < film.samples_per_pixel; ++i) {
     const auto [u, v] = r2_point(std::uint64_t(i), {0.5, 0.5});
     places_.push_back({filter_place(film.filter, u), filter_place(film.filter, v)});
@@ -47,9 +49,8 @@ Ray CameraRays::ray(int x, int y, int sample) const {
 
 CameraRays::FilmPlace CameraRays::film_place(const Vec3d& point) const {
   const Vec3d towards = point - position_;
-  const double depth = dot(towards, forward_);
-  return {center_x_ + dot(towards, right_) / (dot(right_, right_) * depth),
-          center_y_ + dot(towards, down_) / (dot(down_, down_) * depth), depth};
+  const double depth = dot(towards, forward_), per_depth = 1 / depth;
+  return {center_x_ + dot(towards, across_) * per_depth, center_y_ + dot(towards, below_) * per_depth, depth};
 }
 
 }  // namespace opaline

@@ -31,6 +31,7 @@ class CameraRays {
 
  private:
   Vec3d position_, forward_, right_, down_;  // right_ and down_: one pixel on the film plane at depth 1
+  Vec3d across_, below_;                     // along them; times what is at depth 1: pixels
   double center_x_, center_y_;
   struct Place {
     double x, y;

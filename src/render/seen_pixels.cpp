@@ -2,8 +2,10 @@
 #include "render/seen_pixels.h"
 
 #include <algorithm>
-#include <bitset>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -18,44 +20,54 @@ constexpr int kCells = 64;      // along each side, at most
 constexpr int kNarrowest = 16;  // pixels of a cell
 constexpr double kApart = 3;    // pixels around a triangle: the filter's radius, and rounding
 
-/// The cells around a place of the picture; outside of the part -1 or their number.
-struct CellBox {
-  int x0, x1, y0, y1;
-};
+/// The cells around a place of the picture, outside of the part -1 or their number: x0, -x1, y0, -y1, so that what
+/// holds two boxes is the smaller of each.
+typedef short CellBox __attribute__((vector_size(8)));
+CellBox around_both(const CellBox& a, const CellBox& b) {
+  return a < b ? a : b;
+}
 
 class SeenCells {
  public:
   explicit SeenCells(const Rectangle& part)
-      : part_(part), columns_(count(part.x1 - part.x0)), rows_(count(part.y1 - part.y0)) {}
+      : part_(part),
+        columns_(count(part.x1 - part.x0)),
+        rows_(count(part.y1 - part.y0)),
+        across_(double(columns_) / (part.x1 - part.x0)),
+        down_(double(rows_) / (part.y1 - part.y0)) {}
 
   CellBox around(const CameraRays::FilmPlace& place) const {
     // Truncation of what is not negative: std::floor is a call without SSE 4.1.
-    const auto cell = [](double at, int low, int high, int cells) {
-      return int(std::clamp((at - low) / (high - low) * cells + 1, 0.0, double(cells + 1))) - 1;
+    const auto cell = [](double at, int cells) {
+      return short(short(std::clamp(at + 1, 0.0, double(cells + 1))) - 1);
     };
-    return {cell(place.x - kApart, part_.x0, part_.x1, columns_),
-            cell(place.x + kApart, part_.x0, part_.x1, columns_),
-            cell(place.y - kApart, part_.y0, part_.y1, rows_),
-            cell(place.y + kApart, part_.y0, part_.y1, rows_)};
+    const double x = (place.x - part_.x0) * across_, y = (place.y - part_.y0) * down_;
+    const double beside = kApart * across_, below = kApart * down_;
+    return CellBox{cell(x - beside, columns_), short(-cell(x + beside, columns_)), cell(y - below, rows_),
+                   short(-cell(y + below, rows_))};
   }
 
-  void add(const CellBox& a, const CellBox& b, const CellBox& c) {
-    const int x0 = std::max(0, std::min({a.x0, b.x0, c.x0})),
-              x1 = std::min(columns_ - 1, std::max({a.x1, b.x1, c.x1})),
-              y0 = std::max(0, std::min({a.y0, b.y0, c.y0})),
-              y1 = std::min(rows_ - 1, std::max({a.y1, b.y1, c.y1}));
-    for (int y = y0; y <= y1; ++y)
-      for (int x = x0; x <= x1; ++x) seen_[std::size_t(y * kCells + x)] = true;
+  void add(const CellBox& box) {
+    const int x0 = std::max<int>(0, box[0]), x1 = std::min(columns_ - 1, -box[1]),
+              y0 = std::max<int>(0, box[2]), y1 = std::min(rows_ - 1, -box[3]);
+    if (x0 > x1) return;
+    const std::uint64_t columns = ~0ull >> (kCells - 1 - x1) & ~0ull << x0;
+    for (int y = y0; y <= y1; ++y) seen_[std::size_t(y)] |= columns;
   }
 
-  double share() const { return double(seen_.count()) / (double(columns_) * rows_); }
+  double share() const {
+    int seen = 0;
+    for (const std::uint64_t row : seen_) seen += std::popcount(row);
+    return seen / (double(columns_) * rows_);
+  }
 
  private:
   static int count(int side) { return std::clamp(side / kNarrowest, 1, kCells); }
 
   Rectangle part_;
   int columns_, rows_;
-  std::bitset<std::size_t(kCells* kCells)> seen_;
+  double across_, down_;                      // cells of a pixel
+  std::array<std::uint64_t, kCells> seen_{};  // row by row, a bit a column
 };
 
 }  // namespace
@@ -74,7 +86,8 @@ std::size_t seen_pixels(const Scene& scene, const World& world) {
       if (!(place.depth > 0)) return all;
       around.push_back(cells.around(place));
     }
-    for (const auto& [a, b, c] : mesh.triangles) cells.add(around[a], around[b], around[c]);
+    for (const auto& [a, b, c] : mesh.triangles)
+      cells.add(around_both(around_both(around[a], around[b]), around[c]));
   }
   return std::size_t(std::ceil(cells.share() * double(all)));
 }
