@@ -15,8 +15,9 @@ constexpr std::uint64_t kSeed = 4000;
 // Rays from a sample, whose neighbours' are added to its own by the medium; from a hit that nothing stands for; from a
 // place that stands for the pixels around it: for each of them, at least and at most.
 constexpr int kOfSample = 16, kOfHit = 24, kOfPixel = 3, kFewestOfPlace = 48, kMostOfPlace = 192;
-constexpr int kAcross = 64;  // places along the picture's longer side
-constexpr int kAround = 2;   // beyond each border
+constexpr std::size_t kPlacesAtOnce = 256;  // each of many rays, and the threads share them
+constexpr int kAcross = 64;                 // places along the picture's longer side
+constexpr int kAround = 2;                  // beyond each border
 // Distance from a place's plane, over the places' spacing, at which it stands for a hit half as well.
 constexpr float kOffPlane = 0.2f;
 constexpr float kLeastWeight = 0.05f;  // of all places around a hit, where a place at the hit has 1
@@ -71,8 +72,8 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, std::
   std::vector<std::uint64_t> keys(rays.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = i;
   HeldView* const view = input.view;
-  if (view != nullptr) view->at_places.resize(chunk_count(rays.size(), kGatheredAtOnce));
-  parallel_chunks(rays.size(), kGatheredAtOnce, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+  if (view != nullptr) view->at_places.resize(chunk_count(rays.size(), kPlacesAtOnce));
+  parallel_chunks(rays.size(), kPlacesAtOnce, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     const std::vector<Shader::SeenSurfaces> seen =
         shader.surfaces_along(rays.subspan(begin, end - begin), std::span(keys).subspan(begin, end - begin));
     for (const auto& [field, hits, eta] : seen) {

@@ -11,8 +11,9 @@
 
 namespace opaline {
 
-/// Points whose rays are traced together.
-inline constexpr std::size_t kGatheredAtOnce = 64;
+/// Points whose rays are traced together, and what they meet is shaded together: trees are summed for many points that lie
+/// all around in half of the time that they take for few.
+inline constexpr std::size_t kGatheredAtOnce = 1024;
 
 /// What points gather, by rays over the hemisphere, from surfaces that are lit by the scene's lights.
 struct GatherInput {

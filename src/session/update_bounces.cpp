@@ -50,7 +50,7 @@ class LitByLightsAlone {
 
 // Trees with the light that bounces in place of those without it. What bounces depends on all bodies.
 void Session::State::update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights) {
-  KeyBuilder all("bounces", 1);
+  KeyBuilder all("bounces", 2);
   all.add(surfaces_key(input, mesh_keys_, lights));
   for (const BodyKeys& known : keys_) all.add(known.lights_key).add(known.kernel_key);
   const StageKey bounces = all.key();
