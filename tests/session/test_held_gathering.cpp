@@ -62,8 +62,7 @@ TEST(HeldGathering, ColoursAndMediaTraceNothing) {
 }
 
 // Claim: a light that moved is looked for from what gathered rays met, and another index weighs them anew. Source:
-// held_view.h. Fails if: one is kept of the light before it moved, or of the boundary before; or (fewer places stand for
-// a ball whose index is that of the other) what hits gathered is taken for that of other hits.
+// held_view.h. Fails if: one is kept of the light before it moved (set_lights), or of the boundary before (set_fields).
 TEST(HeldGathering, LightsThatMoveAndBoundaries) {
   Held held;
   const auto edit = [&](const char* what, const std::function<void(Scene&)>& apply) {
