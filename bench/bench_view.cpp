@@ -2,6 +2,7 @@
 // What a person waits for at the page of `opaline view`: milliseconds of wall time from a message to the frame it
 // leads to, through the WebSocket, with two threads; beside a lambert frame of the same size and threads.
 // usage: bench_view SCENE [SCREENSHOT.png [light | dark]]   (the screenshot needs Debian's chromium-headless-shell)
+//        bench_view --new-asset   (1M triangles that nothing has seen before)
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
@@ -12,6 +13,7 @@
 #include <functional>
 #include <vector>
 
+#include "large_asset.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 #include "view/browser.h"
@@ -126,14 +128,19 @@ void print_row(const char* name, const Waits& waits, double lambert) {
   std::fflush(stdout);
 }
 
+constexpr int kStarts = 3;
+
+/// From before the view is started.
+void measure_start(const std::string& file, Waits& waits) {
+  const Clock::time_point start = Clock::now();
+  const RunningView view(file);
+  ViewClient page(view);
+  wait_for_final(page, 1, start, waits);
+}
+
 Waits measure_cold(const std::string& file) {
   Waits waits;
-  for (int round = 0; round < 3; ++round) {
-    const Clock::time_point start = Clock::now();
-    const RunningView view(file);
-    ViewClient page(view);
-    wait_for_final(page, 1, start, waits);
-  }
+  for (int round = 0; round < kStarts; ++round) measure_start(file, waits);
   return waits;
 }
 
@@ -175,6 +182,32 @@ Json scattering(const Medium& medium, int round) {
           {"specular_roughness", medium.specular_roughness}};
 }
 
+void print_head(const Scene& scene, double lambert) {
+  fmt::print("{} x {} pixels, {} threads, lambert frame {:.1f} ms\n{:<28}{:>27}   {:>27}\n{:<28}",
+             scene.film.resolution[0], scene.film.resolution[1], kThreads, lambert, "", "first picture",
+             "final picture", "ms");
+  for (int i = 0; i < 2; ++i)
+    fmt::print("{:>9}{:>9}{:>9}{}", "median", "p95", "/lambert", i == 0 ? "   " : "\n");
+}
+
+/// Each start opens a file that was just written.
+void measure_new_asset() {
+  constexpr int kCells = 289;
+  const ScratchFolder folder;
+  Waits waits;
+  std::string file;
+  int triangles = 0;
+  for (int round = 0; round < kStarts; ++round) {
+    file = folder.file(fmt::format("ball{}.glb", round));
+    triangles = write_ball_asset(file, kCells);
+    measure_start(file, waits);
+  }
+  const Scene scene = load_scene(file);
+  const double lambert = lambert_milliseconds(scene);
+  print_head(scene, lambert);
+  print_row(fmt::format("new GLB, {:.2f}M triangles", triangles / 1e6).c_str(), waits, lambert);
+}
+
 void measure(const std::string& file) {
   const Scene scene = load_scene(file);
   const Medium& medium = scene.media.at(0);
@@ -182,11 +215,7 @@ void measure(const std::string& file) {
     throw std::runtime_error("a scene in mm is needed whose first medium has coefficients");
   const LightEdits light = light_edits(scene.lights.at(0).source);
   const double lambert = lambert_milliseconds(scene);
-  fmt::print("{} x {} pixels, {} threads, lambert frame {:.1f} ms\n{:<28}{:>27}   {:>27}\n{:<28}",
-             scene.film.resolution[0], scene.film.resolution[1], kThreads, lambert, "", "first picture",
-             "final picture", "ms");
-  for (int i = 0; i < 2; ++i)
-    fmt::print("{:>9}{:>9}{:>9}{}", "median", "p95", "/lambert", i == 0 ? "   " : "\n");
+  print_head(scene, lambert);
   print_row("cold start", measure_cold(file), lambert);
   const RunningView view(file);
   ViewClient page(view);
@@ -233,11 +262,13 @@ void take_screenshot(const std::string& scene, const std::string& path, const st
 
 int main(int argc, char** argv) try {
   if (argc < 2) {
-    fmt::print(stderr, "usage: bench_view SCENE [SCREENSHOT.png [light | dark]]\n");
+    fmt::print(stderr, "usage: bench_view SCENE [SCREENSHOT.png [light | dark]] | --new-asset\n");
     return 2;
   }
   const tbb::global_control two(tbb::global_control::max_allowed_parallelism, kThreads);
-  if (argc > 2)
+  if (argv[1] == std::string("--new-asset"))
+    measure_new_asset();
+  else if (argc > 2)
     take_screenshot(argv[1], argv[2], argc > 3 ? argv[3] : "light");
   else
     measure(argv[1]);

@@ -138,13 +138,15 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
 std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
                                                HeldView::Batch* held) const {
   if (held != nullptr) held->surfaces.resize(fields_.all.size());
-  std::vector<SurfaceHits> all_hits = collect(batch, held);
+  // Of gathered rays, which are many, the lights alone are held.
+  std::vector<SurfaceHits> all_hits = collect(batch, pass.is_seen ? held : nullptr);
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
     const SurfaceHits& hits = all_hits[f];
     if (hits.points.empty()) continue;
     const Field& field = *fields_.all[f];
+    HeldView::Surface* const known = held != nullptr ? &held->surfaces[f] : nullptr;
     const std::vector<RgbF> bounced =
-        field.asks_irradiance() ? bounced_at(hits, field.eta(), pass) : std::vector<RgbF>{};
+        field.asks_irradiance() ? bounced_at(hits, field.eta(), pass, known) : std::vector<RgbF>{};
     const PointIrradianceInput lighting{input_.rays,
                                         hits.points,
                                         hits.keys,
@@ -154,25 +156,25 @@ std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_
                                         point_irradiance_seed(input_.scene.settings),
                                         {},
                                         bounced};
-    write(hits, field.at(hits, lighting, pass, held != nullptr ? &held->surfaces[f] : nullptr), batch.rays,
-          batch.out);
+    write(hits, field.at(hits, lighting, pass, known), batch.rays, batch.out);
   }
   return all_hits;
 }
 
-std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const Pass& pass) const {
+std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
+                                     HeldView::Surface* held) const {
   if (!pass.is_seen) return {};
-  if (bounced_ != nullptr) return bounced_->at(hits, eta);
+  if (bounced_ != nullptr) return bounced_->at(hits, eta, held);
   if (pass.gathers == nullptr) return {};
   return gathered_irradiance({input_.rays, *pass.gathers, hits.points, hits.keys, eta, 1,
                               hash_bits(point_irradiance_seed(input_.scene.settings), kGatheringSeed)});
 }
 
-std::vector<RgbF> Shader::radiance_along(std::span<const TracedRay> rays,
-                                         std::span<const std::uint64_t> keys) const {
+std::vector<RgbF> Shader::radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
+                                         HeldView::Batch* held) const {
   std::vector<PixelSample> seen(rays.size());
   const RayBatch batch{rays, keys, seen, kGatheringSpread, {}};
-  for (const SurfaceHits& hits : shade_diffuse(batch, 1, {.entry_samples = 1, .is_seen = false}, nullptr))
+  for (const SurfaceHits& hits : shade_diffuse(batch, 1, {.entry_samples = 1, .is_seen = false}, held))
     add_evenly_mirrored(hits, batch);
   std::vector<RgbF> radiance;
   radiance.reserve(seen.size());
@@ -187,7 +189,7 @@ std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedR
   std::vector<SeenSurfaces> seen;
   for (std::size_t f = 0; f < hits.size(); ++f)
     if (!hits[f].points.empty() && fields_.all[f]->asks_irradiance())
-      seen.push_back({std::move(hits[f]), fields_.all[f]->eta()});
+      seen.push_back({f, std::move(hits[f]), fields_.all[f]->eta()});
   return seen;
 }
 

@@ -27,13 +27,14 @@ class Shader {
                     std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
   /// What surfaces send back along rays that met them, W/(mm^2 sr): diffusely, and what boundaries mirror of light as if
-  /// it were even; by a ray to each light.
-  std::vector<RgbF> radiance_along(std::span<const TracedRay> rays,
-                                   std::span<const std::uint64_t> keys) const;
+  /// it were even; by a ray to each light. held: how lights reach these surfaces, added to, or null.
+  std::vector<RgbF> radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
+                                   HeldView::Batch* held = nullptr) const;
 
   /// Hits of rays that met surfaces whose light depends on the irradiance at the hit, and the boundary that light
   /// enters through there; 0: none.
   struct SeenSurfaces {
+    std::size_t field;
     SurfaceHits hits;
     float eta;
   };
@@ -72,7 +73,8 @@ class Shader {
   std::vector<SurfaceHits> shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
                                          HeldView::Batch* held) const;
   /// What other surfaces send to hits; empty: nothing.
-  std::vector<RgbF> bounced_at(const SurfaceHits& hits, float eta, const Pass& pass) const;
+  std::vector<RgbF> bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
+                               HeldView::Surface* held) const;
   void write(const SurfaceHits& hits, const LeavingLight& light, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;
   // What boundaries mirror: shade_specular.cpp.

@@ -236,6 +236,7 @@ void Session::State::update_sums(const PrecomputeInput& input, const std::vector
 RenderResult Session::State::render(Monitor* monitor, const AfterTile& after_tile) {
   prepare(monitor);
   HeldView* const view = held_view();
+  if (view != nullptr) view->next_picture();
   RenderInput input{scene_, *world_, *rays_, bodies_, monitor, after_tile, view};
   if (bounces_of(scene_) > 0) update_bounced_places(input);
   input.bounced = bounced_;
@@ -276,7 +277,7 @@ HeldView* Session::State::held_view() {
   view_key_ = key;
   view_surfaces_key_ = surfaces_key;
   view_light_keys_ = std::move(light_keys);
-  view_.next_picture();
+  view_.count_gathered();
   return &view_;
 }
 

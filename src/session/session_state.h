@@ -65,6 +65,7 @@ struct Session::State {
   void diffuse_bounced(Body& body, BodyKeys& known, const PrecomputeInput& input,
                        std::span<const RgbF> bounced, const StageKey& key);
   HeldView* held_view();
+  HeldView* held_view_of_samples(const PrecomputeInput& input);
   void update_bounced_places(const RenderInput& input);
   void note_decision(const Body& body, const std::string& text);
 
@@ -85,7 +86,7 @@ struct Session::State {
   HeldView view_;
   std::shared_ptr<const BouncedPlaces> bounced_;  // of the last picture in which light bounced
   StageKey bounced_key_;
-  StageKey view_key_, view_surfaces_key_, view_coats_key_, view_near_key_;
+  StageKey view_key_, view_surfaces_key_, view_coats_key_, view_near_key_, view_samples_key_;
   std::vector<StageKey> view_light_keys_;
   std::vector<GroupPlan> reference_;  ///< of the anchor; empty: none
   bool edits_ = true, prepared_ = false, anchored_ = false, matches_new_ = false;

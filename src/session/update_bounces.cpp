@@ -64,7 +64,7 @@ class LitByLightsAlone {
 // Trees and cells with the light that bounces in place of those without it. What bounces depends on all bodies.
 void Session::State::update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights) {
   const auto has_cells = [&](std::size_t b) { return bodies_[b].plan.method == Method::volume_diffusion; };
-  KeyBuilder all("bounces", 1);
+  KeyBuilder all("bounces", 2);
   all.add(surfaces_key(input, mesh_keys_, lights));
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     if (has_cells(b))
@@ -91,7 +91,7 @@ void Session::State::update_bounces(const PrecomputeInput& input, const std::vec
         hold_tree(bodies_[b], keys_[b], keys_[b].lights_key);
         bound_far_side(bodies_[b]);
       }
-    bounced = bounced_at_samples(input, bodies_);
+    bounced = bounced_at_samples(input, bodies_, held_view_of_samples(input));
     for (std::size_t b = 0; cache_ != nullptr && b < bodies_.size(); ++b)
       cache_->keep_bounced(wanted[b], bounced[b]);
   }
@@ -106,6 +106,20 @@ void Session::State::update_bounces(const PrecomputeInput& input, const std::vec
     }
     note_decision(bodies_[b], "light of other surfaces gathered");
   }
+}
+
+/// What is held, with what the bodies' samples as they are now gathered; null: nothing is to be held.
+HeldView* Session::State::held_view_of_samples(const PrecomputeInput& input) {
+  HeldView* const view = held_view();
+  if (view == nullptr) return nullptr;
+  KeyBuilder builder("gathered at samples", 1);
+  builder.add(scene_.settings.seed).add(input.plan.rays);
+  for (const MeshKeys& mesh : mesh_keys_) builder.add(mesh.all);
+  for (const BodyKeys& known : keys_) builder.add(known.samples_key);
+  const StageKey key = builder.key();
+  if (key != view_samples_key_) view->at_samples.clear();
+  view_samples_key_ = key;
+  return view;
 }
 
 /// From the cache; empty where it lacks one of them.

@@ -116,8 +116,8 @@ TEST(HeldView, AnotherIndex) {
 
 // Claim: with the view held, a light that moved is looked for by one ray from each place that it could shine
 // on, and no other ray is traced; so is one that came; the picture is the cold one. One that hides part of
-// the view changes what is seen. What boundaries mirror and what bounces is traced anew: here they mirror nothing, and
-// nothing bounces. Source: held_view.h. Fails if: another light's rays are traced again, or are taken for this one's.
+// the view changes what is seen. What boundaries mirror is traced anew: here they mirror nothing. Source: held_view.h. Fails if:
+// another light's rays are traced again, or are taken for this one's.
 TEST(HeldView, MovedLight) {
   Scene scene = two_balls();
   scene.settings.method = Method::lambert;

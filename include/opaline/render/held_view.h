@@ -19,12 +19,17 @@ namespace opaline {
 
 class IrradianceLattice;
 
+/// More is not held of what gathered rays met, bytes.
+inline constexpr std::size_t kMostGatheredBytes = std::size_t(256) << 20;
+
 /// Kept from one picture to the next by Session::hold_view: 20 bytes a camera ray, and where the ray met a
 /// surface 4, 4 a light (8 where the light's error is estimated, too), and 40 where there is room for them; where a rough
-/// coat mirrors lights and surfaces some 100 more, up to kMostCoatBytes in all; and
+/// coat mirrors lights and surfaces some 100 more, up to kMostCoatBytes in all; where surfaces light each other some 60 for
+/// each gathered ray that met one, up to kMostGatheredBytes in all; and
 /// of near fields beside shadows' edges some 60 for each place of a lattice, up to IrradianceLattice::kMostBytes a body.
 struct HeldView {
   struct Coat;
+  struct Gathering;
   struct CameraHit {
     std::uint32_t mesh, triangle;  ///< Hit::kMiss: none
     float u, v, far;
@@ -33,7 +38,8 @@ struct HeldView {
   struct Surface {
     std::vector<PointTransfers> lights;  ///< one a light, without weights where it is to be traced
     QueryPackets packets;
-    std::unique_ptr<Coat> coat;  ///< null: what it mirrors is to be found
+    std::unique_ptr<Coat> coat;            ///< null: what it mirrors is to be found
+    std::unique_ptr<Gathering> gathering;  ///< of hits that gather for themselves (BouncedLight)
   };
   /// One camera ray of each pixel of a tile.
   struct Batch {
@@ -42,7 +48,7 @@ struct HeldView {
     std::vector<SurfacePoint> points;  ///< of those that hit, in their order; empty: to be found
     std::vector<Surface> surfaces;     ///< by kind; empty: not known
 
-    /// But for what coats in it mirror.
+    /// But for what coats in it mirror, and what is gathered for it.
     std::size_t bytes() const {
       std::size_t sum = hits.size() * sizeof(CameraHit) + points.size() * sizeof(SurfacePoint);
       for (const Surface& surface : surfaces)
@@ -71,9 +77,39 @@ struct HeldView {
                  (sizeof(TracedRay) + sizeof(RgbF) + sizeof(std::uint32_t) + sizeof(std::uint64_t));
     }
   };
+  /// Where rays from some points, over the hemispheres around them, met surfaces (for_each_gathered).
+  struct Gathered {
+    struct Met {
+      Vec3f direction;
+      float far, cosine;  ///< cosine: with the normal of the point that gathers
+      std::uint32_t mesh, triangle;
+      float u, v;
+      std::uint32_t point, number;  ///< of the point among those that gather, of the ray among the point's
+    };
+    bool is_traced = false;
+    std::vector<Met> met;
+    Batch seen;  ///< how lights reach these places; it has no hits or points
+
+    std::size_t bytes() const {
+      std::size_t sum = met.size() * sizeof(Met) + seen.bytes();
+      for (const Surface& surface : seen.surfaces)
+        sum += surface.packets.order.size() * sizeof(std::uint32_t) +
+               surface.packets.cuts.size() * sizeof(PacketCut);
+      return sum;
+    }
+  };
+  struct Gathering {
+    std::vector<std::uint32_t> points;  ///< which of their batch gather
+    std::vector<Gathered> parts;        ///< of a few points each, in their order
+  };
   std::vector<std::vector<Batch>> tiles;  ///< one batch a sample of the pixels
   bool has_room = false;                  ///< for the points
   std::unique_ptr<std::atomic<std::size_t>> coat_bytes = std::make_unique<std::atomic<std::size_t>>(0);
+
+  /// For the places of BouncedPlaces, by chunk and field; and for the samples of each body, by chunk, whatever the camera
+  /// sees (bounced_at_samples).
+  std::vector<std::vector<Gathering>> at_places, at_samples;
+  std::unique_ptr<std::atomic<std::size_t>> gathered_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 
   /// Where a sharp near field is looked up, one a body; null: not known. Whatever the camera sees.
   std::vector<std::shared_ptr<IrradianceLattice>> lattices;
@@ -85,28 +121,19 @@ struct HeldView {
   void set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<float>& eta);
 
   /// Lets go of all that depends on the camera.
-  void forget_camera() {
-    tiles.clear();
-    *coat_bytes = 0;
-  }
+  void forget_camera();
 
   /// Lets go of all that depends on which surfaces are of which kind.
-  void forget_surfaces() {
-    for (std::vector<Batch>& tile : tiles)
-      for (Batch& batch : tile) batch.surfaces.clear();
-    *coat_bytes = 0;
-  }
+  void forget_surfaces();
 
   /// Lets go of what coats mirror.
-  void forget_coats() {
-    for (std::vector<Batch>& tile : tiles)
-      for (Batch& batch : tile)
-        for (Surface& surface : batch.surfaces) surface.coat.reset();
-    *coat_bytes = 0;
-  }
+  void forget_coats();
 
   /// Takes over other lights. before: which of those held each of them is; none: it is to be traced
   void set_lights(std::span<const std::optional<std::size_t>> before);
+
+  /// Brings gathered_bytes up to date with what was let go of.
+  void count_gathered();
 
   /// To be called before each picture, once its lights are set.
   void next_picture();

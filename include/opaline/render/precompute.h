@@ -23,6 +23,8 @@
 
 namespace opaline {
 
+struct HeldView;
+
 /// Translucent shapes that share samples and one tree, and what has been computed of them.
 struct Body {
   GroupPlan plan;
@@ -86,8 +88,9 @@ CutSurface cut_surface(const PrecomputeInput& input, const Body& body);
 VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals);
 
 /// Irradiance at each body's samples from surfaces, translucent ones as their trees have it and opaque ones as lights
-/// alone light them; one list a body.
-std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies);
+/// alone light them; one list a body. view: where HeldView::at_samples are of the same samples, added to; or null
+std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
+                                                  HeldView* view = nullptr);
 
 /// The light that enters at a body's samples, tinted.
 /// in    lights: those of its transfers

@@ -95,9 +95,9 @@ class Session {
   /// `automatic` a surface cache is made if it pays for all of them.
   void expect_pictures(std::size_t pictures);
 
-  /// Whether to keep what the camera sees, and how the lights reach it, for later pictures. After an edit of
-  /// colours or media neither is then traced again, nor what rough coats mirror where nothing is textured or a metal; what
-  /// smooth boundaries mirror is. Costs memory (HeldView). Off by default.
+  /// Whether to keep what the camera sees, how the lights reach it, and from where surfaces light it and the samples, for
+  /// later pictures. After an edit of colours or media none of these is then traced again, nor what rough coats mirror where
+  /// nothing is textured or a metal; what smooth boundaries mirror is. Costs memory (HeldView). Off by default.
   void hold_view(bool hold);
 
   /// Whether each picture has the bits of a new session's. Samples are then placed anew wherever a new session

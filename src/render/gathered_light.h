@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light that points gather from the surfaces around them.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "opaline/render/held_view.h"
+#include "render/shade.h"
+
+namespace opaline {
+
+/// Points whose rays are traced together, and what they meet is shaded together: trees are summed for many points that lie
+/// all around in half of the time that they take for few.
+inline constexpr std::size_t kGatheredAtOnce = 1024;
+
+/// What points gather, by rays over the hemisphere, from surfaces that are lit by the scene's lights.
+struct GatherInput {
+  const RayScene& rays;
+  const Shader& shader;
+  std::span<const SurfacePoint> points;
+  std::span<const std::uint64_t> keys;  ///< one a point: chooses its random numbers
+  float eta = 0;                        ///< of the boundary that light enters through; 0: none
+  int rays_each = 64;
+  std::uint64_t seed = 0;
+  /// What rays of the same points, keys, number and seed met, added to while gathered_bytes of the view are few; or null.
+  HeldView::Gathering* held = nullptr;
+  HeldView* view = nullptr;  ///< that has it
+};
+
+/// Light that reaches a point from a surface: index of the point, unit direction towards the surface, irradiance of what
+/// comes through the boundary where there is one.
+using UseOfGathered = std::function<void(std::size_t point, const Vec3f& towards, const RgbF& irradiance)>;
+
+void for_each_gathered(const GatherInput& input, const UseOfGathered& use);
+
+/// Their sums, one a point, W/mm^2.
+std::vector<RgbF> gathered_irradiance(const GatherInput& input);
+
+}  // namespace opaline

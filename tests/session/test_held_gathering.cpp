@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rays that gather light from surfaces to others are traced once for a view, and those at samples once for the samples.
+#include "opaline/render/held_view.h"
+#include "opaline/render/render.h"
+#include "session_test.h"
+
+namespace opaline {
+namespace {
+
+using namespace test;
+
+// The camera's rays of BouncedPlaces: one for each of 24 x 16 pixels, and two more rows and columns around.
+constexpr std::uint64_t kPlaces = (24 + 1 + 4) * (16 + 1 + 4);
+
+/// The balls shine on the floor and it on them, also where the camera sees only its mirror image.
+Scene balls_and_light() {
+  Scene scene = two_balls();
+  scene.settings.bounces = 1;
+  scene.settings.samples = 800;
+  scene.settings.near_field = false;
+  scene.settings.evaluator = EvaluatorKind::dual_tree;  // `automatic` looks at some pixels first
+  for (Medium& medium : scene.media) medium.specular_roughness = .25;
+  scene.film.resolution = {24, 16};
+  scene.film.samples_per_pixel = 2;
+  return scene;
+}
+
+struct Held {
+  Session session;
+  Scene scene = balls_and_light();
+
+  Held() {
+    session.hold_view(true);
+    session.match_new_session(true);
+    picture_of(session, scene);
+  }
+  /// Rays of a whole edit; the picture is that of a new session.
+  std::uint64_t rays() {
+    const std::uint64_t before = session.rays().statistics().rays;
+    EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+    return session.rays().statistics().rays - before;
+  }
+};
+
+// Claim: with the view held, an edit of a colour or medium gathers at what rays met before: of all rays only those that
+// look for BouncedPlaces are traced. Source: held_view.h. Fails if: samples, places or the hits that no place stands for
+// trace theirs again, or the lights at what these met (without kept rays: 100 times as many).
+TEST(HeldGathering, ColoursAndMediaTraceNothing) {
+  Held held;
+  const auto expect_none = [&](const char* what) {
+    SCOPED_TRACE(what);
+    EXPECT_LE(held.rays(), kPlaces);
+  };
+  std::get<PointLight>(held.scene.lights[0].source).intensity = {1e4, 3e4, 2e4};
+  expect_none("a point light");
+  std::get<QuadLight>(held.scene.lights[1].source).radiance = {1, 2, 9};
+  expect_none("a panel");
+  held.scene.shapes[2].reflectance = {.8, .2, .1};
+  expect_none("the floor");
+  held.scene.media[0].coefficients = PhysicalMedium{{.01, .02, .03}, {1, 2, 3}};
+  expect_none("a medium");
+}
+
+// Claim: a light that moved is looked for from what gathered rays met, and another index weighs them anew. Source:
+// held_view.h. Fails if: one is kept of the light before it moved (set_lights), or of the boundary before (set_fields).
+TEST(HeldGathering, LightsThatMoveAndBoundaries) {
+  Held held;
+  const auto edit = [&](const char* what, const std::function<void(Scene&)>& apply) {
+    SCOPED_TRACE(what);
+    apply(held.scene);
+    EXPECT_GT(held.rays(), kPlaces);
+  };
+  edit("point moved", [](Scene& s) { std::get<PointLight>(s.lights[0].source).position.x = 9; });
+  edit("panel moved", [](Scene& s) { std::get<QuadLight>(s.lights[1].source).corner.x = -9; });
+  edit("light gone", [](Scene& s) { s.lights.erase(s.lights.begin()); });
+  edit("index", [](Scene& s) { s.media[0].eta = 1.4; });
+  edit("index of the other", [](Scene& s) { s.media[0].eta = s.media[1].eta; });
+  edit("index again", [](Scene& s) { s.media[0].eta = 1.5; });
+  edit("seed", [](Scene& s) { s.settings.seed = 3; });
+  edit("camera", [](Scene& s) { s.camera.position.x = 20; });
+  edit("floor moved", [](Scene& s) { std::get<QuadShape>(s.shapes[2].source).corner.y = -3; });
+  edit("samples", [](Scene& s) { s.settings.samples = 600; });
+  edit("shape gone", [](Scene& s) { s.shapes.erase(s.shapes.begin()); });
+}
+
+// Claim: no more is held of gathered rays than kMostGatheredBytes; the picture is the same. Source: held_view.h. Fails if:
+// what rays met is held without a look at what there is.
+TEST(HeldGathering, HasABound) {
+  const Prepared balls(balls_and_light());
+  const auto parts_of = [&](std::size_t bytes_before) {
+    HeldView view;
+    *view.gathered_bytes = bytes_before;
+    const Image picture =
+        render({balls.scene, balls.world, balls.rays, balls.bodies, nullptr, {}, &view}).image;
+    EXPECT_TRUE(same_pixels(picture, balls.picture()));
+    std::size_t parts = 0;
+    for (const std::vector<HeldView::Gathering>& chunk : view.at_places)
+      for (const HeldView::Gathering& gathering : chunk)
+        for (const HeldView::Gathered& part : gathering.parts) parts += part.is_traced;
+    EXPECT_EQ(*view.gathered_bytes > bytes_before, parts > 0);
+    return parts;
+  };
+  EXPECT_GT(parts_of(0), 0u);
+  EXPECT_EQ(parts_of(kMostGatheredBytes), 0u);
+}
+
+}  // namespace
+}  // namespace opaline
