@@ -48,7 +48,13 @@ void set_held_lights(std::vector<PointTransfers>& lights,
 }
 
 void HeldView::forget_camera() {
-  tiles.clear();
+  for (std::vector<Batch>& tile : tiles)
+    for (Batch& batch : tile) {  // memory stays for what the next camera sees
+      batch.is_traced = false;
+      batch.hits.clear();
+      batch.points.clear();
+      batch.surfaces.clear();
+    }
   at_places.clear();
   *coat_bytes = 0;
 }
