@@ -55,8 +55,9 @@ struct PrecomputeArguments {
 /// An asset of another program, to be written as a scene file.
 struct ImportArguments {
   std::string asset;
-  std::string scene;     ///< to write
-  std::string material;  ///< MaterialX, in place of the asset's materials; empty: these
+  std::string scene;       ///< to write
+  std::string material;    ///< MaterialX, in place of the asset's materials; empty: these
+  bool overwrite = false;  ///< a scene that is there and says something else
   Log log;
 };
 

@@ -12,6 +12,7 @@
 
 #include "cli/metadata.h"
 #include "opaline/core/error.h"
+#include "opaline/core/interrupt.h"
 #include "opaline/core/units.h"
 #include "opaline/image/image.h"
 #include "opaline/scene/load_scene.h"
@@ -65,7 +66,15 @@ void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_
   const auto begin = Clock::now();
   so_far = {frames.size()};
   std::vector<int> failed;
+  Monitor between;  // what comes between two frames
+  const InterruptHandler interrupt(between);
+  const auto stopped = [&](const std::string& words) {
+    return Error(ErrorKind::interrupted, {}, 0, 0,
+                 fmt::format("{}; {} of {} frames are done, and the same command goes on with the others",
+                             words, so_far.finished - failed.size(), frames.size()));
+  };
   for (const int frame : frames) {
+    if (between.cancelled) throw stopped("interrupted");
     if (!log.quiet && log.format == LogFormat::text) write_line(stdout, fmt::format("\nframe {}", frame));
     if (!log.quiet) print_event(log, "frame", {{"frame", frame}});
     const auto start = Clock::now();
@@ -76,7 +85,7 @@ void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_
       }
     } catch (const std::exception& failure) {
       const auto* error = dynamic_cast<const Error*>(&failure);
-      if (error != nullptr && error->kind == ErrorKind::interrupted) throw;
+      if (error != nullptr && error->kind == ErrorKind::interrupted) throw stopped(error->message);
       print_warning(log, fmt::format("frame {} failed: {}", frame, failure.what()));
       failed.push_back(frame);
     }

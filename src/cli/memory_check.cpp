@@ -3,14 +3,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
 #include "opaline/core/units.h"
+#include "opaline/render/layers.h"
+#include "opaline/render/render.h"
 
 namespace opaline {
 
 void check_memory(const Scene& scene, const Plan& plan, std::size_t more_bytes) {
-  const std::size_t bytes = plan.bytes + more_bytes, taken = resident_memory(), left = available_memory();
+  // The whole picture has to have an address, empty parts of it as well.
+  const Rectangle part = rendered_part(scene.film);
+  const std::size_t picture = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0) *
+                              layer_names(scene.settings.method).size() * sizeof(float);
+  const std::size_t bytes = std::max(plan.bytes + more_bytes, picture), taken = resident_memory(),
+                    left = available_memory();
   if (bytes <= taken || bytes - taken <= left) return;
   std::string advice = "a lower film.resolution, or --crop for one part after the other,";
   if (has_samples(scene.settings.method) && !plan.groups.empty())

@@ -14,6 +14,7 @@ void add_import_options(CLI::App& app, ImportArguments& import) {
                  "MaterialX file (.mtlx) in place of the asset's materials; one of several surfaces in it by "
                  "its name")
       ->type_name("FILE[#NAME]");
+  app.add_flag("--overwrite", import.overwrite, "write over a scene file that says something else");
   app.footer(kImportNotes);
 }
 

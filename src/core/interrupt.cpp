@@ -16,8 +16,8 @@ extern "C" void cancel_work(int) {
 
 }  // namespace
 
-InterruptHandler::InterruptHandler(Monitor& monitor) {
-  watched = &monitor;
+InterruptHandler::InterruptHandler(Monitor& monitor)
+    : monitor_(monitor), before_(watched.exchange(&monitor)) {
   struct sigaction once {};
   once.sa_handler = cancel_work;
   once.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
@@ -26,9 +26,10 @@ InterruptHandler::InterruptHandler(Monitor& monitor) {
 }
 
 InterruptHandler::~InterruptHandler() {
+  watched = before_;
+  if (before_ != nullptr && monitor_.cancelled) before_->cancelled = true;
   sigaction(SIGINT, &old_interrupt_, nullptr);
   sigaction(SIGTERM, &old_terminate_, nullptr);
-  watched = nullptr;
 }
 
 }  // namespace opaline

@@ -14,6 +14,17 @@
 namespace opaline {
 namespace {
 
+// Spheres and tubes of sines and cosines end at sin(2 pi), -2.4e-16 radii from where they begin.
+std::vector<Vec3d> without_residues(std::vector<Vec3d> positions) {
+  Vec3d extent;
+  for (const Vec3d& p : positions)
+    for (std::size_t axis = 0; axis < 3; ++axis) extent[axis] = std::max(extent[axis], std::abs(p[axis]));
+  for (Vec3d& p : positions)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (std::abs(p[axis]) < std::ldexp(extent[axis], -40)) p[axis] = 0;
+  return positions;
+}
+
 class MeshChecker {
  public:
   MeshChecker(SourceMesh source, const CheckSettings& settings, CheckMemory* memory)
@@ -55,8 +66,9 @@ class MeshChecker {
     if (!settings_.smooth) source_.normals.clear();
     for (Vec3f& n : source_.normals)
       if (!is_finite(n)) n = {};
-    same_ = weld(source_.positions, source_.normals);
-    site_ = source_.normals.empty() ? same_ : weld(source_.positions);
+    const std::vector<Vec3d> places = without_residues(source_.positions);
+    same_ = weld(places, source_.normals);
+    site_ = source_.normals.empty() ? same_ : weld(places);
   }
 
   void merge_vertices() {

@@ -3,8 +3,10 @@
 #include <limits>
 
 #include "lights/light_of.h"
+#include "opaline/core/error.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/scene/light_reader.h"
+#include "opaline/scene/source_place.h"
 
 namespace opaline {
 namespace {
@@ -71,7 +73,12 @@ std::vector<KeyInfo> LightReader<EnvironmentLight>::rows() {
 template <>
 EnvironmentLight LightReader<EnvironmentLight>::read(const ObjectReader& reader, double) {
   EnvironmentLight light;
-  light.picture = EnvironmentPicture::read(reader.need("file").file_path());
+  const Value file = reader.need("file");
+  try {
+    light.picture = EnvironmentPicture::read(file.file_path());
+  } catch (const Error& failure) {
+    throw told_at(file.place(), failure);
+  }
   if (const auto strength = reader.find("strength")) light.strength = strength->color();
   if (const auto rotation = reader.find("rotation")) light.rotation = rotation->number();
   return light;

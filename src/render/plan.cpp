@@ -236,6 +236,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   std::size_t samples = 0;
   for (GroupPlan& group : plan.groups) {
     group.method = scene.settings.method;
+    if (is_too_thin_for_cells(group)) group.model.expected_error_of_diffusion.reset();
     if (is_too_large_for_cells(scene.settings, group)) {
       group.model.expected_error_of_diffusion.reset();
       if (group.method == Method::volume_diffusion) group.method = Method::hierarchical;

@@ -102,12 +102,16 @@ bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group) {
   return widest > 0 && expected_cells(group.area, widest) > kMostCells;
 }
 
+bool is_too_thin_for_cells(const GroupPlan& group) {
+  constexpr double kTooThin = .6;  // mean free paths: measured, src/volume/README.md
+  return group.thickness > 0 && group.thickness < kTooThin * group.smallest_mean_free_path;
+}
+
 // The cells of volume_diffusion: as asked for, but smaller where light fades within them, no more than memory should
 // hold, and several across a thin body.
 void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
   constexpr double kAcrossThin = 4, kSmallest = .25;
   constexpr double kFewestFaces = 60;  // of cells, on the surface
-  constexpr double kTooThin = .6;      // mean free paths: measured, src/volume/README.md
   constexpr double kPerFading = .45;   // of settings.cell_size: measured, src/volume/README.md
   const double length = group.smallest_mean_free_path;
   group.cell =
@@ -123,7 +127,7 @@ void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>
         "{}: light leaves within {:.3g} mm and cells smaller than {:.3g} mm would be too many for "
         "settings.max_samples",
         group.name, length, group.cell));
-  if (group.thickness > 0 && group.thickness < kTooThin * length)
+  if (is_too_thin_for_cells(group))
     warnings.push_back(
         fmt::format("{}: it is {:.3g} mean free paths thick in the mean; light crosses it almost without "
                     "scattering, which "

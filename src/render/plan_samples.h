@@ -17,6 +17,8 @@ double widest_cell(const Settings& settings);
 /// Whether cells as wide as that would be too many: the surface is then flat on the scale of a mean free path, and a radial
 /// profile is right.
 bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group);
+/// Whether light crosses the body almost without scattering, which diffusion cannot tell.
+bool is_too_thin_for_cells(const GroupPlan& group);
 
 /// Samples spread over the surface: as the settings have it, or by the medium's mean free path.
 void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings);

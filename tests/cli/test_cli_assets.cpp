@@ -37,7 +37,7 @@ struct AssetFolder : ScratchFolder {
 };
 
 // Claim: `opaline render asset.glb -o a.png` is enough, and the scene file that `import` writes into another folder
-// makes the same bytes; `info` and `bench`'s hash of a scene take the asset too. Fails if the two go different ways.
+// makes the same bytes, and is not written over once it is edited; `info` and `bench`'s hash of a scene take the asset too. Fails if the two go different ways.
 TEST(CliAssets, ImportedScenesMakeTheSamePicture) {
   const AssetFolder folder;
   const Outcome direct = run_program({"render", "cubes.glb", "-o", "a.png"}, folder.path);
@@ -54,6 +54,17 @@ TEST(CliAssets, ImportedScenesMakeTheSamePicture) {
   const Outcome edited = run_program({"render", "scenes/cubes.json", "-o", "b.png"}, folder.path);
   ASSERT_EQ(edited.exit_code, 0) << edited.err;
   EXPECT_TRUE(read_image(folder.file("a.png")).pixels == read_image(folder.file("b.png")).pixels);
+  const Outcome again = run_program({"import", "cubes.glb", "-o", "scenes/cubes.json"}, folder.path);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  put_bytes(folder.file("scenes/cubes.json"), bytes_of(folder.file("scenes/cubes.json")) + "// edited");
+  const Outcome refused = run_program({"import", "cubes.glb", "-o", "scenes/cubes.json"}, folder.path);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(contains(refused.err, "is there already and says something else")) << refused.err;
+  EXPECT_TRUE(bytes_of(folder.file("scenes/cubes.json")).ends_with("// edited"));
+  const Outcome over =
+      run_program({"import", "cubes.glb", "-o", "scenes/cubes.json", "--overwrite"}, folder.path);
+  EXPECT_EQ(over.exit_code, 0) << over.err;
+  EXPECT_FALSE(bytes_of(folder.file("scenes/cubes.json")).ends_with("// edited"));
   const Outcome info = run_program({"info", "cubes.glb", "--set", "media.wax.specular_ior=1.4"}, folder.path);
   EXPECT_EQ(info.exit_code, 0) << info.err;
   EXPECT_TRUE(contains(info.out, "1 translucent medium")) << info.out;

@@ -204,6 +204,28 @@ TEST(MeshRepair, CapOfASphereIsFilled) {
   EXPECT_FALSE(warns(closed.report, "open mesh"));
 }
 
+// Claim: a sphere of sines and cosines, whose last meridian is the first but for sin(2 pi) = -2.4e-16, is closed. Source:
+// what programs write as GLB and OBJ. Tolerance: none. Fails if: the seam is a row of boundary edges.
+TEST(MeshRepair, SeamOfASphereOfSinesIsClosed) {
+  constexpr std::uint32_t kAround = 16, kDown = 8;
+  Soup soup;
+  for (std::uint32_t row = 0; row <= kDown; ++row)
+    for (std::uint32_t column = 0; column <= kAround; ++column) {
+      const double u = 2 * M_PI * column / kAround, v = M_PI * row / kDown;
+      soup.positions.push_back(Vec3d(-std::cos(u) * std::sin(v), std::cos(v), std::sin(u) * std::sin(v)) *
+                               .02);
+    }
+  for (std::uint32_t row = 0; row < kDown; ++row)
+    for (std::uint32_t column = 0; column < kAround; ++column) {
+      const std::uint32_t a = row * (kAround + 1) + column, b = a + kAround + 1;
+      if (row > 0) soup.triangles.push_back({a + 1, a, b + 1});
+      if (row + 1 < kDown) soup.triangles.push_back({a, b, b + 1});
+    }
+  const CheckedMesh checked = load(soup);
+  EXPECT_EQ(checked.report.open_edges, 0u);
+  EXPECT_GT(signed_volume(checked.mesh), 0);
+}
+
 // Claim: holes are filled in a mesh that CGAL's half-edges do not take as it is (two fans meeting in one
 // vertex, a fin on an edge), and what is no hole is left. Source: repair_mesh.cpp. Tolerance: none. Fails if:
 // vertices that CGAL doubles are not led back.

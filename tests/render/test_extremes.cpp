@@ -208,7 +208,7 @@ TEST(Extremes, BodiesThinnerThanTheirSamplesAreSaid) {
 
 // Claim: with volume_diffusion a body is said to be too thin where its cells are as large as it is thick, .6 mean free
 // paths, and not before: plates of .7 are as near to random walks as thicker ones. Source: src/volume/README.md. Fails if:
-// thin bodies that are right are warned of, or those that are not pass in silence.
+// thin bodies that are right are warned of, or those that are not pass in silence, or with the error of thicker ones.
 TEST(Extremes, BodiesTooThinForCellsAreSaid) {
   const auto is_said = [](double mean_free_paths) {
     Scene scene = lit_sphere();
@@ -217,10 +217,14 @@ TEST(Extremes, BodiesTooThinForCellsAreSaid) {
     scene.media = {grey_medium(1, .001, 1.3)};
     // Twice the volume over the area: the rim of a plate 400 times wider than thick hardly counts.
     scene.shapes[0].source = SlabShape{{}, 400 * mean_free_paths, 400 * mean_free_paths, mean_free_paths};
-    const Plan plan = make_plan(scene, make_world(scene));
-    return std::ranges::any_of(plan.warnings, [](const std::string& warning) {
+    const World world = make_world(scene);
+    choose_models(scene, world);
+    const Plan plan = make_plan(scene, world);
+    const bool is_warned = std::ranges::any_of(plan.warnings, [](const std::string& warning) {
       return warning.find("--method volume can") != std::string::npos;
     });
+    EXPECT_EQ(plan.groups[0].model.expected_error_of_diffusion.has_value(), !is_warned);
+    return is_warned;
   };
   EXPECT_FALSE(is_said(2));
   EXPECT_FALSE(is_said(.7));

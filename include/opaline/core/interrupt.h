@@ -9,7 +9,8 @@
 namespace opaline {
 
 /// While it lives, the first SIGINT or SIGTERM cancels the monitor's work; the next one of its kind kills at
-/// once. One at a time: signals are the process's.
+/// once. Signals are the process's: the one made last has them, and at its end tells the one before of what came too late
+/// for its own work.
 class InterruptHandler {
  public:
   /// Catches SIGINT and SIGTERM until it is destroyed. monitor: is told of the first one.
@@ -19,6 +20,8 @@ class InterruptHandler {
   InterruptHandler& operator=(const InterruptHandler&) = delete;
 
  private:
+  Monitor& monitor_;
+  Monitor* before_;
   struct sigaction old_interrupt_ {
   }, old_terminate_{};
 };
