@@ -27,8 +27,7 @@ std::string summary_of(const AssetScene& scene, bool own_camera, bool own_lights
                                  scene.media.size() == 1 ? "medium" : "media", own_camera ? "its" : "default",
                                  own_lights ? "its" : "default");
   if (const std::size_t lost = scene.not_carried.size(); lost > 0)
-    text += fmt::format("; {} {} not carried over: opaline import lists them", lost,
-                        lost == 1 ? "thing" : "things");
+    text += fmt::format("; {} {} not carried over", lost, lost == 1 ? "thing" : "things");
   return text;
 }
 

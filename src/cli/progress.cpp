@@ -58,7 +58,7 @@ std::string stage_text(const ProgressState& state) {
   std::string text;
   if (state.fraction >= 0) text += percent(state.fraction);
   if (state.seconds_left >= 0) text += ", " + left_text(state.seconds_left);
-  if (state.noise >= 0 && std::isfinite(state.noise) && !text.empty())
+  if (state.noise > 0 && std::isfinite(state.noise) && !text.empty())
     text += fmt::format(", noise {:.2g} %", 100 * state.noise);
   if (text.empty() && state.seconds >= kSecondsBeforeElapsed) text = short_time(state.seconds) + " so far";
   if (!state.trial.empty()) text += (text.empty() ? "(" : "  (") + state.trial + ")";

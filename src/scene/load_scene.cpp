@@ -185,6 +185,7 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
   Scene scene = parse_scene(asset.text, path, overrides, frame);
   scene.translation = asset.summary;
+  if (!asset.not_carried.empty()) scene.translation += ": opaline import lists them";
   forget_places(scene);
   return scene;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "opaline/render/choose_models.h"
 #include "support/scenes.h"
 
 namespace opaline::test {
