@@ -70,7 +70,8 @@ std::vector<TracedRay> rays_again(const GatherInput& input, std::size_t begin, s
   std::vector<TracedRay> rays;
   rays.reserve(met.size());
   for (const Met& m : met) {
-    TracedRay& traced = rays.emplace_back(leaving(input.points[begin + m.point], m.direction), Hit{});
+    rays.push_back({leaving(input.points[begin + m.point], m.direction), {}});
+    TracedRay& traced = rays.back();
     traced.ray.far = m.far;
     traced.hit.mesh = m.mesh;
     traced.hit.triangle = m.triangle;
