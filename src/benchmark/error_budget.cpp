@@ -39,7 +39,7 @@ std::vector<BudgetPart> error_budget(std::size_t planned_samples, const Settings
   const Overrides many_rays{fmt::format("settings.light_samples={}", light_samples)};
   const int even = std::max(light_samples, kEvenLight);
   const Overrides even_light{fmt::format("settings.light_samples={}", even)};
-  const Overrides lone{"settings.bounces=0"};  // each spreads it anew
+  const Overrides lone{"settings.bounces=0"};  // light between things is no part of either
   const Overrides fine{"settings.evaluator=dual_tree", "settings.tolerance=0.001"};
   const Overrides dense = fine + Overrides{"settings.samples=" + many, "settings.max_samples=" + many};
   return {

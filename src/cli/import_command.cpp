@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "cli/commands.h"
 #include "opaline/assets/import_asset.h"
@@ -22,11 +20,6 @@ std::string path_from(const std::string& scene, const std::string& asset) {
   return error || relative.empty() ? fs::absolute(asset).string() : relative.string();
 }
 
-std::string text_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 }  // namespace
 
 void import_command(const ImportArguments& arguments) {
@@ -35,7 +28,8 @@ void import_command(const ImportArguments& arguments) {
   for (const std::string& line : asset.translated) write_line(stderr, line);
   for (const std::string& line : asset.not_carried) write_line(stderr, "not carried over: " + line);
   parse_scene(asset.text, arguments.scene);
-  if (!arguments.overwrite && fs::is_regular_file(arguments.scene) && text_of(arguments.scene) != asset.text)
+  if (!arguments.overwrite && fs::is_regular_file(arguments.scene) &&
+      read_scene_text(arguments.scene) != asset.text)
     throw bad_file(arguments.scene, "is there already and says something else",
                    "another name, or --overwrite");
   write_file(arguments.scene, asset.text);

@@ -31,8 +31,8 @@ struct CheckMemory {
   MeshReport report;  ///< warnings do not name the mesh
 };
 
-/// Welds vertices that are exactly equal, where what is below 1e-12 of the largest along an axis counts as 0, drops and counts zero-area and duplicate triangles, winds what is
-/// left consistently and closed components outward, fills holes if asked, counts open and non-manifold edges,
+/// Welds vertices that are exactly equal (what is below 1e-12 of the largest along an axis counts as 0), drops and counts
+/// zero-area and duplicate triangles, winds what is left consistently and closed components outward, fills holes if asked, counts open and non-manifold edges,
 /// and completes the normals.
 /// in    positions finite; normals of any length, zero or not finite where there
 /// is none

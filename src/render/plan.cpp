@@ -75,6 +75,8 @@ double needle_share(const World& world, const GroupPlan& group) {
 
 // Measured: where a cell cuts the surface, its exitance and error, while all are fitted.
 constexpr std::size_t kBytesOfCutSample = 640;
+// Besides, where light bounces: weights kept for a second fit, that fit, what is gathered and what it brings.
+constexpr std::size_t kBytesOfBouncedSample = 700 + 170 + 40;
 
 // Measured: what finds the cells, their fits and exitance; of each channel counts of a pass's chunks, and of each light
 // sums.
@@ -246,8 +248,9 @@ Plan make_plan(const Scene& scene, const World& world) {
       choose_cut(scene.settings, group, plan.warnings);
       const double in_wires =
           group.thickness > 0 ? 1.2 * needle_share(world, group) * group.cell / group.thickness : 0;
-      plan.bytes += std::size_t(std::max(1., in_wires) * double(group.samples)) *
-                    (kBytesOfCutSample + 4 * lights.size());
+      plan.bytes +=
+          std::size_t(std::max(1., in_wires) * double(group.samples)) *
+          (kBytesOfCutSample + 4 * lights.size() + (bounces_of(scene) > 0 ? kBytesOfBouncedSample : 0));
       plan.bytes += std::size_t(kBytesOfCell * expected_cells(group.area, group.cell));
       continue;
     }

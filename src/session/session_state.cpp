@@ -204,10 +204,11 @@ void Session::State::prepare(Monitor* monitor) {
   each_of(Method::volume_diffusion, "diffusion",
           [&](Body& body, BodyKeys& known, std::size_t) { update_diffusion(body, known, input, lights); });
   update_sums(input, lights);
-  for (std::size_t g = 0; !edits_ && g < keys_.size(); ++g) {
-    keys_[g].diffusion = nullptr;
-    keys_[g].cell_weights = nullptr;
-  }
+  if (!edits_)
+    for (BodyKeys& known : keys_) {
+      known.diffusion = nullptr;
+      known.cell_weights = nullptr;
+    }
   prepared_ = true;
 }
 

@@ -19,8 +19,7 @@ struct EnteringLight {
   std::span<const Light> lights;             ///< recentred
   std::span<const LightTransfer> transfers;  ///< one a light
   std::span<const RgbF> tints;               ///< factors, one a sample; empty: none
-  std::span<const RgbF> even =
-      {};  ///< of equal radiance from all sides, W per area, one a sample; empty: none
+  std::span<const RgbF> even = {};           ///< from all sides alike, W per area, one a sample; empty: none
 };
 
 /// A boundary element's cell.
