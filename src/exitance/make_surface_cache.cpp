@@ -16,8 +16,13 @@ namespace {
 // estimate.
 constexpr double kEvaluationShare = 0.6, kInterpolationShare = 0.4;
 // Of what slopes add to the middle of an edge, and of what a lattice's predecessor missed at its new nodes:
-// the part that interpolation still misses (measured, test_surface_cache).
-constexpr float kRiseError = 0.6f, kRest = 0.4f;
+// the part that interpolation still misses (measured, test_surface_cache). Nodes that may not come closer
+// than theirs miss much less of it.
+constexpr float kRiseError = 0.6f, kRest = 0.6f, kRestAtFinest = 0.2f;
+// The cosine between normals of two vertices, between which slopes tell nothing. With them trusted there and on
+// patches of any length the worst p99 of five foreign meshes of 500 to 32,000 triangles was 2.2 % in even light
+// at a tolerance of .5 %; it is .49 %.
+constexpr float kBent = 0.95f;
 // In near-field radii, over which the far kernel varies: patches longer than kReach could hide what lies
 // between their vertices; nodes closer than kFinest see the noise of the samples; a
 // shadow's edge, as the near field blurs it, shows at vertices closer than kBlur.
@@ -174,10 +179,14 @@ class Builder {
     std::vector<Refined> all;
     for (std::uint32_t p = 0; p < cache_.patches.size(); ++p) {
       if (cache_.patches[p].lattice == SurfaceCache::kLeftToPoints) continue;
-      const bool edge =
-          longest_side(p) > float(kBlur) * input_.kernel.radius &&
-          any_edge(p, [&](std::uint32_t a, std::uint32_t b) { return may_hide_shadow_edge(a, b); });
-      if (edge || any_edge(p, [&](std::uint32_t a, std::uint32_t b) { return is_ill_told(a, b); }))
+      const bool is_long = longest_side(p) > float(kBlur) * input_.kernel.radius;
+      const bool edge = is_long && any_edge(p, [&](std::uint32_t a, std::uint32_t b) {
+                          return may_hide_shadow_edge(a, b);
+                        });
+      const bool is_bent = any_edge(
+          p, [&](std::uint32_t a, std::uint32_t b) { return dot(normals_[a], normals_[b]) < kBent; });
+      if (is_long || is_bent ||
+          any_edge(p, [&](std::uint32_t a, std::uint32_t b) { return is_ill_told(a, b); }))
         all.push_back({p, 2, edge, {}});
     }
     return all;
@@ -264,14 +273,17 @@ class Builder {
     return cache_.nodes[r.nodes[lattice_index(r.segments, i, j)]];
   }
 
-  // Keeps the lattice, or doubles it if its nodes were ill predicted by those of the one before.
+  // Keeps the lattice, doubles it if its nodes were ill predicted by those of the one before, or leaves the
+  // patch to points if they were and may not come closer.
   bool wants_more(Refined& r) {
-    if (std::ranges::any_of(r.nodes, [&](std::uint32_t node) { return node_doubts_[node].is_too_sharp; })) {
+    const bool may_grow = longest_side(r.patch) > float(kFinest) * input_.kernel.radius * float(r.segments);
+    // The one new node of two segments may lie in the middle of a shadow's edge.
+    const bool may_hide_edge = r.edge && r.segments == 2;
+    if (is_too_sharp(r) || (!may_grow && is_ill_predicted(r, kRestAtFinest))) {
       cache_.patches[r.patch].lattice = SurfaceCache::kLeftToPoints;
       return false;
     }
-    const bool may_grow = longest_side(r.patch) > float(kFinest) * input_.kernel.radius * float(r.segments);
-    if (may_grow && is_ill_predicted(r)) {
+    if (may_grow && (may_hide_edge || is_ill_predicted(r, kRest))) {
       r.segments *= 2;
       return true;
     }
@@ -290,14 +302,18 @@ class Builder {
     return longest;
   }
 
-  bool is_ill_predicted(const Refined& r) const {
-    if (r.edge && r.segments == 2) return true;  // its one new node may lie in the middle of the edge
+  bool is_too_sharp(const Refined& r) const {
+    return std::ranges::any_of(r.nodes, [&](std::uint32_t node) { return node_doubts_[node].is_too_sharp; });
+  }
+
+  // rest: the part of the predecessor's error that remains
+  bool is_ill_predicted(const Refined& r, float rest) const {
     for (std::uint32_t j = 0; j <= r.segments; ++j)
       for (std::uint32_t i = 0; i + j <= r.segments; ++i) {
         if (i % 2 == 0 && j % 2 == 0) continue;
         const Exitance& known = value(r, i, j);
         const RgbF& noise = node_doubts_[r.nodes[lattice_index(r.segments, i, j)]].noise;
-        if (is_too_much((predicted(r, i, j) - known.exitance) * kRest, whole(known), noise)) return true;
+        if (is_too_much((predicted(r, i, j) - known.exitance) * rest, whole(known), noise)) return true;
       }
     return false;
   }
