@@ -250,6 +250,13 @@ std::array<double, 2> EnvironmentPicture::place_of(const Vec3d& direction) const
           std::acos(std::clamp(direction.y, -1.0, 1.0)) / kPi * double(height_)};
 }
 
+std::size_t EnvironmentPicture::memory() const {
+  const std::size_t floats = 4 * pixels_.size() + importance_.size() + cell_rows_.size() +
+                             cell_columns_.size() + block_row_ends_.size() + block_column_ends_.size();
+  return floats * sizeof(float) + (pixels_.size() + means_.size()) * sizeof(RgbF) +
+         (row_cosines_.size() + block_flux_.size()) * sizeof(double);
+}
+
 RgbF EnvironmentPicture::radiance(const Vec3d& direction) const {
   const auto [x, y] = place_of(direction);
   const double column = x - .5, row = y - .5;

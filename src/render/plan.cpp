@@ -8,6 +8,7 @@
 #include <set>
 
 #include "opaline/image/texture_file.h"
+#include "opaline/lights/environment_picture.h"
 #include "opaline/lights/light.h"
 #include "opaline/lights/light_tree.h"
 #include "opaline/render/picture_warnings.h"
@@ -76,7 +77,7 @@ double needle_share(const World& world, const GroupPlan& group) {
 // Measured: where a cell cuts the surface, its exitance and error, while all are fitted.
 constexpr std::size_t kBytesOfCutSample = 640;
 // Besides, where light bounces: weights kept for a second fit, that fit, what is gathered and what it brings.
-constexpr std::size_t kBytesOfBouncedSample = 700 + 170 + 40;
+constexpr std::size_t kBytesOfBouncedSample = 600 + 170 + 40;
 
 // Measured: what finds the cells, their fits and exitance; of each channel counts of a pass's chunks, and of each light
 // sums.
@@ -192,19 +193,27 @@ RayBuild cheaper_build(const Scene& scene, std::span<const Light> lights, const 
   return lost < kSaved * double(plan.triangles) ? RayBuild::quick : RayBuild::careful;
 }
 
-/// Of all textures at their full sizes: a camera may look at less.
-std::size_t texture_bytes(const Scene& scene) {
+// Measured: the library that reads pictures, with all that it loads.
+constexpr std::size_t kBytesOfPictureReader = 105'000'000;
+
+/// Of environments, and of all textures at their full sizes: a camera may look at less.
+std::size_t picture_bytes(const Scene& scene) {
+  std::set<const EnvironmentPicture*> environments;
+  for (const Light& light : scene.lights)
+    if (const auto* environment = std::get_if<EnvironmentLight>(&light.source))
+      environments.insert(environment->picture.get());
   std::set<const TextureFile*> files;
   for (const Shape& shape : scene.shapes)
     for (const Texture* texture : textures_of(scene, shape)) files.insert(texture->file.get());
-  if (files.empty()) return 0;
-  std::size_t decoded = 0, cached = 0;
+  if (files.empty() && environments.empty()) return 0;
+  std::size_t decoded = 0, cached = 0, held = kBytesOfPictureReader;
+  for (const EnvironmentPicture* environment : environments) held += environment->memory();
   for (const TextureFile* file : files) {
     const TextureMemory memory = file->memory();
     decoded = std::max(decoded, memory.decoded);
     cached += memory.cached;
   }
-  return decoded + std::min(cached, TextureFile::cache_limit());
+  return held + decoded + std::min(cached, TextureFile::cache_limit());
 }
 
 }  // namespace
@@ -234,7 +243,7 @@ Plan make_plan(const Scene& scene, const World& world) {
     plan.bytes +=                                                            // as read, and mended
         2 * (mesh.uvs.size() * sizeof(CornerUvs) + mesh.tangents.size() * sizeof(CornerTangents));
   }
-  plan.bytes += texture_bytes(scene);
+  plan.bytes += picture_bytes(scene);
   std::size_t samples = 0;
   for (GroupPlan& group : plan.groups) {
     group.method = scene.settings.method;
@@ -269,8 +278,9 @@ Plan make_plan(const Scene& scene, const World& world) {
     samples += group.samples;
   }
   // The lattice beside shadow edges has 56 bytes a place: about as many places as pixels there, up to its
-  // finest level. Measured on bunnies: 30 bytes a pixel at 512 x 512, 230 a sample at 2048 x 2048.
-  plan.bytes += std::min(30 * seen, 250 * samples);
+  // finest level; and surface caches have their places, more as there are more pixels. Measured on bunnies: 30 bytes a
+  // pixel at 512 x 512, 300 to 500 a sample above.
+  plan.bytes += std::min(45 * seen, 500 * samples);
   plan.rays = cheaper_build(scene, lights, plan);
   list_stages(scene, lights, plan);
   return plan;

@@ -41,6 +41,8 @@ class EnvironmentPicture {
   float density(const Vec3d& direction, const Vec3d& normal) const;
 
   bool is_grey() const { return is_grey_; }
+  /// At most, while it is read: four channels of the file beside the pixels and their tables; bytes.
+  std::size_t memory() const;
   /// Of the pixels.
   std::uint64_t hash() const { return hash_; }
 
