@@ -22,8 +22,8 @@ void write_even_room(const std::string& path, int height, float radiance) {
   Image picture;
   picture.width = picture.full_width = 2 * height;
   picture.height = picture.full_height = height;
-  picture.channels = {"R", "G", "B"};
-  picture.pixels.resize(std::size_t(6 * height * height));
+  picture.channels = {"R", "G", "B", "A"};
+  picture.pixels.resize(std::size_t(8 * height * height));
   std::ranges::fill(picture.pixels, radiance);
   write_exr(path, picture, false);
 }
