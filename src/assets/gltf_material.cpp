@@ -94,6 +94,7 @@ class MaterialTranslator {
       return json;
     } catch (const Error& failure) {
       not_carried(std::string(name) + ": " + failure.message);
+      scene_.missing_files.push_back(gltf_.path + ": " + label_ + ": " + name + ": " + failure.message);
       return {};
     }
   }

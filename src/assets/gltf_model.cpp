@@ -208,6 +208,8 @@ void parse(GltfModel& gltf, std::string& file, Neighbours& beside) {
   }
   check_compression(gltf);
   if (good && error.empty()) return;
+  // "[json.exception.parse_error.101] parse error at line 1, ...": the number is the library's.
+  if (error.starts_with("[json.exception.")) error.erase(0, std::min(error.find("] "), error.size() - 2) + 2);
   if (!beside.failure.empty()) error = beside.failure;
   const std::string record = gltf.model.asset.version.empty() ? "" : first_unread(gltf);
   throw bad_file(gltf.path,

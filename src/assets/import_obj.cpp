@@ -32,11 +32,12 @@ std::string_view next_word(std::string_view& line) {
   return word;
 }
 
+/// visit: of a line and its number, from 1
 template <class Visit>
 void for_each_line(std::string_view text, const Visit& visit) {
-  while (!text.empty()) {
+  for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    visit(text.substr(0, end));
+    visit(text.substr(0, end), number);
     text.remove_prefix(std::min(end + 1, text.size()));
   }
 }
@@ -53,18 +54,25 @@ std::optional<Vec3d> three_numbers(std::string_view line) {
   return value;
 }
 
+/// A line's names of files.
+struct NamedFiles {
+  std::string names;
+  std::size_t line = 0;
+};
+
 /// What an OBJ file says beside its faces.
 struct ObjOutline {
   bool has_uvs = false;
   std::vector<Vec3d> vertices;
-  std::vector<std::string> libraries, materials;  ///< materials that have faces, in the order of the file
+  std::vector<NamedFiles> libraries;
+  std::vector<std::string> materials;  ///< that have faces, in the order of the file
 };
 
 ObjOutline read_outline(const std::string& text) {
   ObjOutline outline;
   std::string material(kNoMaterial);
   std::set<std::string> used;
-  for_each_line(text, [&](std::string_view line) {
+  for_each_line(text, [&](std::string_view line, std::size_t number) {
     const std::string_view keyword = next_word(line);
     if (keyword == "v") {
       const auto position = three_numbers(line);  // where they are none, the reader of the mesh says so
@@ -73,7 +81,7 @@ ObjOutline read_outline(const std::string& text) {
     } else if (keyword == "vt") {
       outline.has_uvs = true;
     } else if (keyword == "mtllib") {
-      outline.libraries.emplace_back(trimmed(line));
+      outline.libraries.push_back({std::string(trimmed(line)), number});
     } else if (keyword == "usemtl") {
       material = obj_material_name(trimmed(line));
     } else if (keyword == "f" && used.insert(material).second) {
@@ -95,7 +103,7 @@ class ObjImporter {
     scene_.is_one_mesh = true;
     has_uvs_ = outline.has_uvs;
     scene_.translated.push_back("OBJ has no unit: lengths are taken for millimetres");
-    for (const std::string& library : outline.libraries) read_libraries(library);
+    for (const NamedFiles& library : outline.libraries) read_libraries(library);
     for (const std::string& material : outline.materials) add_shape(material);
     return std::move(scene_);
   }
@@ -107,7 +115,8 @@ class ObjImporter {
   };
 
   /// One file, whose name may have blanks in it, or several names.
-  void read_libraries(const std::string& names) {
+  void read_libraries(const NamedFiles& library) {
+    const auto& [names, line] = library;
     const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
     std::error_code ignored;
     if (std::filesystem::is_regular_file(folder / names, ignored))
@@ -117,13 +126,18 @@ class ObjImporter {
       if (std::filesystem::is_regular_file(folder / name, ignored))
         read_library((folder / name).string());
       else
-        scene_.not_carried.push_back("material library " + in_quotes(name) + ": there is no such file");
+        note_missing(path_, line, "mtllib " + in_quotes(name));
     }
+  }
+
+  void note_missing(const std::string& file, std::size_t line, const std::string& what) {
+    scene_.not_carried.push_back(what + ": there is no such file");
+    scene_.missing_files.push_back(fmt::format("{}:{}: {}: there is no such file", file, line, what));
   }
 
   void read_library(const std::string& path) {
     std::string material;
-    for_each_line(read_asset_bytes(path), [&](std::string_view line) {
+    for_each_line(read_asset_bytes(path), [&](std::string_view line, std::size_t number) {
       const std::string keyword(next_word(line));
       if (keyword == "newmtl") {
         material = obj_material_name(trimmed(line));
@@ -134,7 +148,7 @@ class ObjImporter {
         else
           lost_[material].insert("Kd " + in_quotes(trimmed(line)));
       } else if (keyword == "map_Kd" && !material.empty() && has_uvs_) {
-        take_picture(material, std::string(trimmed(line)), path);
+        take_picture(material, std::string(trimmed(line)), path, number);
       } else if (is_bump(keyword) && !material.empty() && has_uvs_) {
         take_bump(material, keyword, line, path);
       } else if (is_lost(keyword, line)) {
@@ -152,10 +166,14 @@ class ObjImporter {
   }
 
   /// Without options, which not two programs read alike.
-  void take_picture(const std::string& material, const std::string& name, const std::string& library) {
-    const std::filesystem::path file = name.starts_with('-') ? "" : beside(library, name);
-    if (file.empty())
+  void take_picture(const std::string& material, const std::string& name, const std::string& library,
+                    std::size_t line) {
+    const bool has_options = name.starts_with('-');
+    const std::filesystem::path file = has_options ? "" : beside(library, name);
+    if (has_options)
       lost_[material].insert("map_Kd " + in_quotes(name));
+    else if (file.empty())
+      note_missing(library, line, "map_Kd " + in_quotes(name) + " of material " + in_quotes(material));
     else
       pictures_[material] = scene_name_of(file, path_, mesh_path_);
   }

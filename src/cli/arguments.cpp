@@ -179,6 +179,12 @@ Error unknown_option(const CLI::App& command, const std::string& text) {
     for (const std::string& word : option->get_lnames()) names.push_back("--" + word);
     for (const std::string& letter : option->get_snames()) names.push_back("-" + letter);
   }
+  // A letter that is none stands for the words that begin with it.
+  if (name.size() == 2 && name.front() == '-')
+    for (const std::string& word : names)
+      if (word.starts_with("-" + name))
+        return usage_error("unknown option '" + printable(name) + "' (did you mean '" + word + "'?)" +
+                           hint(command));
   const std::vector<std::string_view> views(names.begin(), names.end());
   return usage_error("unknown option '" + printable(name) + "'" + did_you_mean(name, views) + hint(command));
 }
@@ -189,7 +195,10 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
   const std::vector<std::string> extras = command.remaining();
   const bool is_unknown = dynamic_cast<const CLI::ExtrasError*>(&failure) != nullptr ||
                           dynamic_cast<const CLI::RequiredError*>(&failure) != nullptr;
-  if (!is_unknown || extras.empty()) return usage_error(failure.what() + hint(command));
+  const std::string what = failure.what();
+  if (const std::size_t end = what.find(": At Most 1 required but received"); end != std::string::npos)
+    return usage_error(what.substr(0, end) + ": is given more than once" + hint(command));
+  if (!is_unknown || extras.empty()) return usage_error(what + hint(command));
   const bool has_commands = !command.get_subcommands([](const CLI::App*) { return true; }).empty();
   if (has_commands && !extras.front().starts_with('-')) return unknown_command(command, extras.front());
   const auto option = std::ranges::find_if(extras, [](const std::string& e) { return e.starts_with('-'); });
@@ -201,7 +210,7 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
 std::vector<std::string> words_of(const CLI::App& app, int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.empty() || words.front() != "help") return words;
-  words.erase(words.begin());
+  std::erase(words, "help");
   const CLI::App* command = &app;
   for (const std::string& word : words) {
     const auto commands = command->get_subcommands([&](const CLI::App* c) { return c->get_name() == word; });

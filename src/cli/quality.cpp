@@ -191,7 +191,16 @@ std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArg
   const double expected = errors.predicted
                               ? std::max(*errors.predicted, kKnownShare * errors.target.value_or(0))
                               : estimated_relative_error(picture.image, picture.translucent);
-  return stages.run("verifying", [&] { return measure_error(session, expected, &stages.monitor()); });
+  try {
+    return stages.run(
+        "verifying", [&] { return measure_error(session, expected, &stages.monitor()); },
+        InnerStages::trials);
+  } catch (const Error& stopped) {
+    if (stopped.kind != ErrorKind::interrupted) throw;
+    throw Error(ErrorKind::interrupted, {}, 0, 0,
+                "interrupted while the error was measured, before the picture was written; without --verify "
+                "it is not measured");
+  }
 }
 
 }  // namespace opaline

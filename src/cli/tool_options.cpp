@@ -118,6 +118,7 @@ void add_cache_commands(CLI::App& app, CacheArguments& cache, Options& options) 
     command.add_option("FOLDER", cache.folder, "what --cache named")->required()->type_name("FOLDER");
     command.add_flag("--json", options.json, "the result as one JSON object on stdout");
     command.parse_complete_callback([&cache, action] { cache.action = action; });
+    command.footer(kCacheNotes);
     return &command;
   };
   add("ls", CacheAction::list, "print the entries, the least recently used first");

@@ -27,18 +27,6 @@ std::string known_extensions() {
   return list;
 }
 
-/// The mesh file beside the missing one that is called almost the same.
-std::string nearest_mesh(const fs::path& missing) {
-  constexpr std::size_t most = 10000;  // of a folder's files are looked at
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator it(missing.parent_path().empty() ? "." : missing.parent_path(), error), end;
-       !error && it != end && names.size() < most; it.increment(error))
-    names.push_back(it->path().filename().string());
-  std::ranges::sort(names);
-  return did_you_mean(missing.filename().string(), std::vector<std::string_view>(names.begin(), names.end()));
-}
-
 /// Refuses a file that is far longer than its mesh, or than memory, before it is read.
 void check_size(const std::string& path, std::ifstream& file, std::uintmax_t size) {
   constexpr std::uintmax_t spare = 1 << 20;  // programs append notes of their own
@@ -68,7 +56,7 @@ std::string read_mesh_bytes(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found)
-    throw bad_file(path, "no such mesh file" + nearest_mesh(path));
+    throw bad_file(path, "no such mesh file" + did_you_mean_file(path));
   if (!fs::is_regular_file(status))
     throw bad_file(path, "cannot read the mesh", "a file",
                    fs::is_directory(status) ? "a directory" : "something else");

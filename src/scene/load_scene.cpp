@@ -55,6 +55,14 @@ void check_is_no_other_file(const std::string& path) {
                      "\"}], as scenes/bunny-marble.json, or an asset: .glb, .gltf or .obj");
 }
 
+/// Assets are told by their names; under another one they end here.
+void check_begins_as_scene(const std::string& path, const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (first == std::string::npos || text[first] == '{' || text[first] == '/') return;
+  throw bad_file(path, "does not begin as a scene does",
+                 "a scene file (JSON: '{'), or an asset under a name that ends in .glb, .gltf or .obj");
+}
+
 /// Reads the elements of a list, and rejects a name used twice.
 template <class T, class Read>
 std::vector<T> read_named(const std::optional<Value>& list, const std::string& default_name, Read read) {
@@ -185,6 +193,7 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
   Scene scene = parse_scene(asset.text, path, overrides, frame);
   scene.translation = asset.summary;
+  scene.missing_files = asset.missing_files;
   if (!asset.not_carried.empty()) scene.translation += ": opaline import lists them";
   forget_places(scene);
   return scene;
@@ -193,7 +202,9 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
 std::string read_scene_text(const std::string& path) {
   if (is_asset_name(path)) return import_asset(path, std::filesystem::path(path).filename().string()).text;
   check_is_no_other_file(path);
-  return read_text(path);
+  std::string text = read_text(path);
+  check_begins_as_scene(path, text);
+  return text;
 }
 
 std::string with_frame(const std::string& path, int frame) {

@@ -36,8 +36,21 @@ std::string suggestion(std::string_view name) {
   return name.empty() ? "" : " (did you mean '" + printable(name) + "'?)";
 }
 
-/// The candidate that is spelt almost alike, or empty.
+// What other programs call it.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOtherWords{
+    {{"rect", "quad"},
+     {"rectangle", "quad"},
+     {"area", "quad"},
+     {"sun", "directional"},
+     {"distant", "directional"},
+     {"dome", "environment"},
+     {"hdri", "environment"},
+     {"infinite", "environment"}}};
+
+/// The candidate that is spelt almost alike or that another program calls so, or empty.
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
+  for (const auto& [other, own] : kOtherWords)
+    if (name == other && std::ranges::find(candidates, own) != candidates.end()) return own;
   constexpr std::size_t longest = 64;  // a name may be megabytes long; then nothing is near it
   std::string_view nearest;
   std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
@@ -97,6 +110,10 @@ std::string did_you_mean_file(const std::string& path) {
   std::ranges::sort(names);  // folders list their files in no order
   const std::vector<std::string_view> views(names.begin(), names.end());
   const std::string near(nearest_name(given.filename().string(), views));
+  // The project's own scenes have a script beside them that fetches their assets.
+  const std::filesystem::path script = folder.parent_path() / "gallery";
+  if (near.empty() && folder.filename() == "assets" && std::filesystem::is_regular_file(script, failure))
+    return " (" + printable(script.string()) + " fetches the assets of the scenes beside it)";
   return suggestion(near.empty() ? near : (folder / near).string());
 }
 

@@ -12,8 +12,9 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kWalksOfPass = 4;   // a sample
-constexpr std::size_t kFewestPasses = 8;  // before an estimate of the error is believed
+constexpr std::size_t kWalksOfPass = 4;    // a sample
+constexpr std::size_t kFewestPasses = 8;   // before an estimate of the error is believed
+constexpr std::size_t kPassesOfNoise = 2;  // before there is one
 constexpr std::size_t kMostSeparate = 4, kMostSeparateSums = 8'000'000;  // lights; lights times samples
 
 /// Channels of equal media have the walks of the first of them in common.
@@ -315,9 +316,12 @@ void walk_volume(const VolumeInput& input, VolumeSums& sums,
       progress.expect(noise, *input.until_error, most);
       if (noise.worst() <= *input.until_error) break;
       jobs = jobs_wanted(walks, noise, most);
-    } else {
-      progress.expect(input.until_error ? kFewestPasses : most);
+    } else if (!input.until_error) {
+      progress.expect(most);
       if (input.monitor != nullptr) input.monitor->noise = Evaluation(input, sums).noise({}).worst();
+    } else if (input.monitor != nullptr && jobs_behind(walks, kPassesOfNoise).empty()) {
+      progress.expect(Evaluation(input, sums).noise(walks.jobs(), *input.until_error), *input.until_error,
+                      most);
     }
     if (jobs.empty()) break;
     walks.add_passes(jobs);

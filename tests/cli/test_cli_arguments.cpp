@@ -36,6 +36,7 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
   const SceneFolder folder;
   const std::string& scene = folder.scene;
   const std::string out = folder.file("out.exr");
+  EXPECT_EQ(run_program({"help", "help"}).out, run_program({"--help"}).out);
   const struct {
     std::vector<std::string> arguments;
     std::string named;
@@ -48,6 +49,9 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
        "profile, "
        "cache)"},
       {{"cache", "lss", out}, "unknown command 'lss' (did you mean 'ls'?)"},
+      {{"render", scene, "-o", out, "--spp", "4", "--spp", "8"}, "--spp: is given more than once"},
+      {{"-v"}, "unknown option '-v' (did you mean '--version'?)"},
+      {{"info", scene, "--set", "lights.0={\"type\": \"rect\"}"}, "(did you mean 'quad'?)"},
       {{"help", "rendr"}, "unknown command 'rendr' (did you mean 'render'?)"},
       {{"render", scene, "--outpt", out}, "unknown option '--outpt' (did you mean '--output'?)"},
       {{"render", scene, "-o", out, "--spps=4"}, "unknown option '--spps' (did you mean '--spp'?)"},

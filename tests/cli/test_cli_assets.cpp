@@ -112,18 +112,39 @@ TEST(CliAssets, EnvironmentInPlaceOfLights) {
   EXPECT_TRUE(contains(gone.err, "gone.exr: cannot read")) << gone.err;
 }
 
+// Claim: what an asset names and has not is a warning with file and line, and the picture is made. Fails if it is only
+// counted among what is not carried over.
+TEST(CliAssets, MissingFilesAreWarnings) {
+  const AssetFolder folder;
+  put_bytes(folder.file("a.obj"),
+            "mtllib gone.mtl\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl red\n"
+            "f 1/1 2/1 3/1\n");
+  put_bytes(folder.file("a.mtl"), "newmtl red\nmap_Kd gone.png\n");
+  const Outcome outcome = run_program({"render", "a.obj", "-o", "a.png", "--resolution", "8x8"}, folder.path);
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* said : {"warning: a.obj:1: mtllib 'gone.mtl': there is no such file",
+                           "warning: a.mtl:2: map_Kd 'gone.png' of material 'red': there is no such file"})
+    EXPECT_TRUE(contains(outcome.err, said)) << outcome.err;
+}
+
 // Claim: an asset that is broken, or is none, ends with code 2, its name, and without a scene file. Fails if the file
 // is written before it is checked.
 TEST(CliAssets, BrokenAssetsAreNamed) {
   const AssetFolder folder;
   put_bytes(folder.file("bad.gltf"), "{}");
   put_bytes(folder.file("wax.txt"), "wax");
+  put_bytes(folder.file("wax.glb"), "wax of bees, for candles");
+  put_bytes(folder.file("dusk.json"),
+            "{\n\"lights\": [{\"type\": \"environment\",\n\"file\": \"gone.exr\"}]}");
   const struct {
     std::vector<std::string> words;
     const char* said;
   } cases[] = {
       {{"import", "bad.gltf", "-o", "a.json"}, "bad.gltf: cannot be read as glTF 2.0"},
       {{"render", "bad.gltf", "-o", "a.png"}, "bad.gltf: cannot be read as glTF 2.0"},
+      {{"render", "wax.glb", "-o", "a.png"}, "cannot be read as glTF 2.0: parse error at line 1, column 1"},
+      {{"render", "wax.txt", "-o", "a.png"}, "wax.txt: does not begin as a scene does"},
+      {{"render", "dusk.json", "-o", "a.png"}, "dusk.json:3:9: gone.exr: cannot read"},
       {{"import", "gone.glb", "-o", "a.json"}, "gone.glb: no such file"},
       {{"import", "cubes.glb", "--material", "gone.mtlx", "-o", "a.json"}, "gone.mtlx: no such file"},
       {{"import", "wax.txt", "-o", "a.json"}, "is no asset that can be imported"},

@@ -318,7 +318,9 @@ struct Settings {
 struct Scene {
   std::string file;         ///< for messages
   std::string translation;  ///< of an asset: what its import made of it, in a line; empty: a scene file
-  double mm_per_unit = 1;   ///< of the file, for what is written in its units; nothing here is
+  std::vector<std::string>
+      missing_files;       ///< that an asset names: where, and what is done without; a line each
+  double mm_per_unit = 1;  ///< of the file, for what is written in its units; nothing here is
   std::vector<Medium> media;
   std::vector<Shape> shapes;
   std::vector<Light> lights;
