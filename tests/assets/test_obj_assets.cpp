@@ -57,8 +57,7 @@ TEST(ObjAssets, EachMaterialIsAShape) {
 TEST(ObjAssets, LibrariesAreFoundByTheirNames) {
   const ObjFolder folder;
   EXPECT_EQ(import_asset(folder.obj, "a.obj").not_carried.size(), 4u);  // two and gone.mtl, red.png, no such
-  EXPECT_TRUE(has(import_asset(folder.obj, "a.obj").not_carried,
-                  "mtllib 'gone.mtl': there is no such file"));
+  EXPECT_TRUE(has(import_asset(folder.obj, "a.obj").not_carried, "mtllib 'gone.mtl': there is no such file"));
   put_bytes(folder.obj, "mtllib two words.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl black\nf 1 2 3\n");
   EXPECT_EQ(load_scene(folder.obj).shapes.at(0).reflectance, Rgb(0));
 }
