@@ -21,10 +21,8 @@ ReducedMedium reduce(const PhysicalMedium& medium, std::size_t channel, ProfileK
 // By the inverse of the profile's own total; 1/sigma_t is unreduced, so g takes part.
 ReducedMedium reduce(const ArtistMedium& medium, std::size_t channel, ProfileKind kind, double eta) {
   const double absorbed = invert_albedo(kind, medium.subsurface_color[channel], eta);
-  const double g = medium.anisotropy;
-  // alpha'/(1-alpha') = (1-g) alpha/(1-alpha); sigma_t' / sigma_t = 1 - g alpha.
-  const double unreduced_absorbed = absorbed * (1 - g) / (1 - absorbed * g);
-  return {medium.subsurface_radius[channel] / (1 - g * (1 - unreduced_absorbed)), absorbed, eta};
+  return {reduced_mean_free_path(medium.subsurface_radius[channel], absorbed, medium.anisotropy), absorbed,
+          eta};
 }
 
 template <std::size_t... kKinds>
@@ -123,6 +121,12 @@ double invert_albedo(ProfileKind kind, double total, double eta) {
       high = middle;
   }
   return std::exp2(0.5 * (low + high));
+}
+
+// alpha'/(1-alpha') = (1-g) alpha/(1-alpha); sigma_t' / sigma_t = 1 - g alpha.
+double reduced_mean_free_path(double subsurface_radius, double absorbed, double g) {
+  const double unreduced_absorbed = absorbed * (1 - g) / (1 - absorbed * g);
+  return subsurface_radius / (1 - g * (1 - unreduced_absorbed));
 }
 
 DiffuseProfile make_diffuse_profile(const Medium& medium, double unit) {

@@ -42,7 +42,8 @@ class ShadowBatch {
         eta_(float(eta)),
         samples_(is_delta(lights[0]) ? 1 : samples),
         seed_(seed),
-        many_(std::get_if<ManyLights>(&lights[0].source)) {}
+        many_(std::get_if<ManyLights>(&lights[0].source)),
+        mean_transmitted_(eta > 0 ? fresnel_transmittance(kMeanCosine, float(eta)) : 1) {}
   ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
       : ShadowBatch(rays, std::span(&light, 1), eta, samples, seed) {}
 
@@ -66,7 +67,7 @@ class ShadowBatch {
     std::array<double, 2> shift{};
     if (!is_delta(lights_[0]))
       shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
-    if (many_ != nullptr) return add_drawn(point, shift, first, lobe);
+    if (many_ != nullptr) return add_drawn(point, index, shift, first, lobe);
     for (int s = 0; s < samples_; ++s) {
       const std::array<double, 2> square = r2_point(first + std::uint64_t(s), shift);
       std::array<float, 3> weights{};
@@ -86,24 +87,20 @@ class ShadowBatch {
     else
       rays_.occluded(shadow_);
     std::size_t ray = 0;
-    const std::size_t lights = lights_.size();
+    const std::size_t lights = lights_.size(), samples = std::size_t(samples_);
     for (std::size_t i = 0; i < carried_.size(); i += lights) {
       const std::span<const float> carried(&carried_[i], lights);
       const bool lit = std::ranges::any_of(carried, [](float c) { return c > 0; }) && shadow_[ray++].far >= 0;
-      const std::size_t sample = i / lights, point = sample / std::size_t(samples_);
-      const int s = int(sample % std::size_t(samples_));
-      const float sure = sure_.empty() ? 0 : sure_[sample];
-      for (std::size_t l = 0; l < lights; ++l)
-        if (sure > 0) {
-          const float half = .5f * sure * carried[l], rest = carried[l] - half;
-          use(l, point, s, lit ? rest : 0.0f, rest);
-          use(l, point, s < samples_ / 2 ? samples_ - 1 : 0, lit ? half : 0.0f, half);
-        } else {
-          use(l, point, s, lit ? carried[l] : 0.0f, carried[l]);
-        }
+      const std::size_t sample = i / lights, point = sample / samples, s = sample % samples;
+      if (controls_.empty()) {
+        for (std::size_t l = 0; l < lights; ++l) use(l, point, int(s), lit ? carried[l] : 0.0f, carried[l]);
+        continue;
+      }
+      controls_[sample].lit = lit;
+      if (s + 1 == samples) use_controlled(point, use);
     }
     carried_.clear();
-    sure_.clear();
+    controls_.clear();
     shadow_.clear();
     directions_.clear();
   }
@@ -120,7 +117,9 @@ class ShadowBatch {
   }
 
  private:
-  static constexpr std::size_t kSorted = 256;  // rays that Embree takes at once
+  static constexpr std::size_t kSorted = 256;     // rays that Embree takes at once
+  static constexpr float kMeanCosine = 2.0f / 3;  // of even light
+  static constexpr float kRounding = 1e-4f;       // of a sum of a few floats, less one of them
 
   void carry(const SurfacePoint& point, const LightSample& sample, const std::array<float, 3>& weights) {
     const float cosine = dot(point.normal, sample.direction);
@@ -140,30 +139,64 @@ class ShadowBatch {
   }
 
   // Neighbours in the order of a draw are alike: one after the other they go to the halves of a point's samples.
-  void add_drawn(const SurfacePoint& point, const std::array<double, 2>& shift, std::uint64_t first,
-                 const Lobe* lobe) {
+  void add_drawn(const SurfacePoint& point, std::uint64_t index, const std::array<double, 2>& shift,
+                 std::uint64_t first, const Lobe* lobe) {
     constexpr double kGolden = 0.61803398874989484820;
     const LightTree& tree = *many_->tree;
     drawn_.resize(std::size_t(samples_));
+    const std::uint64_t key = hash_bits(seed_, 2 * index);
     const double place = shift[0] + kGolden * double(first / std::uint64_t(samples_) % (1 << 20));
     const bool is_mirrored = lobe != nullptr && !tree.has_area();
-    tree.draw({point.position, point.normal, is_mirrored ? lobe : nullptr}, place - std::floor(place),
+    tree.draw({point.position, point.normal, is_mirrored ? lobe : nullptr}, place - std::floor(place), key,
               drawn_);
     for (int s = 0; s < samples_; ++s) {
       const int half = samples_ / 2;
-      const auto& [light, expected, rest] = drawn_[std::size_t(s < half ? 2 * s + 1 : 2 * (s - half))];
+      const LightTree::Drawn& draw = drawn_[std::size_t(s < half ? 2 * s + 1 : 2 * (s - half))];
       std::array<float, 3> weights{};
       LightSample sample;
-      if (expected > 0) {
-        const std::array<double, 2> square{double(rest), r2_point(first + std::uint64_t(s), shift)[1]};
-        sample = sample_light(tree.lights()[light], point.position, point.normal, square, 1);
-        const RgbF colour = tree.colour(light) * (sample.weight / expected);
-        for (std::size_t l = 0; l < lights_.size(); ++l)
-          weights[l] = colour[std::get<ManyLights>(lights_[l].source).channel.value_or(0)];
+      if (draw.expected > 0) {
+        const std::array<double, 2> square{double(draw.rest), r2_point(first + std::uint64_t(s), shift)[1]};
+        sample = sample_light(tree.lights()[draw.light], point.position, point.normal, square, 1);
+        const RgbF colour = tree.colour(draw.light) * (sample.weight / draw.expected);
+        for (std::size_t l = 0; l < lights_.size(); ++l) weights[l] = colour[channel(l)];
       }
       carry(point, sample, weights);
-      const bool is_exact = samples_ > 1 && !keeps_directions_ && !tree.has_area();
-      sure_.push_back(is_exact ? 1 - std::sqrt(std::max(0.0f, 1 - expected)) : 0);
+      if (samples_ > 1 && !keeps_directions_ && !tree.has_area()) control(draw);
+    }
+  }
+
+  std::size_t channel(std::size_t light) const {
+    return std::get<ManyLights>(lights_[light].source).channel.value_or(0);
+  }
+
+  void control(const LightTree::Drawn& draw) {
+    controls_.push_back({draw.unshadowed * mean_transmitted_, draw.mean_unshadowed * mean_transmitted_,
+                         draw.expected, false});
+  }
+
+  // What nothing shadows is known of all lights together: as far as light reaches the point from the others that are
+  // drawn, it counts for what is drawn. The mean is that of what is drawn, for draws do not depend on each other.
+  template <class Use>
+  void use_controlled(std::size_t point, const Use& use) const {
+    const std::size_t samples = std::size_t(samples_), first = point * samples, lights = lights_.size();
+    const std::span<const Control> controls(&controls_[first], samples);
+    RgbF lit, all;
+    for (const Control& c : controls) {
+      all += c.here;
+      if (c.lit) lit += c.here;
+    }
+    for (std::size_t s = 0; s < samples; ++s) {
+      const Control& c = controls[s];
+      const float chance = std::sqrt(std::max(0.0f, 1 - c.expected));
+      for (std::size_t l = 0; l < lights; ++l) {
+        const std::size_t k = channel(l);
+        const float carried = carried_[(first + s) * lights + l], here = c.here[k], others = all[k] - here;
+        const float open = others > kRounding * all[k] ? (lit[k] - (c.lit ? here : 0)) / others : 0;
+        const float drawn = (c.lit ? carried : 0) - open * here, sum = drawn + open * c.mean[k];
+        const float half = .5f * (sum - chance * drawn), free = .5f * (carried + c.mean[k] - here);
+        use(l, point, int(s), sum - half, free);
+        use(l, point, s < samples / 2 ? samples_ - 1 : 0, half, free);
+      }
     }
   }
 
@@ -194,10 +227,18 @@ class ShadowBatch {
   int samples_;
   std::uint64_t seed_;
   const ManyLights* many_;  // null: a light that is not drawn
+  float mean_transmitted_;  // about as much as the boundary lets in
   std::vector<LightTree::Drawn> drawn_;
   bool scattered_ = false, keeps_directions_ = false;
-  std::vector<float> carried_,
-      sure_;  // sure: the share of it that does not hang on what was drawn; empty: none
+  std::vector<float> carried_;
+  /// Of one sample of many lights: what its light would bring were nothing in the way, over how often it is drawn; the mean
+  /// of that over all draws of the sample.
+  struct Control {
+    RgbF here, mean;
+    float expected;
+    bool lit;
+  };
+  std::vector<Control> controls_;  // empty: none
   std::vector<Vec3f> directions_;
   std::vector<Ray> shadow_, sorted_;
   std::vector<std::uint64_t> order_;

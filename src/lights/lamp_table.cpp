@@ -19,7 +19,8 @@ constexpr float kLeastSquare = 1e-30f;
 
 }  // namespace
 
-LampTable::LampTable(std::span<const Light> lights, std::span<const std::uint32_t> order) {
+LampTable::LampTable(std::span<const Light> lights, std::span<const std::uint32_t> order,
+                     std::span<const RgbF> colours) {
   Rgb total;
   for (const Light& light : lights) total += emission(light);
   for (const std::uint32_t l : order) {
@@ -33,6 +34,8 @@ LampTable::LampTable(std::span<const Light> lights, std::span<const std::uint32_
     for (std::size_t c = 0; c < 3; ++c)
       if (total[c] > 0) intensity += colour[c] / total[c];
     intensity_.push_back(float(intensity * lamp.intensity));
+    for (std::size_t c = 0; c < 3; ++c)
+      colours_[c].push_back(intensity > 0 ? float(double(colours[l][c]) / intensity) : 0);
     has_spots_ |= lamp.facing.has_value();
     const Vec3f way(lamp.facing.value_or(Vec3d{}));
     const double rim = lamp.facing ? std::cos(lamp.reach) - double(kTrace) : -3,
@@ -46,6 +49,7 @@ LampTable::LampTable(std::span<const Light> lights, std::span<const std::uint32_
   for (std::vector<float>* column :
        {&x_, &y_, &z_, &intensity_, &way_x_, &way_y_, &way_z_, &rim_, &per_fade_})
     column->resize(weights());
+  for (std::vector<float>& channel : colours_) channel.resize(weights());
 }
 
 // Four lamps at once.
@@ -87,8 +91,21 @@ void LampTable::weigh(const Vec3f& point, const Vec3f& normal, std::span<float> 
       weigh_block<false>(point, normal, first, &weights[first]);
 }
 
-WeighedDraw::WeighedDraw(std::span<const float> weights, double draws)
-    : weights_(weights), blocks_(weights.size() / kBlock) {
+RgbF LampTable::brought_by_block(std::size_t block, std::span<const float> weights) const {
+  RgbF brought;
+  for (std::size_t c = 0; c < 3; ++c) {
+    __m128 sums = _mm_setzero_ps();
+    for (std::size_t i = block * kBlock; i < (block + 1) * kBlock; i += 4)
+      sums = _mm_add_ps(sums, _mm_mul_ps(_mm_loadu_ps(&colours_[c][i]), _mm_loadu_ps(&weights[i])));
+    alignas(16) std::array<float, 4> lanes;
+    _mm_store_ps(lanes.data(), sums);
+    brought[c] = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+  }
+  return brought;
+}
+
+WeighedDraw::WeighedDraw(const LampTable& lamps, std::span<const float> weights, double draws)
+    : lamps_(lamps), weights_(weights), blocks_(weights.size() / kBlock) {
   double sum = 0;
   for (std::size_t b = 0; b < blocks_; ++b) {
     constexpr std::size_t kLanes = 4;
@@ -110,12 +127,12 @@ WeighedDraw::WeighedDraw(std::span<const float> weights, double draws)
     std::size_t now = 0;
     double rest = 0;
     for (std::size_t b = 0; b < blocks_; ++b) {
-      if (!(double(largest_[b]) * scale_ >= 1)) {
+      if (!is_sure(largest_[b])) {
         rest += sums_[b];
         continue;
       }
       for (std::size_t i = b * kBlock; i < (b + 1) * kBlock; ++i)
-        if (double(weights[i]) * scale_ >= 1)
+        if (is_sure(weights[i]))
           ++now;
         else
           rest += double(weights[i]);
@@ -128,11 +145,85 @@ WeighedDraw::WeighedDraw(std::span<const float> weights, double draws)
   }
 }
 
-double WeighedDraw::block_length(std::size_t b) const {
-  if (!(double(largest_[b]) * scale_ >= 1)) return sums_[b] * scale_;
+double WeighedDraw::length_of_others(std::size_t block) const {
+  if (!is_sure(largest_[block])) return sums_[block] * scale_;
   double length = 0;
-  for (std::size_t i = b * kBlock; i < (b + 1) * kBlock; ++i) length += expected(i);
+  for (std::size_t i = block * kBlock; i < (block + 1) * kBlock; ++i)
+    if (!is_sure(weights_[i])) length += expected(i);
   return length;
+}
+
+std::size_t WeighedDraw::take_sure(std::span<Stratum> strata) const {
+  std::size_t taken = 0;
+  for (std::size_t b = 0; b < blocks_; ++b) {
+    if (!(largest_[b] > 0) || !is_sure(largest_[b])) continue;
+    for (std::size_t i = b * kBlock; i < (b + 1) * kBlock && taken < strata.size(); ++i)
+      if (weights_[i] > 0 && is_sure(weights_[i]))
+        strata[taken++] = {0, i, 1, lamps_.brought(i, weights_[i])};
+  }
+  return taken;
+}
+
+/// Lays lamps side by side; lengths in strata.
+class WeighedDraw::OtherLamps {
+ public:
+  explicit OtherLamps(std::span<Stratum> strata) : strata_(strata) { begin_stratum(0); }
+
+  /// Whether so much fits into the stratum at hand, and is not drawn from there.
+  bool passes(double length) const {
+    const double end = end_ + length;
+    return end < border_ && (place_ < end_ || place_ >= end);
+  }
+  void pass(double length, const RgbF& brought) {
+    strata_[stratum_].brought += brought;
+    end_ += length;
+  }
+  void add(std::size_t lamp, double length, const RgbF& brought) {
+    if (passes(length)) return pass(length, brought);
+    const double end = end_ + length;
+    for (;;) {
+      const double border = std::min(end, border_);
+      Stratum& own = strata_[stratum_];
+      if (place_ >= end_ && place_ < border) {
+        own.lamp = lamp;
+        own.expected = float(length);
+      }
+      own.brought += brought * float((border - end_) / length);
+      end_ = border;
+      if (end <= border_ || stratum_ + 1 == strata_.size()) return;
+      begin_stratum(stratum_ + 1);
+    }
+  }
+
+ private:
+  void begin_stratum(std::size_t stratum) {
+    stratum_ = stratum;
+    border_ = double(stratum + 1);
+    place_ = double(stratum) + strata_[stratum].place;
+  }
+
+  std::span<Stratum> strata_;
+  std::size_t stratum_ = 0;  // at hand
+  double border_, place_;    // its end, and where it is drawn
+  double end_ = 0;           // of the lamps so far
+};
+
+void WeighedDraw::take_others(std::span<Stratum> strata) const {
+  double length = 0;
+  for (std::size_t b = 0; b < blocks_; ++b) length += length_of_others(b);
+  if (strata.empty() || !(length > 0)) return;
+  const double per_step = double(strata.size()) / length;
+  OtherLamps others(strata);
+  for (std::size_t b = 0; b < blocks_; ++b) {
+    const double of_block = length_of_others(b) * per_step;
+    if (!is_sure(largest_[b]) && others.passes(of_block)) {
+      others.pass(of_block, lamps_.brought_by_block(b, weights_));
+      continue;
+    }
+    for (std::size_t i = b * kBlock; i < (b + 1) * kBlock; ++i)
+      if (weights_[i] > 0 && !is_sure(weights_[i]))
+        others.add(i, expected(i) * per_step, lamps_.brought(i, weights_[i]));
+  }
 }
 
 }  // namespace opaline

@@ -41,7 +41,7 @@ struct Angle {
 
 std::uint64_t hash_of(std::span<const Light> lights) {
   constexpr std::uint64_t kVersion =
-      2;  // raise it where the same lights are drawn otherwise: results are kept by the hash
+      3;  // raise it where the same lights are drawn otherwise: results are kept by the hash
   std::uint64_t hash = hash_bits(kVersion, lights.size());
   const auto add = [&](double value) { hash = hash_bits(hash, std::bit_cast<std::uint64_t>(value)); };
   for (const Light& light : lights) {
@@ -172,7 +172,7 @@ LightTree::LightTree(std::vector<Light> lights)
   places_.resize(order_.size());
   for (std::uint32_t i = 0; i < order_.size(); ++i) places_[order_[i]] = i;
   if (!has_area_ && lights_.size() <= kMostWeighed)
-    lamps_ = std::make_shared<const LampTable>(lights_, order_);
+    lamps_ = std::make_shared<const LampTable>(lights_, order_, colours_);
 }
 
 LightExtent LightTree::extent() const {
@@ -205,9 +205,9 @@ void LightTree::collect(std::uint32_t node, const Place& at, Cut& cut) const {
   collect(own.children + 1, at, cut);
 }
 
-void LightTree::draw(const Place& at, double random, std::span<Drawn> drawn) const {
+void LightTree::draw(const Place& at, double random, std::uint64_t key, std::span<Drawn> drawn) const {
   std::ranges::fill(drawn, Drawn{});
-  if (lamps_ != nullptr && at.lobe == nullptr) return draw_weighed(at, random, drawn);
+  if (lamps_ != nullptr && at.lobe == nullptr) return draw_weighed(at, random, key, drawn);
   Cut cut;
   collect(0, at, cut);
   const double rays = double(drawn.size());
@@ -243,24 +243,33 @@ void LightTree::descend(std::uint32_t node, double begin, double end, Slots& slo
   while (slots.any_before(end)) slots.skip();
 }
 
-void LightTree::draw_weighed(const Place& at, double random, std::span<Drawn> drawn) const {
+// Those that are drawn surely first.
+void LightTree::draw_weighed(const Place& at, double random, std::uint64_t key,
+                             std::span<Drawn> drawn) const {
   std::array<float, kMostWeighed> values;
   const std::span<float> weights(values.data(), lamps_->weights());
   lamps_->weigh(at.point, at.normal, weights);
-  auto next = drawn.begin();
-  WeighedDraw(weights, double(drawn.size()))
-      .visit(random, drawn.size(), [&](std::size_t i, double expected, double within) {
-        *next++ = {order_[i], float(expected), std::clamp(float(within), 0.f, 0x1.fffffep-1f)};
-      });
-  // Those that are drawn surely first: what halves of a draw differ by is what is in error.
-  std::stable_partition(drawn.begin(), next, [](const Drawn& d) { return d.expected >= 1; });
+  const WeighedDraw weighed(*lamps_, weights, double(drawn.size()));
+  std::vector<WeighedDraw::Stratum> strata(drawn.size());
+  const std::size_t sure = weighed.take_sure(strata);
+  for (std::size_t s = sure; s < strata.size(); ++s) {
+    const double place = random + unit_double(hash_bits(key, s));
+    strata[s].place = place - std::floor(place);
+  }
+  weighed.take_others(std::span(strata).subspan(sure));
+  for (std::size_t s = 0; s < strata.size(); ++s) {
+    const auto& [place, lamp, expected, brought] = strata[s];
+    if (expected > 0)
+      drawn[s] = {order_[lamp], expected, .5f, lamps_->brought(lamp, weights[lamp]) * (1 / expected),
+                  brought};
+  }
 }
 
 double LightTree::share(const Place& at, std::uint32_t light) const {
   if (lamps_ != nullptr && at.lobe == nullptr) {
     std::vector<float> weights(lamps_->weights());
     lamps_->weigh(at.point, at.normal, weights);
-    return WeighedDraw(weights, 1).expected(places_[light]);
+    return WeighedDraw(*lamps_, weights, 1).expected(places_[light]);
   }
   Cut cut;
   collect(0, at, cut);

@@ -82,7 +82,7 @@ LightSample LightOf<ManyLights>::sample_channels(const ManyLights& light, const 
                                                  const Vec3f& normal, std::array<double, 2> unit_square,
                                                  int samples, RgbF& weights) {
   LightTree::Drawn drawn;
-  light.tree->draw({point, normal}, unit_square[0], {&drawn, 1});
+  light.tree->draw({point, normal}, unit_square[0], 0, {&drawn, 1});
   if (!(drawn.expected > 0)) return {};
   LightSample sample =
       sample_light(light.tree->lights()[drawn.light], point, normal, {double(drawn.rest), unit_square[1]}, 1);

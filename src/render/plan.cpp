@@ -124,6 +124,19 @@ std::string walks_stage(const Settings& settings) {
   return fmt::format("random walks, {} a sample, channel and light", kDefaultWalks) + reentry;
 }
 
+/// Of a medium whose textures could differ inside a body; else empty.
+std::string medium_stage(const Medium& medium, Method method) {
+  if (varies_inside(medium, method))
+    return "inside, its medium is at each place that of the nearest place of the surface, by its textures";
+  const bool has_color = medium.texture_mix == TextureMix::medium && medium.tint_texture;
+  if (!has_color && !medium.radius_texture) return {};
+  std::string text = "a radial profile has one medium throughout: ";
+  if (has_color) text += "of the mean colour, its texture met as by texture_mix \"split\"";
+  if (has_color && medium.radius_texture) text += ", and ";
+  if (medium.radius_texture) text += "of the mean radius";
+  return text + "; --method volume_diffusion follows the textures inside";
+}
+
 /// in    traced: recentred
 std::string irradiance_stage(const Scene& scene, std::span<const Light> traced) {
   std::size_t lights = 0, rays = 0, drawn_from = 0;
@@ -162,6 +175,9 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
                         "and its surface is flat "
                         "on the scale of one",
                         group.name, kMostCells, widest_cell(scene.settings)));
+    for (const GroupPlan& group : plan.groups)
+      if (const Medium& medium = scene.media[group.medium]; !medium_stage(medium, method).empty())
+        plan.stages.push_back(group.name + ": " + medium_stage(medium, method));
     if (has_tree) {
       plan.stages.push_back("octree");
       plan.stages.push_back(evaluation_stage(scene.settings));
@@ -251,10 +267,11 @@ Plan make_plan(const Scene& scene, const World& world) {
     if (is_too_thin_for_cells(group)) group.model.expected_error_of_diffusion.reset();
     if (is_too_large_for_cells(scene.settings, group)) {
       group.model.expected_error_of_diffusion.reset();
-      if (group.method == Method::volume_diffusion) group.method = Method::hierarchical;
+      if (group.method == Method::volume_diffusion && !varies_inside(scene.media[group.medium], group.method))
+        group.method = Method::hierarchical;
     }
     if (group.method == Method::volume_diffusion) {
-      choose_cells(scene, group, plan.warnings);
+      choose_cells(scene, world, group, plan.warnings);
       choose_cut(scene.settings, group, plan.warnings);
       const double in_wires =
           group.thickness > 0 ? 1.2 * needle_share(world, group) * group.cell / group.thickness : 0;

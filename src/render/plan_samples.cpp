@@ -9,6 +9,7 @@
 
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/volume/volume_diffusion.h"
+#include "render/local_media.h"
 
 namespace opaline {
 namespace {
@@ -93,8 +94,7 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
 }
 
 double widest_cell(const Settings& settings) {
-  constexpr double kTooWide = 3;
-  return std::max(kTooWide, settings.cell_size);
+  return std::max(kWidestCell, settings.cell_size);
 }
 
 bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group) {
@@ -109,13 +109,15 @@ bool is_too_thin_for_cells(const GroupPlan& group) {
 
 // The cells of volume_diffusion: as asked for, but smaller where light fades within them, no more than memory should
 // hold, and several across a thin body.
-void choose_cells(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
+void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
+                  std::vector<std::string>& warnings) {
   constexpr double kAcrossThin = 4, kSmallest = .25;
   constexpr double kFewestFaces = 60;  // of cells, on the surface
-  constexpr double kPerFading = .45;   // of settings.cell_size: measured, src/volume/README.md
   const double length = group.smallest_mean_free_path;
-  group.cell =
-      scene.settings.cell_size * std::min(length, kPerFading * shortest_fading(scene.media[group.medium]));
+  const Medium& medium = scene.media[group.medium];
+  group.cell = scene.settings.cell_size * (varies_inside(medium, scene.settings.method)
+                                               ? short_length_of(scene, world, group)
+                                               : std::min(length, kPerFading * shortest_fading(medium)));
   if (group.thickness > 0)
     group.cell = std::min(group.cell, std::max(group.thickness / kAcrossThin, kSmallest * group.cell));
   group.cell = std::min(group.cell, std::sqrt(group.area / kFewestFaces));

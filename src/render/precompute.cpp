@@ -9,6 +9,7 @@
 #include "opaline/exitance/cloud_error.h"
 #include "opaline/lights/light.h"
 #include "opaline/lights/light_tree.h"
+#include "render/local_media.h"
 
 namespace opaline {
 std::uint64_t sampling_seed(const Settings& settings, std::size_t group) {
@@ -66,16 +67,19 @@ Rgb reduced_absorption(Medium medium) {
 
 namespace {
 
+HomogeneousMedium isotropic_medium(const ReducedMedium& reduced) {
+  const double length = reduced.mean_free_path;
+  if (!(length > 0)) return {0, 0, 0, reduced.eta};
+  return {reduced.absorbed / length, (1 - reduced.absorbed) / length, 0, reduced.eta};
+}
+
 /// In the world's unit.
 std::array<HomogeneousMedium, 3> isotropic_media(const DiffuseProfile& profile) {
   std::array<HomogeneousMedium, 3> media;
   for (std::size_t c = 0; c < 3; ++c) {
-    media[c].eta = profile.eta;
-    const double length = profile.mean_free_path[c];
-    if (!(length > 0)) continue;
-    const double decay = length / profile.diffuse_mean_free_path[c];  // its square is 3 (1 - alpha')
-    const double absorbed = decay * decay / 3;
-    media[c] = {absorbed / length, (1 - absorbed) / length, 0, profile.eta};
+    const double decay =
+        profile.mean_free_path[c] / profile.diffuse_mean_free_path[c];  // its square is 3 (1 - alpha')
+    media[c] = isotropic_medium({profile.mean_free_path[c], decay * decay / 3, profile.eta});
   }
   return media;
 }
@@ -98,6 +102,15 @@ double diagonal_of(const World& world, std::span<const std::uint32_t> meshes) {
   return length(box.high - box.low);
 }
 
+/// least: of the mean free path of what is walked
+HomogeneousMedium walked_medium(const ReducedMedium& reduced, double g, double least) {
+  const double absorbed = reduced.absorbed;
+  // 1/sigma_t of what is walked, over the reduced one.
+  const double shortening = 1 / (absorbed + (1 - absorbed) / (1 - g));
+  const double length = std::max(reduced.mean_free_path, least / shortening);
+  return {absorbed / length, (1 - absorbed) / (length * (1 - g)), g, reduced.eta};
+}
+
 }  // namespace
 
 VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span<const Light> lights) {
@@ -110,15 +123,14 @@ VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span
   for (std::size_t c = 0; c < 3; ++c) {
     walks.media[c].eta = body.profile.eta;
     if (!(body.profile.total[c] > 0)) continue;
-    // 1/sigma_t of what is walked, over the reduced one.
-    const double shortening = 1 / (absorbed[c] + (1 - absorbed[c]) / (1 - g));
-    const double length = std::max(body.profile.mean_free_path[c], least / shortening);
-    walks.media[c] = {absorbed[c] / length, (1 - absorbed[c]) / (length * (1 - g)), g, body.profile.eta};
+    walks.media[c] = walked_medium({body.profile.mean_free_path[c], absorbed[c], body.profile.eta}, g, least);
   }
   walks.until_error = settings.until_error;
   walks.seed = hash_bits(settings.seed, 3000);
   walks.monitor = input.monitor;
   walks.reenter = settings.reenter;
+  walks.media_inside = media_inside(
+      input, body, [g, least](const ReducedMedium& reduced) { return walked_medium(reduced, g, least); });
   return walks;
 }
 
@@ -126,9 +138,17 @@ CutSurface cut_surface(const PrecomputeInput& input, const Body& body) {
   return cut_surface(input.world, body.plan.meshes, body.plan.cell / input.world.unit, body.plan.cell_parts);
 }
 
+// Of a medium that varies, what the cells do not resolve is stretched until they do. It still returns as much light, and
+// where it leaves is known within a cell, as everything is.
 VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals) {
+  const double cell = body.plan.cell / input.world.unit, least = cell / input.scene.settings.cell_size;
+  const auto resolved = [least](ReducedMedium reduced) {
+    const double length = length_to_resolve(reduced.mean_free_path, reduced.absorbed);
+    if (length > 0 && length < least) reduced.mean_free_path *= least / length;
+    return isotropic_medium(reduced);
+  };
   return VolumeDiffusion({input.world, body.plan.meshes, body.surface.samples, normals,
-                          isotropic_media(body.profile), body.plan.cell / input.world.unit});
+                          isotropic_media(body.profile), cell, media_inside(input, body, resolved)});
 }
 
 std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights) {

@@ -149,7 +149,9 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
     own.heights = pointer_to(shape.bump_map);
     if (shape.medium) {
       const Medium& medium = scene.media[*shape.medium];
-      own.tint = pointer_to(medium.tint_texture);
+      const bool is_inside = has_color_inside(medium, scene.settings.method);
+      (is_inside ? own.color_inside : own.tint) = pointer_to(medium.tint_texture);
+      if (varies_inside(medium, scene.settings.method)) own.radius_inside = pointer_to(medium.radius_texture);
       own.roughness = pointer_to(medium.roughness_texture);
       own.factor = medium.tint;
       if (is_partly_opaque(medium)) {
@@ -213,6 +215,14 @@ RgbF SurfaceTextures::reflected(const Place& place) const {
   return base * (1 - scattered);
 }
 
+MediumFactors SurfaceTextures::medium(const Place& place) const {
+  const OfMesh& own = of_mesh_[place.mesh];
+  MediumFactors factors;
+  if (own.color_inside != nullptr) factors.color = color_of(*own.color_inside, place);
+  if (own.radius_inside != nullptr) factors.radius = color_of(*own.radius_inside, place);
+  return factors;
+}
+
 std::optional<float> SurfaceTextures::roughness(const Place& place) const {
   const Texture* const texture = of_mesh_[place.mesh].roughness;
   if (texture == nullptr) return {};
@@ -270,15 +280,29 @@ void add_to_key(KeyBuilder& key, const Texture& texture) {
   key.add(texture.uv_offset).add(texture.uv_scale).add(texture.uv_rotation);
 }
 
-StageKey tint_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes,
-                  const StageKey& samples) {
-  const bool has_tint = medium.tint != Rgb(1) || medium.tint_texture || medium.weight_texture;
+StageKey tint_key(const Medium& medium, Method method, const World& world,
+                  std::span<const std::uint32_t> meshes, const StageKey& samples) {
+  const bool has_texture = medium.tint_texture && !has_color_inside(medium, method);
+  const bool has_tint = medium.tint != Rgb(1) || has_texture || medium.weight_texture;
   if (medium.texture_mix == TextureMix::post || !has_tint) return {};
   KeyBuilder key("entering tint", 1);
   key.add(samples).add(medium.tint).add(medium.texture_mix);
-  if (!medium.tint_texture && !medium.weight_texture) return key.key();
-  if (medium.tint_texture) add_to_key(key, *medium.tint_texture);
+  if (!has_texture && !medium.weight_texture) return key.key();
+  if (has_texture) add_to_key(key, *medium.tint_texture);
   if (medium.weight_texture) add_to_key(key.add(std::string("weight")), *medium.weight_texture);
+  for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
+  return key.key();
+}
+
+StageKey medium_key(const Medium& medium, Method method, const World& world,
+                    std::span<const std::uint32_t> meshes) {
+  if (!varies_inside(medium, method)) return {};
+  const auto& mean = std::get<ArtistMedium>(medium.coefficients);
+  KeyBuilder key("medium inside", 1);
+  key.add(mean.subsurface_color).add(mean.subsurface_radius).add(mean.anisotropy).add(medium.eta);
+  key.add(profile_kind(medium)).add(profile_thickness(medium));
+  if (has_color_inside(medium, method)) add_to_key(key.add(std::string("color")), *medium.tint_texture);
+  if (medium.radius_texture) add_to_key(key.add(std::string("radius")), *medium.radius_texture);
   for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
   return key.key();
 }

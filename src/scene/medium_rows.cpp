@@ -35,10 +35,11 @@ std::vector<KeyInfo> medium_rows() {
       textured(row(
           "medium", "subsurface_color", color, "", kUnitInterval, "",
           "how much of the light that enters comes out again; of a texture the mean, and each texel over it "
-          "the `tint`")),
-      row("medium", "subsurface_radius", number_or_triple, "mm", kNonNegative, "",
-          "how far light goes before it is scattered or absorbed, 1/sigma_t; three numbers are red, green "
-          "and blue, not x, y, z"),
+          "the `tint`, but for `texture_mix` `\"medium\"`")),
+      textured(row("medium", "subsurface_radius", number_or_triple, "mm", kNonNegative, "",
+                   "how far light goes before it is scattered or absorbed, 1/sigma_t; three numbers are red, "
+                   "green and blue, not x, y, z; a texture's numbers times its `scale`: `volume_diffusion` "
+                   "and `volume` follow it inside, other methods take its mean")),
       row("medium", "subsurface_radius_scale", number_or_triple, "", kNonNegative, "1",
           "multiplies `subsurface_radius`, for a tint"),
       row("medium", "subsurface_scatter_anisotropy", number, "", {-1, 1, true, true}, "0",
@@ -71,7 +72,9 @@ std::vector<KeyInfo> medium_rows() {
       row("medium", "texture_mix", choice, "", kFiniteNumber, "`\"split\"`",
           "where the tint is met: `\"pre\"` by light that enters, and blurred like it; `\"post\"` by light "
           "that "
-          "leaves, sharp; `\"split\"` its root by both",
+          "leaves, sharp; `\"split\"` its root by both; `\"medium\"`: a texture of `subsurface_color` is the "
+          "medium's, at each place inside that of the nearest place of the surface, by `volume_diffusion` "
+          "and `volume`; other methods take `\"split\"`",
           kTextureMixNames),
       row("medium", "thickness", length, "", kFiniteNumber,
           "`\"auto\"`: that of flat bodies; else that of the built-in plates, else thick",

@@ -63,25 +63,38 @@ PhysicalMedium read_physical(const ObjectReader& medium) {
   return result;
 }
 
+/// The texture's mean, over which its texels are from now on.
+Rgb take_mean(Texture& texture) {
+  const Texel mean = texture.file->mean();
+  Rgb taken;
+  for (std::size_t c = 0; c < 3; ++c) {
+    taken[c] = std::max(0., mean[c]) * texture.scale[c];
+    texture.scale[c] = mean[c] > 0 ? 1 / mean[c] : 1;
+  }
+  texture.is_relative = true;
+  return taken;
+}
+
 /// Of a texture the medium is that of the mean colour, and what its texels are over it a tint.
 void take_color(const Value& value, ArtistMedium& coefficients, Medium& medium) {
   ColorReading color = read_color(value);
   coefficients.subsurface_color = color.color;
   if (!color.texture) return;
-  Texture& texture = *color.texture;
-  const Texel mean = texture.file->mean();
-  for (std::size_t c = 0; c < 3; ++c) {
-    coefficients.subsurface_color[c] = std::clamp(mean[c] * texture.scale[c], 0.0, 1.0);
-    texture.scale[c] = mean[c] > 0 ? 1 / mean[c] : 1;
-  }
-  texture.is_relative = true;
-  medium.tint_texture = std::move(texture);
+  const Rgb mean = take_mean(*color.texture);
+  for (std::size_t c = 0; c < 3; ++c) coefficients.subsurface_color[c] = std::min(mean[c], 1.0);
+  medium.tint_texture = std::move(color.texture);
+}
+
+void take_radius(const Value& value, ArtistMedium& coefficients, Medium& medium) {
+  TripleReading radius = read_triple(value);
+  coefficients.subsurface_radius = radius.texture ? take_mean(*radius.texture) : radius.triple;
+  medium.radius_texture = std::move(radius.texture);
 }
 
 ArtistMedium read_artist(const ObjectReader& medium, Medium& owner) {
   ArtistMedium result;
   take_color(medium.need("subsurface_color"), result, owner);
-  result.subsurface_radius = medium.need("subsurface_radius").number_or_triple();
+  take_radius(medium.need("subsurface_radius"), result, owner);
   if (const auto scale = medium.find("subsurface_radius_scale"))
     result.subsurface_radius = result.subsurface_radius * scale->number_or_triple();
   if (const auto g = medium.find("subsurface_scatter_anisotropy")) result.anisotropy = g->number();
@@ -93,6 +106,8 @@ void read_tint(const ObjectReader& reader, Medium& medium) {
     medium.texture_mix = static_cast<TextureMix>(mix->choice());
   const auto value = reader.find("tint");
   if (!value) return;
+  if (medium.texture_mix == TextureMix::medium)
+    reader.need("texture_mix").fail("is of 'subsurface_color' alone", "another value beside 'tint'");
   if (medium.tint_texture)
     value->fail_key("cannot stand beside a texture of 'subsurface_color'", "one of the two");
   ColorReading tint = read_color(*value);

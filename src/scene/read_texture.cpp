@@ -72,6 +72,17 @@ NumberReading read_number(const Value& value) {
   return {checked(value, (*constant)[texture.channel] * texture.scale.x), {}};
 }
 
+TripleReading read_triple(const Value& value) {
+  if (!is_texture(value)) return {value.number_or_triple(), {}};
+  Texture texture = read_texture(value, false);
+  if (value.member("channel", value.info())) value.fail("is three numbers", "no 'channel'");
+  const std::optional<Texel>& constant = texture.file->constant();
+  if (!constant) return {Vec3d(1), std::move(texture)};
+  Vec3d triple;
+  for (std::size_t c = 0; c < 3; ++c) triple[c] = checked(value, (*constant)[c] * texture.scale[c]);
+  return {triple, {}};
+}
+
 Texture read_normal_map(const Value& value) {
   return read_texture(value, false);
 }
@@ -98,6 +109,7 @@ std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) 
   if (!shape.medium) return textures;
   add(scene.media[*shape.medium].tint_texture);
   add(scene.media[*shape.medium].roughness_texture);
+  add(scene.media[*shape.medium].radius_texture);
   if (!is_partly_opaque(scene.media[*shape.medium])) return textures;
   add(scene.media[*shape.medium].weight_texture);
   add(scene.media[*shape.medium].base_texture);

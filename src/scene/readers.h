@@ -31,6 +31,12 @@ struct NumberReading {
   std::optional<Texture> texture;
 };
 NumberReading read_number(const Value& value);
+/// The same of a number for each of R, G and B; a texture's are linear unless it says otherwise.
+struct TripleReading {
+  Vec3d triple{1, 1, 1};
+  std::optional<Texture> texture;
+};
+TripleReading read_triple(const Value& value);
 Texture read_normal_map(const Value& value);
 /// Its scale in mm; none: it is flat.
 std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit);

@@ -60,6 +60,8 @@ struct Session::State {
                     const std::vector<Light>& lights);
   void update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
                         const std::vector<Light>& lights);
+  StageKey inside_key(const Body& body) const;
+  StageKey cells_key(const Body& body, const BodyKeys& known) const;
   const VolumeDiffusion& cells_of(const Body& body, BodyKeys& known, const PrecomputeInput& input);
   static void forget_bounced(Body& body, BodyKeys& known);
   void diffuse_bounced(Body& body, BodyKeys& known, const PrecomputeInput& input,

@@ -90,6 +90,7 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
     if (shape.medium) {
       const Medium& medium = input.scene.media[*shape.medium];
       key.add(medium.tint).add(medium.texture_mix).add(medium.eta).add(medium.specular_roughness);
+      if (medium.texture_mix == TextureMix::medium) key.add(settings.method);
       key.add(medium.grain.anisotropy).add(medium.grain.rotation);
       if (is_partly_opaque(medium)) key.add(medium.subsurface_weight).add(medium.base_color);
     } else {
@@ -167,11 +168,12 @@ StageKey view_light_key(const Light& light) {
 }
 
 std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& samples,
-                                std::span<const MeshKeys> meshes) {
+                                const StageKey& medium_inside, std::span<const MeshKeys> meshes) {
   KeyBuilder common("random walks", kWalksVersion);
   common.add(std::string(RTC_VERSION_STRING)).add(std::string(widest_instructions()));
   common.add(samples).add(walks.seed).add(walks.reenter);
   for (const HomogeneousMedium& medium : walks.media) common.add(medium);
+  if (medium_inside != StageKey{}) common.add(medium_inside);
   for (const std::uint32_t m : walks.meshes) common.add(m);
   for (const MeshKeys& mesh : meshes) common.add(mesh.shape);
   const bool alone = walks_by_light(walks);
@@ -198,10 +200,12 @@ StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers
   return key.key();
 }
 
-StageKey diffusion_cells_key(const Body& body, const StageKey& samples, std::span<const MeshKeys> meshes) {
+StageKey diffusion_cells_key(const Body& body, const StageKey& samples, const StageKey& medium_inside,
+                             std::span<const MeshKeys> meshes) {
   KeyBuilder key("diffusion cells", 5);
   key.add(samples).add(body.profile.eta).add(body.plan.cell);
   key.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
+  if (medium_inside != StageKey{}) key.add(medium_inside);
   for (const std::uint32_t mesh : body.plan.meshes) key.add(meshes[mesh].shape);
   return key.key();
 }

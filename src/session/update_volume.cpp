@@ -25,7 +25,7 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
                                   const std::vector<Light>& lights) {
   VolumeInput walks = walk_input(input, body, lights);
   const StageKey tint =
-      tint_key(scene_.media[body.plan.medium], *world_, body.plan.meshes, known.samples_key);
+      tint_key(scene_.media[body.plan.medium], Method::volume, *world_, body.plan.meshes, known.samples_key);
   std::optional<SurfaceTextures> textures;
   if (tint != StageKey{}) {
     textures.emplace(scene_, *world_);
@@ -34,7 +34,7 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
     };
   }
   const std::vector<StageKey> keys =
-      walk_keys(walks, tint == StageKey{} ? known.samples_key : tint, mesh_keys_);
+      walk_keys(walks, tint == StageKey{} ? known.samples_key : tint, inside_key(body), mesh_keys_);
   VolumeSums sums;
   for (const StageKey& key : keys) {
     const auto old = std::ranges::find(known.walk_keys, key);
@@ -67,10 +67,19 @@ void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeI
   note_decision(body, passes > before ? "walked at random" : "random walks kept");
 }
 
+/// Of how a body's medium varies.
+StageKey Session::State::inside_key(const Body& body) const {
+  return medium_key(scene_.media[body.plan.medium], scene_.settings.method, *world_, body.plan.meshes);
+}
+
+StageKey Session::State::cells_key(const Body& body, const BodyKeys& known) const {
+  return diffusion_cells_key(body, known.samples_key, inside_key(body), mesh_keys_);
+}
+
 /// The cells at hand, or made anew where they are not the body's.
 const VolumeDiffusion& Session::State::cells_of(const Body& body, BodyKeys& known,
                                                 const PrecomputeInput& input) {
-  const StageKey key = diffusion_cells_key(body, known.samples_key, mesh_keys_);
+  const StageKey key = cells_key(body, known);
   if (known.diffusion == nullptr || known.diffusion_key != key)
     known.diffusion = std::make_shared<const VolumeDiffusion>(diffusion_of(input, body, known.cut_normals));
   known.diffusion_key = key;
@@ -80,7 +89,7 @@ const VolumeDiffusion& Session::State::cells_of(const Body& body, BodyKeys& know
 void Session::State::update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                       const std::vector<Light>& lights) {
   update_tint(body, known);
-  const StageKey key = diffusion_key(diffusion_cells_key(body, known.samples_key, mesh_keys_),
+  const StageKey key = diffusion_key(cells_key(body, known),
                                      octree_key(known.samples_key, known.light_keys, lights, known.tint_key));
   if (key == known.volume_key) {
     if (bounces_of(scene_) == 0) forget_bounced(body, known);

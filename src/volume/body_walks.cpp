@@ -7,11 +7,12 @@ namespace opaline {
 namespace {
 
 // In mean free paths; measured in src/volume/README.md.
-constexpr double kReach = 2;     // a boundary beyond is met by chance, not by expectation
-constexpr double kDeep = .5;     // where no surface is nearer than that flights go without a ray
-constexpr double kVoxel = 1;     // edge of FreeDistance's voxels, in the channel where it is least
-constexpr double kLeast = .2;    // of its first weight: below that roulette ends a walk
-constexpr double kOutside = .5;  // of its first weight: less than that outside is rounded by roulette
+constexpr double kReach = 2;         // a boundary beyond is met by chance, not by expectation
+constexpr double kDeep = .5;         // where no surface is nearer than that flights go without a ray
+constexpr double kVoxel = 1;         // edge of FreeDistance's voxels, in the channel where it is least
+constexpr double kMediumVoxel = .5;  // edge of MediumVoxels' in the mean medium
+constexpr double kLeast = .2;        // of its first weight: below that roulette ends a walk
+constexpr double kOutside = .5;      // of its first weight: less than that outside is rounded by roulette
 constexpr std::uint64_t kMostFlights = 1'000'000;
 constexpr int kMostBounces = 16;  // outside, from one place of the body to another
 
@@ -21,11 +22,17 @@ double area_of(const VolumeInput& input) {
   return area;
 }
 
-double least_mean_free_path(const VolumeInput& input) {
+double least_mean_free_path(const std::array<HomogeneousMedium, 3>& media) {
   double least = std::numeric_limits<double>::infinity();
-  for (const HomogeneousMedium& medium : input.media)
+  for (const HomogeneousMedium& medium : media)
     if (medium.sigma_s > 0) least = std::min(least, 1 / medium.sigma_t());
   return least;
+}
+
+std::optional<MediumVoxels> voxels_of(const VolumeInput& input, const Bounds& box) {
+  if (!input.media_inside) return {};
+  return std::optional<MediumVoxels>(std::in_place, input.media_inside, box,
+                                     kMediumVoxel * least_mean_free_path(input.media));
 }
 
 }  // namespace
@@ -34,17 +41,18 @@ double least_mean_free_path(const VolumeInput& input) {
 class BodyWalks::Walker {
  public:
   /// weight: of the light that arrives
-  Walker(const BodyWalks& body, const HomogeneousMedium& medium, const SphereExits& exits, WalkCounts& counts,
+  Walker(const BodyWalks& body, std::size_t channel, const SphereExits& exits, WalkCounts& counts,
          WalkNumbers inside_numbers, WalkNumbers outside_numbers, double weight)
       : body_(body),
-        medium_(medium),
+        channel_(channel),
+        medium_(body.medium(channel)),
         exits_(exits),
         counts_(counts),
         numbers_(inside_numbers),
         outside_numbers_(outside_numbers),
         outside_weight_(kOutside * weight),
-        sigma_t_(medium.sigma_t()),
-        log_albedo_(std::log(medium.albedo())),
+        sigma_t_(medium_.sigma_t()),
+        log_albedo_(std::log(medium_.albedo())),
         reach_(kReach / sigma_t_),
         deep_(kDeep / sigma_t_) {}
 
@@ -90,14 +98,15 @@ class BodyWalks::Walker {
   }
 
   void walk(WalkState state) {
-    const double least = kLeast * state.weight, albedo = medium_.albedo();
-    const bool is_even = medium_.g == 0;
+    const double least = kLeast * state.weight;
+    double albedo = medium_.albedo();
+    const bool is_even = medium_.g == 0, may_leap = is_even && !body_.voxels_;
     bool is_scattered = false;  // just now
     for (std::uint64_t flights = 0; flights < kMostFlights; ++flights) {
       const FreeDistance::Place place = body_.free_.place_of(state.position);
       if (place.is_outside()) break;
       const double around = body_.free_.around(place);
-      if (is_scattered && is_even && around * sigma_t_ > SphereExits::kRadii[0]) {
+      if (is_scattered && may_leap && around * sigma_t_ > SphereExits::kRadii[0]) {
         if (!leap(state, around * sigma_t_)) return;
         is_scattered = false;
       } else if (around > deep_) {
@@ -107,6 +116,7 @@ class BodyWalks::Walker {
       } else {
         is_scattered = fly_to_wall(state);
       }
+      if (is_scattered && body_.voxels_) is_scattered = is_real_collision(state, albedo);
       if (is_scattered) {
         state.weight *= albedo;
         if (!survives_long(state.weight, ++state.collisions, numbers_)) return;
@@ -116,6 +126,14 @@ class BodyWalks::Walker {
       if (!survives(state.weight, least, numbers_)) return;
     }
     counts_.lost += state.weight;
+  }
+
+  // Flights are those of the densest place: elsewhere some of their collisions are not real, and the light goes on as if
+  // there had been none (Woodcock et al. 1965).
+  bool is_real_collision(const WalkState& state, double& albedo) {
+    const MediumVoxels::Local& local = body_.voxels_->at(state.position, channel_);
+    albedo = double(local.albedo);
+    return numbers_.next() * sigma_t_ < double(local.sigma_t);
   }
 
   // Whether the flight ends in a collision. Free paths have no memory: one that is longer than `most` goes on from
@@ -166,6 +184,7 @@ class BodyWalks::Walker {
   }
 
   const BodyWalks& body_;
+  std::size_t channel_;
   const HomogeneousMedium& medium_;
   const SphereExits& exits_;
   WalkCounts& counts_;
@@ -178,7 +197,9 @@ BodyWalks::BodyWalks(const VolumeInput& input, std::size_t starts)
     : input_(input),
       points_(input.rays, input.world, input.meshes, .5 * area_of(input) / double(input.samples.size())),
       inside_(input.rays, input.world, input.meshes),
-      free_(input.world, inside_.box(), kVoxel * least_mean_free_path(input), kReach / kVoxel),
+      voxels_(voxels_of(input, inside_.box())),
+      free_(input.world, inside_.box(), kVoxel * least_mean_free_path({medium(0), medium(1), medium(2)}),
+            kReach / kVoxel),
       cells_(input.samples, &input.world),
       starts_(starts) {}
 
@@ -205,8 +226,7 @@ WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chu
     if (irradiance > 0 && input_.entering_tint)
       irradiance *= double(input_.entering_tint(at.mesh, at.triangle, at.u, at.v)[job.channel]);
     if (!(irradiance > 0)) continue;
-    Walker(*this, input_.media[job.channel], exits, counts,
-           WalkNumbers(job.seed + 1 + 2 * job.channel, start),
+    Walker(*this, job.channel, exits, counts, WalkNumbers(job.seed + 1 + 2 * job.channel, start),
            WalkNumbers(job.seed + 2 + 2 * job.channel, start), irradiance)
         .arrive(inside_.at(entry), light, irradiance);
   }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "volume/body_inside.h"
 #include "volume/free_distance.h"
 #include "volume/light_entry.h"
+#include "volume/medium_voxels.h"
 #include "volume/sphere_exits.h"
 
 namespace opaline {
@@ -47,10 +49,15 @@ class BodyWalks {
 
  private:
   class Walker;
+  /// Of one channel; where the medium varies, that of the densest place.
+  const HomogeneousMedium& medium(std::size_t channel) const {
+    return voxels_ ? voxels_->densest(channel) : input_.media[channel];
+  }
 
   const VolumeInput& input_;
   EvenPoints points_;
   BodyInside inside_;
+  std::optional<MediumVoxels> voxels_;  // none: the medium is one throughout
   FreeDistance free_;
   NearestSample cells_;
   std::size_t starts_;

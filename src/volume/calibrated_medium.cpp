@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <utility>
 
+#include "opaline/core/parallel.h"
 #include "opaline/transport/half_space.h"
 #include "opaline/transport/smooth_boundary.h"
 
@@ -32,19 +34,51 @@ CalibratedMedium::CalibratedMedium(const HomogeneousMedium& medium)
   const double mean = Gauss::integrate(spread, 0., 1.) / Gauss::integrate(entering, 0., 1.);
   mismatch = std::max(.5, (used * mean / exact.diffuse_share() - 1) * 3 / (2 * decay));
   least_cosine_ = eta > 1 ? std::sqrt(1 - 1 / (eta * eta)) : 0;
+  std::vector<double> factors;
   for (std::size_t i = 0; i < kFactors; ++i) {
     const double cosine = least_cosine_ + (1 - least_cosine_) * double(i) / double(kFactors - 1);
     const double diffused = used / ((1 + decay * cosine) * (1 + 2. / 3 * mismatch * decay));
-    factors_.push_back(exact.share(cosine) / diffused);
+    factors.push_back(exact.share(cosine) / diffused);
   }
+  factors_ = std::make_shared<const std::vector<double>>(std::move(factors));
 }
 
+CalibratedMedium::CalibratedMedium(const HomogeneousMedium& medium, const CalibratedMedium& calibrated)
+    : eta(medium.eta),
+      extinction(medium.sigma_t()),
+      absorption(medium.sigma_a),
+      albedo(medium.albedo()),
+      diffusion(extinction > 0 ? 1 / (3 * extinction) : 1),
+      mismatch(calibrated.mismatch),
+      least_cosine_(calibrated.least_cosine_),
+      factors_(calibrated.factors_) {}
+
 double CalibratedMedium::entry_factor(double cos_inside) const {
-  if (factors_.empty()) return 1;
+  if (factors_ == nullptr) return 1;
+  const std::vector<double>& factors = *factors_;
   const double place =
       std::clamp((cos_inside - least_cosine_) / (1 - least_cosine_), 0., 1.) * double(kFactors - 1);
   const std::size_t i = std::min(kFactors - 2, std::size_t(place));
-  return factors_[i] + (factors_[i + 1] - factors_[i]) * (place - double(i));
+  return factors[i] + (factors[i + 1] - factors[i]) * (place - double(i));
+}
+
+std::vector<CalibratedMedium> calibrations_of(double eta) {
+  constexpr std::size_t kCount = 257;
+  constexpr double kLeastAlbedo = 1e-4;
+  std::vector<CalibratedMedium> calibrations(kCount);
+  parallel_chunks(kCount, 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double root = double(i) / double(kCount - 1);
+      const double albedo = std::max(kLeastAlbedo, 1 - root * root);
+      calibrations[i] = CalibratedMedium({1 - albedo, albedo, 0, eta});
+    }
+  });
+  return calibrations;
+}
+
+CalibratedMedium calibrated(const HomogeneousMedium& medium, std::span<const CalibratedMedium> calibrations) {
+  const double root = std::sqrt(medium.sigma_a > 0 ? medium.sigma_a / medium.sigma_t() : 0);
+  return {medium, calibrations[std::size_t(std::lround(root * double(calibrations.size() - 1)))]};
 }
 
 }  // namespace opaline

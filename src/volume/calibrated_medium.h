@@ -2,6 +2,8 @@
 // A medium as diffusion sees it, with a boundary that gives a half space the share of light that transport gives.
 #pragma once
 
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "opaline/transport/medium.h"
@@ -11,6 +13,8 @@ namespace opaline {
 struct CalibratedMedium {
   CalibratedMedium() = default;
   explicit CalibratedMedium(const HomogeneousMedium& medium);
+  /// calibrated: a medium of the same eta and about the same albedo
+  CalibratedMedium(const HomogeneousMedium& medium, const CalibratedMedium& calibrated);
 
   /// What leaves per unit area, over the fluence at a depth under the boundary.
   double conductance(double depth) const { return 1 / (2 * mismatch + depth / diffusion); }
@@ -27,7 +31,12 @@ struct CalibratedMedium {
 
  private:
   double least_cosine_ = 0;
-  std::vector<double> factors_;  // at cosines from least_cosine_ to 1, evenly
+  std::shared_ptr<const std::vector<double>> factors_;  // at cosines from least_cosine_ to 1, evenly
 };
+
+/// Media of one eta whose 1 - albedo is the square of 0 to 1, evenly.
+std::vector<CalibratedMedium> calibrations_of(double eta);
+/// A medium of that eta, by the calibration whose albedo is nearest.
+CalibratedMedium calibrated(const HomogeneousMedium& medium, std::span<const CalibratedMedium> calibrations);
 
 }  // namespace opaline

@@ -41,14 +41,28 @@ Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes
 }
 
 DiffusionBody::DiffusionBody(const World& world, std::span<const std::uint32_t> meshes,
-                             std::span<const BoundaryElement> samples,
-                             const std::array<CalibratedMedium, 3>& media, const Lattice& lattice)
+                             std::span<const BoundaryElement> samples, const BodyMedia& media,
+                             const Lattice& lattice)
     : samples_(samples),
-      media_(media),
+      throughout_(media.throughout),
       lattice_(lattice),
       boundary_(merged(samples, lattice)),
       grid_(make_grid(world, meshes, lattice_, boundary_)) {
+  if (media.inside) find_media(media);
   attach();
+}
+
+void DiffusionBody::find_media(const BodyMedia& media) {
+  of_cells_.resize(grid_.cells().size());
+  parallel_chunks(of_cells_.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const DiffusionGrid::Cell& cell = grid_.cells()[i];
+      const Vec3d centre = Vec3d(cell.centre) * lattice_.cell + lattice_.low;
+      const std::array<HomogeneousMedium, 3> here =
+          media.inside(centre, double(cell.size) * lattice_.cell);
+      for (std::size_t c = 0; c < 3; ++c) of_cells_[i][c] = calibrated(here[c], media.calibrations);
+    }
+  });
 }
 
 void DiffusionBody::attach() {
@@ -71,7 +85,12 @@ void DiffusionBody::attach() {
 DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::vector<Channels> start,
                                              Monitor* monitor) const {
   DiffusionProblem problem{grid_, {}, losses(), {}};
-  for (std::size_t c = 0; c < 3; ++c) problem.diffusivity[c] = float(media_[c].diffusion * lattice_.cell);
+  for (std::size_t c = 0; c < 3; ++c)
+    problem.diffusivity[c] = float(throughout_[0][c].diffusion * lattice_.cell);
+  for (const std::array<CalibratedMedium, 3>& media : of_cells_) {
+    Channels& diffusivity = problem.diffusivities.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) diffusivity.c[c] = float(media[c].diffusion * lattice_.cell);
+  }
   FirstCollisions collisions = first_collisions(space(), light);
   problem.source = std::move(collisions.source);
   std::vector<Channels> rough = solve_diffusion(problem, kRough, std::move(start), monitor).fluence;
@@ -98,8 +117,9 @@ std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
       const Vec3f apart = Vec3f(space().in_lattice(element.position)) - grid_.cells()[cell].centre;
       const Vec3f beside = apart - element.normal * dot(apart, element.normal);
       const std::array<Vec3f, 3> slopes = gradient_at(grid_, fluence, cell);
+      const std::array<CalibratedMedium, 3>& media = space().media_of(cell);
       for (std::size_t c = 0; c < 3; ++c) {
-        const auto conductance = float(media_[c].conductance(depth));
+        const auto conductance = float(media[c].conductance(depth));
         planes[i].value[c] = (fluence[cell].c[c] + dot(slopes[c], beside)) * conductance;
         planes[i].slope[c] = slopes[c] * (conductance / float(lattice_.cell));
       }
@@ -121,9 +141,10 @@ std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
     const auto& [cell, depth] = attached_[i];
     lost += Rgb(leaving[i]) * double(boundary_.elements[i].area);
     if (cell == DiffusionGrid::kNone) continue;
+    const std::array<CalibratedMedium, 3>& media = space().media_of(cell);
     for (std::size_t c = 0; c < 3; ++c)
       lost[c] +=
-          double(boundary_.elements[i].area) * double(fluence[cell].c[c]) * media_[c].conductance(depth);
+          double(boundary_.elements[i].area) * double(fluence[cell].c[c]) * media[c].conductance(depth);
   }
   for (std::size_t c = 0; c < 3; ++c) lost[c] = found[c] > 0 ? lost[c] / found[c] : 0;
   for (RgbF& leaves : exitance) leaves = RgbF(Rgb(leaves) * lost);
@@ -145,12 +166,11 @@ std::vector<Channels> DiffusionBody::losses() const {
   const double cube = lattice_.cell * lattice_.cell * lattice_.cell;
   for (std::size_t i = 0; i < loss.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      loss[i].c[c] = float(media_[c].absorption * double(grid_.cells()[i].volume) * cube);
+      loss[i].c[c] = float(space().media_of(i)[c].absorption * double(grid_.cells()[i].volume) * cube);
   for (std::size_t i = 0; i < attached_.size(); ++i)
-    if (attached_[i].cell != DiffusionGrid::kNone)
+    if (const auto& [cell, depth] = attached_[i]; cell != DiffusionGrid::kNone)
       for (std::size_t c = 0; c < 3; ++c)
-        loss[attached_[i].cell].c[c] +=
-            boundary_.elements[i].area * float(media_[c].conductance(attached_[i].depth));
+        loss[cell].c[c] += boundary_.elements[i].area * float(space().media_of(cell)[c].conductance(depth));
   return loss;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "opaline/volume/media_inside.h"
 #include "volume/first_collisions.h"
 
 namespace opaline {
@@ -14,13 +15,19 @@ namespace opaline {
 /// cell: their edge, world units
 Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell);
 
+/// Of what a body is made.
+struct BodyMedia {
+  std::array<std::array<CalibratedMedium, 3>, 1> throughout;
+  MediaInside inside;                          ///< instead; empty: one medium throughout
+  std::vector<CalibratedMedium> calibrations;  ///< for these
+};
+
 /// Cells of one size at the surface. Holds on to `samples` and `media`.
 class DiffusionBody {
  public:
   /// in    samples: elements of this lattice's cells, or of cells that divide them
   DiffusionBody(const World& world, std::span<const std::uint32_t> meshes,
-                std::span<const BoundaryElement> samples, const std::array<CalibratedMedium, 3>& media,
-                const Lattice& lattice);
+                std::span<const BoundaryElement> samples, const BodyMedia& media, const Lattice& lattice);
 
   /// The fluence in the cells, and what leaves at the samples, W per square of the world's unit.
   struct Solution {
@@ -36,17 +43,21 @@ class DiffusionBody {
   const DiffusionGrid& grid() const { return grid_; }
 
  private:
-  DiffusionSpace space() const { return {lattice_, grid_, media_, boundary_, samples_, attached_}; }
+  DiffusionSpace space() const {
+    return {lattice_, grid_, of_cells_.empty() ? throughout_ : of_cells_, boundary_, samples_, attached_};
+  }
+  void find_media(const BodyMedia& media);
   void attach();
   std::vector<Channels> losses() const;
   std::vector<RgbF> read(std::span<const Channels> fluence, std::span<const RgbF> leaving) const;
 
   std::span<const BoundaryElement> samples_;
-  const std::array<CalibratedMedium, 3>& media_;
+  std::span<const std::array<CalibratedMedium, 3>> throughout_;
   Lattice lattice_;
   Boundary boundary_;
   DiffusionGrid grid_;
-  std::vector<AttachedElement> attached_;  // one an element
+  std::vector<std::array<CalibratedMedium, 3>> of_cells_;  // where the medium varies
+  std::vector<AttachedElement> attached_;                  // one an element
 };
 
 }  // namespace opaline

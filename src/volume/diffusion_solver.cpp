@@ -25,10 +25,16 @@ class ConjugateGradients {
     inverse_.resize(count_);
     direction_.resize(count_);
     product_.resize(count_);
+    if (!problem.diffusivities.empty()) weigh_links();
     squared_ = sum([&](std::size_t i, Sums& sums) {
       Channels weight;
-      for (const DiffusionGrid::Link& link : problem_.grid.links(i))
-        for (std::size_t c = 0; c < 4; ++c) weight.c[c] += link.conductance;
+      if (conductances_.empty()) {
+        for (const DiffusionGrid::Link& link : problem_.grid.links(i))
+          for (std::size_t c = 0; c < 4; ++c) weight.c[c] += link.conductance;
+      } else {
+        for (const Channels& conductance : conductances_of(i))
+          for (std::size_t c = 0; c < 4; ++c) weight.c[c] += conductance.c[c];
+      }
       for (std::size_t c = 0; c < 4; ++c) {
         const float diagonal = diffusivity_.c[c] * weight.c[c] + problem_.loss[i].c[c];
         inverse_[i].c[c] = diagonal > 0 ? 1 / diagonal : 0;
@@ -96,14 +102,44 @@ class ConjugateGradients {
   }
 
  private:
+  // Where the diffusivity differs from cell to cell it is in them, and 1 otherwise.
+  void weigh_links() {
+    const DiffusionGrid& grid = problem_.grid;
+    diffusivity_.c.fill(1);
+    conductances_.resize(count_ > 0 ? grid.first_link(count_) : 0);
+    parallel_chunks(count_, kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Channels* conductance = conductances_.data() + grid.first_link(i);
+        for (const DiffusionGrid::Link& link : grid.links(i)) {
+          *conductance = problem_.between(std::uint32_t(i), link.to);
+          for (float& c : conductance->c) c *= link.conductance;
+          ++conductance;
+        }
+      }
+    });
+  }
+  std::span<const Channels> conductances_of(std::size_t i) const {
+    const std::size_t first = problem_.grid.first_link(i);
+    return std::span(conductances_).subspan(first, problem_.grid.first_link(i + 1) - first);
+  }
+
   // product = matrix x direction; their dot products.
   Sums multiply() {
     return sum([&](std::size_t i, Sums& sums) {
       const Channels own = direction_[i];
       Channels flow;
-      for (const DiffusionGrid::Link& link : problem_.grid.links(i))
-        for (std::size_t c = 0; c < 4; ++c)
-          flow.c[c] += link.conductance * (own.c[c] - direction_[link.to].c[c]);
+      if (conductances_.empty()) {
+        for (const DiffusionGrid::Link& link : problem_.grid.links(i))
+          for (std::size_t c = 0; c < 4; ++c)
+            flow.c[c] += link.conductance * (own.c[c] - direction_[link.to].c[c]);
+      } else {
+        const Channels* conductance = conductances_of(i).data();
+        for (const DiffusionGrid::Link& link : problem_.grid.links(i)) {
+          for (std::size_t c = 0; c < 4; ++c)
+            flow.c[c] += conductance->c[c] * (own.c[c] - direction_[link.to].c[c]);
+          ++conductance;
+        }
+      }
       for (std::size_t c = 0; c < 4; ++c) {
         product_[i].c[c] = diffusivity_.c[c] * flow.c[c] + problem_.loss[i].c[c] * own.c[c];
         sums[c] += double(product_[i].c[c] * own.c[c]);
@@ -129,11 +165,24 @@ class ConjugateGradients {
   const DiffusionProblem& problem_;
   std::size_t count_;
   Channels diffusivity_;
+  std::vector<Channels> conductances_;  // one a link of the grid, or none
   std::vector<Channels> x_, residual_, inverse_, direction_, product_;
   Sums squared_{}, source_{};  // of the residual and of the source
 };
 
 }  // namespace
+
+Channels DiffusionProblem::between(std::uint32_t a, std::uint32_t b) const {
+  Channels result;
+  if (diffusivities.empty()) {
+    std::ranges::copy(diffusivity, result.c.begin());
+    return result;
+  }
+  const auto of_a = float(grid.cells()[a].size), of_b = float(grid.cells()[b].size);
+  for (std::size_t c = 0; c < 3; ++c)
+    result.c[c] = (of_a + of_b) / (of_a / diffusivities[a].c[c] + of_b / diffusivities[b].c[c]);
+  return result;
+}
 
 DiffusionSolution solve_diffusion(const DiffusionProblem& problem, double tolerance,
                                   std::vector<Channels> start, Monitor* monitor) {

@@ -19,8 +19,12 @@ struct alignas(16) Channels {
 struct DiffusionProblem {
   const DiffusionGrid& grid;
   std::array<float, 3> diffusivity{};
-  std::vector<Channels> loss;    ///< one a cell, >= 0
-  std::vector<Channels> source;  ///< one a cell
+  std::vector<Channels> loss;                ///< one a cell, >= 0
+  std::vector<Channels> source;              ///< one a cell
+  std::vector<Channels> diffusivities = {};  ///< one a cell, > 0; empty: `diffusivity` everywhere
+
+  /// Of what lies between two cells' centres: half of it is the one's and half the other's, by their size.
+  Channels between(std::uint32_t a, std::uint32_t b) const;
 };
 
 struct DiffusionSolution {

@@ -104,9 +104,10 @@ class Depositor {
       : space_(space), elements_of_(space.attached, space.grid.cells().size()) {
     result_.source.resize(space.grid.cells().size());
     result_.leaving.resize(space.boundary.elements.size());
-    for (const CalibratedMedium& medium : space.media)
-      if (medium.albedo > 0) longest_ = std::max(longest_, 1 / medium.extinction);
-    step_ = stretch_of(kStep * space.lattice.cell);
+    for (const std::array<CalibratedMedium, 3>& media : space.media)
+      for (const CalibratedMedium& medium : media)
+        if (medium.albedo > 0) longest_ = std::max(longest_, 1 / medium.extinction);
+    if (!space.varies()) step_ = stretch_of(kStep * space.lattice.cell, 0);
   }
 
   /// entering: W
@@ -128,13 +129,15 @@ class Depositor {
   Vec3d at(const Way& way, double length) const {
     return way.from + way.along * (length / space_.lattice.cell);
   }
-  /// A stretch of a way: what collides in it, of what comes to it, and how far in, on average, by channel.
+  /// A stretch of a way within a cell: what collides in it, of what comes to it, and how far in, on average, by channel.
   struct Stretch {
     double length = 0;
-    std::array<double, 3> share{}, middle{};
+    std::array<double, 3> share{}, middle{}, scattered{};  // scattered: of what collides
   };
 
-  Stretch stretch_of(double length) const;
+  // Of what collides. In one medium throughout what is absorbed is taken off at the entry.
+  double scattered_of(const CalibratedMedium& medium) const { return space_.varies() ? medium.albedo : 1; }
+  Stretch stretch_of(double length, std::uint32_t cell) const;
   std::optional<Exit> exit_at(const Way& way, double length, double least, std::uint32_t last,
                               std::uint32_t next) const;
   std::optional<Exit> collide(const Way& way, double start, std::uint32_t first, Rgb& flux);
@@ -157,15 +160,16 @@ class Depositor {
   };
   std::vector<Share> spread_;  // of the exit at hand
   double longest_ = 0;         // free path
-  Stretch step_;               // in the smallest cells
+  Stretch step_;               // in the smallest cells, where the medium is the same in all
   FirstCollisions result_;
 };
 
-Depositor::Stretch Depositor::stretch_of(double length) const {
-  Stretch stretch{length, {}, {}};
+Depositor::Stretch Depositor::stretch_of(double length, std::uint32_t cell) const {
+  Stretch stretch{length, {}, {}, {}};
   for (std::size_t c = 0; c < 3; ++c) {
-    const CalibratedMedium& medium = space_.media[c];
-    if (!(medium.albedo > 0)) continue;
+    const CalibratedMedium& medium = space_.media_of(cell)[c];
+    stretch.scattered[c] = scattered_of(medium);
+    if (!(medium.albedo > 0) && !space_.varies()) continue;
     const double paths = medium.extinction * length, share = -std::expm1(-paths);
     stretch.share[c] = share;
     stretch.middle[c] = paths > 1e-4 ? (1 - paths * (1 - share) / share) / medium.extinction : .5 * length;
@@ -212,16 +216,17 @@ std::optional<Depositor::Exit> Depositor::collide(const Way& way, double start, 
     const std::uint32_t next = space_.grid.at(Vec3f(at(way, length + step)));
     const std::optional<Exit> exit = exit_at(way, length + step, length, last, next);
     if (exit) {
-      deposit(way, length, stretch_of(exit->length - length), last, flux);
+      deposit(way, length, stretch_of(exit->length - length, last), last, flux);
       return exit;
     }
     if (next == DiffusionGrid::kNone) break;
-    deposit(way, length, edge > kStep ? stretch_of(step) : step_, last, flux);
+    deposit(way, length, edge > kStep || space_.varies() ? stretch_of(step, last) : step_, last, flux);
     length += step;
     last = next;
   }
   for (std::size_t c = 0; c < 3; ++c)
-    if (flux[c] > 0) deposit(at(way, farthest + 1 / space_.media[c].extinction), last, c, flux[c]);
+    if (const CalibratedMedium& medium = space_.media_of(last)[c]; flux[c] > 0)
+      deposit(at(way, farthest + 1 / medium.extinction), last, c, flux[c] * scattered_of(medium));
   flux = {};
   return {};
 }
@@ -234,6 +239,7 @@ void Depositor::deposit(const Way& way, double start, const Stretch& stretch, st
     collided.places[c] = at(way, start + stretch.middle[c]);
     collided.flux[c] = flux[c] * stretch.share[c];
     flux[c] -= collided.flux[c];
+    collided.flux[c] *= stretch.scattered[c];
   }
   deposit(collided, at(way, start + .5 * stretch.length), fallback);
 }
@@ -301,15 +307,16 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
 void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, const Rgb& flux) {
   const Vec3d normal(space_.boundary.elements[exit.element].normal), place = at(way, exit.length);
   const double reflectance =
-      inside_reflectance(std::clamp(dot(way.along, normal), kLeastCosine, 1.), space_.media[0].eta);
+      inside_reflectance(std::clamp(dot(way.along, normal), kLeastCosine, 1.), space_.eta());
   spread(place, exit);
   for (const auto& [element, per_area] : spread_)
     result_.leaving[element] += RgbF(flux * ((1 - reflectance) * per_area));
   const Way back{place, mirrored(way.along, normal)};
   for (std::size_t c = 0; c < 3; ++c) {
     if (!(flux[c] > 0)) continue;
-    const double collided = -std::log1p(-golden_point(i)) / space_.media[c].extinction;
-    deposit(at(back, collided), exit.cell, c, flux[c] * reflectance * space_.media[c].albedo);
+    const CalibratedMedium& medium = space_.media_of(exit.cell)[c];
+    const double collided = -std::log1p(-golden_point(i)) / medium.extinction;
+    deposit(at(back, collided), exit.cell, c, flux[c] * reflectance * medium.albedo);
   }
 }
 
@@ -318,31 +325,33 @@ void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, const Rgb
 void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) {
   const BoundaryElement& element = space_.boundary.elements[i];
   const AttachedElement& attached = space_.attached[i];
-  const double eta = space_.media[0].eta;
+  const std::array<CalibratedMedium, 3>& media = space_.media_of(attached.cell);
   const Vec3d normal(element.normal);
-  const Vec3d inward = refracted_inward(-outward, normal, eta);
+  const Vec3d inward = refracted_inward(-outward, normal, space_.eta());
   const double cosine = std::max(kLeastCosine, -dot(inward, normal)), depth = attached.depth;
   const double path = depth / cosine;
   const Way way{space_.in_lattice(element.position), inward};
-  Rgb colliding{};
+  Rgb colliding{}, factors(1);
   for (std::size_t c = 0; c < 3; ++c) {
-    const CalibratedMedium& medium = space_.media[c];
+    const CalibratedMedium& medium = media[c];
     if (!(medium.albedo > 0)) continue;
-    const double enters = entering[c] * medium.albedo * medium.entry_factor(cosine);
+    factors[c] = medium.entry_factor(cosine);
+    const double enters = entering[c] * medium.albedo * factors[c];
     const double free_path = 1 / medium.extinction;
     const double passed = std::exp(-path / free_path);
     const double at_once =
         (depth - cosine * free_path * (1 - passed)) / (2 * medium.mismatch * medium.diffusion + depth);
     result_.leaving[i][c] += float(enters * at_once / double(element.area));
     result_.source[attached.cell].c[c] += float(enters * (1 - passed - at_once));
-    colliding[c] = enters * passed;
+    colliding[c] = (space_.varies() ? entering[c] * factors[c] : enters) * passed;
   }
   const std::optional<Exit> exit = collide(way, path, attached.cell, colliding);
   if (!exit) return;
   Rgb arriving{};
   for (std::size_t c = 0; c < 3; ++c)
-    if (space_.media[c].albedo > 0)
-      arriving[c] = entering[c] * std::exp(-exit->length * space_.media[c].extinction);
+    if (media[c].albedo > 0)
+      arriving[c] = space_.varies() ? colliding[c] / factors[c]
+                                    : entering[c] * std::exp(-exit->length * media[c].extinction);
   leave(way, *exit, i, arriving);
 }
 
@@ -371,7 +380,7 @@ void enter_everywhere(const DiffusionSpace& space, std::span<const Rgb> flux, co
 FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light) {
   Depositor depositor(space);
   const std::vector<BoundaryElement>& elements = space.boundary.elements;
-  const double eta = space.media[0].eta;
+  const double eta = space.eta();
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
     const std::vector<Rgb> flux = entering_flux(space, [&](std::size_t s) {
       const Rgb tint = light.tints.empty() ? Rgb(1) : Rgb(light.tints[s]);
@@ -382,12 +391,10 @@ FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLigh
         space, flux, [&](std::size_t i) { return towards_light(light.lights[l], elements[i], eta, i); },
         depositor);
   }
-  if (!light.even.empty())
-    enter_everywhere(
-        space,
-        entering_flux(space,
-                      [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); }),
-        [&](std::size_t i) { return all_around(elements[i], eta, i); }, depositor);
+  if (light.even.empty()) return depositor.take();
+  const std::vector<Rgb> flux = entering_flux(
+      space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
+  enter_everywhere(space, flux, [&](std::size_t i) { return all_around(elements[i], eta, i); }, depositor);
   return depositor.take();
 }
 

@@ -32,11 +32,16 @@ struct AttachedElement {
 struct DiffusionSpace {
   const Lattice& lattice;
   const DiffusionGrid& grid;
-  const std::array<CalibratedMedium, 3>& media;
+  std::span<const std::array<CalibratedMedium, 3>> media;  ///< one for all cells, or one a cell
   const Boundary& boundary;
   std::span<const BoundaryElement> samples;
   std::span<const AttachedElement> attached;  ///< one an element
 
+  bool varies() const { return media.size() > 1; }
+  const std::array<CalibratedMedium, 3>& media_of(std::size_t cell) const {
+    return media[varies() ? cell : 0];
+  }
+  double eta() const { return media[0][0].eta; }
   Vec3d in_lattice(const Vec3f& position) const { return lattice.into(Vec3d(position)); }
 };
 

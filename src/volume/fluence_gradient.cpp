@@ -41,13 +41,15 @@ void add_oblique_flow(DiffusionProblem& problem, std::span<const Channels> fluen
   parallel_chunks(cells.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) gradients[i] = gradient_at(grid, fluence, cells[i]);
   });
-  for (const DiffusionGrid::ObliqueLink& link : grid.oblique())
+  for (const DiffusionGrid::ObliqueLink& link : grid.oblique()) {
+    const Channels diffusivity = problem.between(link.a, link.b);
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3f gradient = (gradients[place[link.a]][c] + gradients[place[link.b]][c]) * .5f;
-      const float flow = problem.diffusivity[c] * link.conductance * dot(gradient, link.across);
+      const float flow = diffusivity.c[c] * link.conductance * dot(gradient, link.across);
       problem.source[link.a].c[c] -= flow;
       problem.source[link.b].c[c] += flow;
     }
+  }
 }
 
 }  // namespace opaline

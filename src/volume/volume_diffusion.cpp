@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/volume/volume_diffusion.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "volume/diffusion_body.h"
@@ -11,8 +12,14 @@ namespace {
 // Of the difference from cells of twice the size: the error falls with the power 1.2 of the cells.
 constexpr float kLeft = .8f;
 
-std::array<CalibratedMedium, 3> calibrated(const std::array<HomogeneousMedium, 3>& media) {
-  return {CalibratedMedium(media[0]), CalibratedMedium(media[1]), CalibratedMedium(media[2])};
+BodyMedia calibrated(const VolumeDiffusionInput& input) {
+  const auto& media = input.media;
+  BodyMedia body{
+      {{CalibratedMedium(media[0]), CalibratedMedium(media[1]), CalibratedMedium(media[2])}}, {}, {}};
+  if (!input.media_inside) return body;
+  body.inside = input.media_inside;
+  body.calibrations = calibrations_of(media[0].eta);
+  return body;
 }
 
 Lattice doubled(const Lattice& lattice) {
@@ -30,7 +37,7 @@ std::vector<BoundaryElement> elements_of(const VolumeDiffusionInput& input) {
 
 struct VolumeDiffusion::State {
   explicit State(const VolumeDiffusionInput& input)
-      : media(calibrated(input.media)),
+      : media(calibrated(input)),
         samples(elements_of(input)),
         lattice(lattice_around(input.world, input.meshes, input.cell)),
         fine(input.world, input.meshes, samples, media, lattice),
@@ -38,7 +45,7 @@ struct VolumeDiffusion::State {
 
   VolumeExitance exitance(const EnteringLight& light, Monitor* monitor) const;
 
-  std::array<CalibratedMedium, 3> media;
+  BodyMedia media;
   std::vector<BoundaryElement> samples;
   Lattice lattice;
   DiffusionBody fine, coarse;
@@ -49,6 +56,10 @@ CutSurface cut_surface(const World& world, std::span<const std::uint32_t> meshes
   lattice.cell /= parts;
   for (int* count : {&lattice.nx, &lattice.ny, &lattice.nz}) *count *= parts;
   return cut_by_lattice(world, meshes, lattice);
+}
+
+double length_to_resolve(double mean_free_path, double absorbed) {
+  return mean_free_path * std::min(1., kPerFading / std::sqrt(3 * absorbed));
 }
 
 double expected_cells(double area, double cell) {

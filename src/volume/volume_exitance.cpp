@@ -19,6 +19,7 @@ constexpr std::size_t kMostSeparate = 4, kMostSeparateSums = 8'000'000;  // ligh
 
 /// Channels of equal media have the walks of the first of them in common.
 std::size_t walked_channel(const VolumeInput& input, std::size_t channel) {
+  if (input.media_inside) return channel;
   const auto same = [](const HomogeneousMedium& a, const HomogeneousMedium& b) {
     return a.sigma_a == b.sigma_a && a.sigma_s == b.sigma_s && a.g == b.g && a.eta == b.eta;
   };

@@ -68,6 +68,29 @@ TEST(SceneTextures, AreRead) {
   EXPECT_TRUE(needs_uvs(scene, scene.shapes[0]));
 }
 
+// Claim: of a texture of radii the medium has the mean, numbers as they are, times its scale and subsurface_radius_scale; its
+// texels are over that. It takes UVs. Tolerance: 1e-12. Fails if: numbers are taken for sRGB, or the scale is lost or met twice.
+TEST(SceneTextures, OfRadiiAreRead) {
+  const TextureFolder files;
+  const Scene scene = files.scene(
+      R"({"media": {"m": {"subsurface_color": {"texture": "two.png"}, "texture_mix": "medium",
+          "subsurface_radius": {"texture": "two.png", "scale": 3}, "subsurface_radius_scale": [1, 0.5, 1]}},
+          "shapes": [{"sphere": {"radius": 1}, "medium": "m"}]})");
+  const Medium& medium = scene.media[0];
+  const Rgb radius = std::get<ArtistMedium>(medium.coefficients).subsurface_radius;
+  EXPECT_NEAR(radius.x, 3, 1e-12);
+  EXPECT_NEAR(radius.y, 3 * 128 / 255. / 2 * .5, 1e-12);
+  EXPECT_EQ(radius.z, 0);
+  ASSERT_TRUE(medium.radius_texture && medium.tint_texture);
+  EXPECT_NEAR(medium.radius_texture->scale.y * 128 / 255. / 2, 1, 1e-12);
+  EXPECT_TRUE(needs_uvs(scene, scene.shapes[0]));
+  for (const Method method : {Method::volume, Method::volume_diffusion}) {
+    EXPECT_TRUE(has_color_inside(medium, method));
+    EXPECT_TRUE(varies_inside(medium, method));
+  }
+  EXPECT_FALSE(varies_inside(medium, Method::hierarchical));
+}
+
 // Claim: a texture of one colour is read as that colour: the scenes are equal. Fails if it stays a texture.
 TEST(SceneTextures, OfOneColourAreConstants) {
   const TextureFolder files;
@@ -77,6 +100,14 @@ TEST(SceneTextures, OfOneColourAreConstants) {
   EXPECT_FALSE(needs_uvs(textured, textured.shapes[0]));
   EXPECT_EQ(files.scene(shape(R"("reflectance": {"texture": "even.png"})")),
             files.scene(shape(R"("reflectance": "#808080")")));
+  const auto wax = [&](const std::string& color, const std::string& radius) {
+    Scene scene = files.scene(medium(R"("texture_mix": "medium", "subsurface_color": )" + color +
+                                     R"(, "subsurface_radius": )" + radius));
+    scene.media[0].place = {};
+    return scene;
+  };
+  EXPECT_EQ(wax(R"({"texture": "even.png"})", R"({"texture": "even.png", "scale": 2})"),
+            wax("\"#808080\"", std::to_string(256 / 255.) + "0"));
 }
 
 // Claim: what is wrong with a texture is said at its place in the scene, line 2 here, with the file's name. Fails if a
@@ -95,8 +126,13 @@ TEST(SceneTextures, AreRefusedWhereTheyStand) {
   expect(shape(R"("reflectance": {"scale": 1})"), {"texture"});
   expect(shape(R"("reflectance": {"texture": "even.png", "scale": 9})"), {"reflectance", "out of range"});
   expect(shape(R"("specular_ior": 1.4)"), {"specular_ior", "matte"});
-  expect(medium(R"("subsurface_color": 0.5, "subsurface_radius": {"texture": "two.png"})"),
+  expect(medium(R"("subsurface_color": 0.5, "subsurface_radius": {"texture": "two.png", "channel": "g"})"),
+         {"subsurface_radius", "three numbers"});
+  expect(medium(R"("subsurface_color": 0.5, "subsurface_radius": {"texture": "even.png", "scale": -1})"),
          {"subsurface_radius"});
+  expect(medium(R"("sigma_a": 0.1, "sigma_s_prime": {"texture": "two.png"})"), {"sigma_s_prime"});
+  expect(medium(R"("preset": "marble", "tint": 0.5, "texture_mix": "medium")"),
+         {"texture_mix", "subsurface_color"});
   expect(medium(R"("subsurface_color": {"texture": "two.png"}, "subsurface_radius": 1, "tint": 0.5)"),
          {"tint", "subsurface_color"});
 }

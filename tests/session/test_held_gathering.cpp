@@ -25,11 +25,38 @@ Scene balls_and_light() {
   return scene;
 }
 
+/// A strip of stone, narrower than a pixel, that no place of BouncedPlaces lies on. Along a part of it the top of a block
+/// lies in its plane; the block's places stand for the strip as long as both have one index. A ball lights both.
+Scene strip_beside_block() {
+  Scene scene;
+  scene.media = {marble()};
+  scene.shapes = {translucent("block", BoxShape{{-20, 0, -10}, {-.8, 10, 10}})};
+  const auto add_stone = [&](const char* name, ShapeSource source) -> Shape& {
+    scene.shapes.emplace_back();
+    scene.shapes.back().name = name;
+    scene.shapes.back().source = std::move(source);
+    return scene.shapes.back();
+  };
+  add_stone("strip", QuadShape{{-.8, 10, 30}, {1.6, 0, 0}, {0, 0, -60}}).gloss = Gloss{.eta = 1.5};
+  add_stone("ball", SphereShape{{12, 16, 0}, 8});
+  scene.lights = {point_light({-30, 100, 20}, Rgb(3e4))};
+  scene.camera.position = {0, 100, 40};
+  scene.camera.look_at = {0, 10, 0};
+  scene.camera.field_of_view = 32;
+  scene.film.resolution = {24, 16};
+  scene.film.samples_per_pixel = 4;
+  scene.film.half = false;
+  scene.settings.bounces = 1;
+  scene.settings.samples = 800;
+  scene.settings.evaluator = EvaluatorKind::dual_tree;
+  return scene;
+}
+
 struct Held {
   Session session;
-  Scene scene = balls_and_light();
+  Scene scene;
 
-  Held() {
+  explicit Held(Scene s = balls_and_light()) : scene(std::move(s)) {
     session.hold_view(true);
     session.match_new_session(true);
     picture_of(session, scene);
@@ -81,6 +108,23 @@ TEST(HeldGathering, LightsThatMoveAndBoundaries) {
   edit("floor moved", [](Scene& s) { std::get<QuadShape>(s.shapes[2].source).corner.y = -3; });
   edit("samples", [](Scene& s) { s.settings.samples = 600; });
   edit("shape gone", [](Scene& s) { s.shapes.erase(s.shapes.begin()); });
+}
+
+// Claim: where places of another surface cease to stand for hits, these hits gather for themselves: what others of their
+// batch gathered before is not theirs. Source: held_view.h, Gathering::points. Fails if: what is kept of hits is used for
+// whichever hits gather now (of_points in bounced_light.cpp): hits between block and strip would then have no light from
+// the ball, and the strip's free ends that of others.
+TEST(HeldGathering, OtherHitsGather) {
+  Held held(strip_beside_block());
+  const auto edit = [&](const char* what, const std::function<void(Scene&)>& apply) {
+    SCOPED_TRACE(what);
+    apply(held.scene);
+    held.rays();
+  };
+  edit("another index", [](Scene& s) { s.media[0].eta = 1.4; });
+  edit("that of the strip", [](Scene& s) { s.media[0].eta = 1.5; });
+  edit("a block without places", [](Scene& s) { s.settings.near_field = false; });
+  edit("with places", [](Scene& s) { s.settings.near_field = true; });
 }
 
 // Claim: no more is held of gathered rays than kMostGatheredBytes; the picture is the same. Source: held_view.h. Fails if:

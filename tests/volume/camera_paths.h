@@ -29,6 +29,8 @@ class CameraPaths {
     std::function<double(const Vec3d& point, const Vec3d& towards)> light;
     /// Whether a point is inside the union of the body's meshes: where they overlap.
     std::function<bool(const Vec3d&)> is_inside = {};
+    /// Where the medium differs from place to place; `medium` is then at least as dense as any.
+    std::function<HomogeneousMedium(const Vec3d&)> medium_at = {};
   };
 
   CameraPaths(Setup setup, std::uint64_t seed) : setup_(std::move(setup)), engine_(seed) {}
@@ -104,10 +106,13 @@ class CameraPaths {
       if (!met) return 0;  // a hole
       if (flown + sigma_t * met->distance > goal) {
         position += direction * ((goal - flown) / sigma_t);
-        if (uniform() * sigma_t >= medium.sigma_s) return 0;
-        direction = scattered(direction, medium.g);
         flown = 0;
         goal = -std::log1p(-uniform());
+        const HomogeneousMedium here = setup_.medium_at ? setup_.medium_at(position) : medium;
+        const double event = uniform() * sigma_t;
+        if (event >= here.sigma_t()) continue;
+        if (event >= here.sigma_s) return 0;
+        direction = scattered(direction, medium.g);
         continue;
       }
       flown += sigma_t * met->distance;

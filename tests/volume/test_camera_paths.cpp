@@ -38,10 +38,13 @@ double lamp_radiance(std::span<const Light> lights, const Vec3d& from, const Vec
 
 /// Mean exitance of the patches, by walks of several seeds: walks leave by several cells, so that the cells'
 /// errors are not those of a patch.
-std::array<Mean, kPatches> walked_patches(const LitBody& body, const Vec3d& middle, std::size_t seeds) {
+std::array<Mean, kPatches> walked_patches(const LitBody& body, const Vec3d& middle, std::size_t seeds,
+                                          const MediaInside& inside = {}) {
   std::array<Mean, kPatches> patches;
   for (std::size_t seed = 0; seed < seeds; ++seed) {
-    const VolumeExitance walked = body.walked(1000 + seed);
+    VolumeInput input = body.input(1000 + seed);
+    input.media_inside = inside;
+    const VolumeExitance walked = volume_exitance(input);
     for (std::size_t p = 0; p < kPatches; ++p)
       patches[p].add(
           body.mean_where(walked,
@@ -53,15 +56,17 @@ std::array<Mean, kPatches> walked_patches(const LitBody& body, const Vec3d& midd
 
 /// The same from the viewer's side.
 std::array<Mean, kPatches> seen_patches(const LitBody& body, const Vec3d& middle, std::size_t paths,
-                                        const std::function<bool(const Vec3d&)>& is_inside = {}) {
+                                        const std::function<bool(const Vec3d&)>& is_inside = {},
+                                        const HomogeneousMedium& densest = {},
+                                        const std::function<HomogeneousMedium(const Vec3d&)>& medium = {}) {
   constexpr std::size_t kParts = 64;
   const VolumeInput input = body.input();
   const SampleGrid grid(body.world, body.surface, body.surface.spacing());
   std::vector<std::array<Mean, kPatches>> parts(kParts);
   parallel_chunks(kParts, 1, [&](std::size_t part, std::size_t, std::size_t) {
     CameraPaths camera(
-        {body.rays, body.world, body.meshes.size(), input.media[0], body.reenter,
-         [&](const Vec3d& p, const Vec3d& d) { return lamp_radiance(body.lights, p, d); }, is_inside},
+        {body.rays, body.world, body.meshes.size(), medium ? densest : input.media[0], body.reenter,
+         [&](const Vec3d& p, const Vec3d& d) { return lamp_radiance(body.lights, p, d); }, is_inside, medium},
         99 + part);
     for (std::size_t i = 0; i < paths / kParts; ++i) {
       const CameraPaths::Place place = camera.any_place();
@@ -94,6 +99,24 @@ TEST(CameraPaths, Sphere) {
   body.medium = {.01, 1, .5, 1.4};
   body.light({kAbove, kBeside});
   expect_agreement(walked_patches(body, {}, 32), seen_patches(body, {}, 600000));
+}
+
+// Claim: the same of a sphere whose left half is another medium than its right one. Source: as above; the camera's paths know
+// the medium by the sign of x. Tolerance: as above. Fails if: walks fly by another medium than that of the densest place, all
+// their collisions count, or the albedo is not that of the place.
+TEST(CameraPaths, TwoHalves) {
+  LitBody body(SphereShape{{}, 3, 4}, 300, NormalMode::faceted);
+  ASSERT_EQ(body.world.unit, 1);
+  ASSERT_EQ(body.world.origin, Vec3d());
+  const HomogeneousMedium left{.03, 2.5, .5, 1.4}, right{.01, 1, .5, 1.4};
+  body.medium = right;
+  body.medium.sigma_a = 0;  // cubes of .5: their faces are where the halves meet
+  body.light({kAbove, kBeside});
+  const auto at = [&](const Vec3d& p) { return p.x < 0 ? left : right; };
+  const auto media = [&](const Vec3d& p, double) {
+    return std::array<HomogeneousMedium, 3>{at(p), at(p), at(p)};
+  };
+  expect_agreement(walked_patches(body, {}, 48, media), seen_patches(body, {}, 1200000, {}, left, at));
 }
 
 // Claim: the same of two boxes that overlap in a body with a reentrant edge, with light that leaves and enters again and

@@ -7,49 +7,12 @@
 #include "opaline/transport/half_space.h"
 #include "opaline/volume/cell_fit.h"
 #include "opaline/volume/volume_diffusion.h"
-#include "volume/lit_body.h"
+#include "volume/diffused_body.h"
 
 namespace opaline {
 namespace {
 
 using namespace test;
-
-std::array<HomogeneousMedium, 3> grey(const HomogeneousMedium& medium) {
-  return {medium, medium, medium};
-}
-
-std::vector<Light> lights_of(const LitBody& body, const LightSource& source) {
-  return {recentred({"light", source}, body.world.origin, body.world.unit)};
-}
-
-/// Entered irradiance at the samples.
-std::vector<LightTransfer> transfers_of(const LitBody& body, const LightSource& source, double eta) {
-  return compute_irradiance({body.rays, body.surface.samples, lights_of(body, source), eta, 256, 5, nullptr});
-}
-
-/// At the samples that the body has from now on, where cells cut its surface.
-/// in    media, cell: in mm
-VolumeExitance diffused(LitBody& body, std::array<HomogeneousMedium, 3> media, const LightSource& source,
-                        double cell, int parts = 1) {
-  CutSurface cut = cut_surface(body.world, body.meshes, cell / body.world.unit, parts);
-  body.surface = std::move(cut.surface);
-  for (HomogeneousMedium& medium : media) {
-    medium.sigma_a *= body.world.unit;
-    medium.sigma_s *= body.world.unit;
-  }
-  const std::vector<LightTransfer> transfers = transfers_of(body, source, media[0].eta);
-  const VolumeDiffusion cells(
-      {body.world, body.meshes, body.surface.samples, cut.normals, media, cell / body.world.unit});
-  return cells.exitance(lights_of(body, source), transfers);
-}
-
-double entered_mean(const LitBody& body, const LightSource& source, double eta) {
-  const std::vector<LightTransfer> transfers = transfers_of(body, source, eta);
-  double sum = 0;
-  for (std::size_t i = 0; i < body.surface.samples.size(); ++i)
-    sum += double(body.surface.samples[i].area) * double(transfers[0].weights[i]);
-  return sum / body.surface.area;
-}
 
 // Claim: a body that absorbs nothing sends out all that enters, evenly where light enters evenly. Source:
 // conservation; symmetry. Tolerance: 1e-3 of the whole, as asked of it; 2 % rms over the surface,
@@ -182,21 +145,6 @@ TEST(VolumeDiffusion, NoSliverOutshinesTheRest) {
   double most = 0;
   for (const RgbF& exitance : solved.exitance) most = std::max(most, double(exitance.x));
   EXPECT_LT(most, 4 * body.mean_where(solved, everywhere).value);
-}
-
-/// Means over coarser cells, those of other samples.
-std::vector<double> means_over(const std::vector<SurfaceSample>& cells, const LitBody& body,
-                               const VolumeExitance& solved) {
-  const NearestSample nearest(cells, &body.world);
-  std::vector<double> means(cells.size()), areas(cells.size());
-  for (std::size_t i = 0; i < solved.exitance.size(); ++i) {
-    const SurfaceSample& s = body.surface.samples[i];
-    const std::uint32_t cell = nearest.at(s.position, s.normal);
-    means[cell] += double(s.area) * double(solved.exitance[i].x);
-    areas[cell] += double(s.area);
-  }
-  for (std::size_t c = 0; c < means.size(); ++c) means[c] /= areas[c];
-  return means;
 }
 
 // Claim: on a sphere lit from one side, cell for cell what random walks give. Source: the walks. Tolerance: 3 % rms of

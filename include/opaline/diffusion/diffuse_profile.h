@@ -66,6 +66,9 @@ double total_diffuse_transmittance(const ChannelProfile& profile, double thickne
 /// 1e-12). total in [0, 1], of a half space: what a thick piece of the medium sends back.
 double invert_albedo(ProfileKind kind, double total, double eta);
 
+/// 1/sigma_t' of a medium with this 1/sigma_t, 1 - alpha' and mean cosine g.
+double reduced_mean_free_path(double subsurface_radius, double absorbed, double g);
+
 /// Everything about a medium that rendering needs, computed once.
 struct DiffuseProfile {
   std::array<ChannelProfile, 3> channels;

@@ -81,6 +81,7 @@ class RayScene {
 
  private:
   friend class LineQuery;
+  friend class NearestSurface;
   struct Handles;
   struct Vertex;
   struct MeshView;

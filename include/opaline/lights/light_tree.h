@@ -20,7 +20,8 @@ class LampTable;
 /// is drawn n times in the mean stands for 1 / n of what it brings each time, so that the mean of what is drawn is the
 /// sum over all lights. Lights without an area that are not very many are all weighed at each point in place of nodes.
 /// from  Conty Estevez & Kulla 2018, Importance Sampling of Many Lights with Adaptive Tree Splitting: bounds,
-///       importance and splitting; Madow 1949, systematic sampling: no light is drawn twice in vain
+///       importance and splitting; Madow 1949, systematic sampling: no light is drawn twice in vain; of lights that are
+///       weighed one of each stratum is drawn, so that draws do not depend on each other
 class LightTree {
  public:
   /// in    lights: recentred, of the kinds above; all of them is_delta, or none; at least one
@@ -47,11 +48,14 @@ class LightTree {
     std::uint32_t light = 0;
     float expected = 0;  ///< how often it is drawn in the mean; 0: nothing was drawn
     float rest = 0;      ///< uniform in [0, 1), for a point of the light
+    /// Irradiance by `colour` of lights that are weighed, were nothing in the way and no boundary there: of this light over
+    /// `expected`, and its mean over all draws in this place of `drawn`. Black for other lights.
+    RgbF unshadowed{}, mean_unshadowed{};
   };
   /// Draws drawn.size() lights, or fewer where fewer matter, in an order in which neighbours are alike. A light without
-  /// an area is drawn once at most; where there are no more of them than places, each is drawn.
-  /// in    random: in [0, 1)
-  void draw(const Place& at, double random, std::span<Drawn> drawn) const;
+  /// an area that is expected once is drawn once; where there are no more of them than places, each is drawn.
+  /// in    random: in [0, 1); key: one for draws whose `random` are spread evenly, chooses where in each stratum they lie
+  void draw(const Place& at, double random, std::uint64_t key, std::span<Drawn> drawn) const;
 
   /// How often a draw of one takes this light, in the mean.
   double share(const Place& at, std::uint32_t light) const;
@@ -79,7 +83,7 @@ class LightTree {
   const std::vector<Node>& nodes() const { return nodes_; }
 
  private:
-  void draw_weighed(const Place& at, double random, std::span<Drawn> drawn) const;
+  void draw_weighed(const Place& at, double random, std::uint64_t key, std::span<Drawn> drawn) const;
 
   class Cut;
   class Slots;

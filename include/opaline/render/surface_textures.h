@@ -25,6 +25,11 @@ struct SurfaceTint {
   RgbF entering{1, 1, 1}, leaving{1, 1, 1};
 };
 
+/// What a medium that varies inside a body is at a place, over its mean; of what does not vary 1.
+struct MediumFactors {
+  RgbF color{1, 1, 1}, radius{1, 1, 1};
+};
+
 class SurfaceTextures {
  public:
   /// Both must outlive it.
@@ -51,6 +56,7 @@ class SurfaceTextures {
   SurfaceTint tint(const Place& place) const;
   /// Share of the light entering a body that it reflects diffusely at its surface instead.
   RgbF reflected(const Place& place) const;
+  MediumFactors medium(const Place& place) const;
   /// None: the surface's own.
   std::optional<float> roughness(const Place& place) const;
   std::optional<float> metalness(const Place& place) const;
@@ -62,7 +68,8 @@ class SurfaceTextures {
  private:
   struct OfMesh {
     const Texture *tint = nullptr, *roughness = nullptr, *metalness = nullptr, *normals = nullptr,
-                  *heights = nullptr, *weight = nullptr, *base = nullptr;
+                  *heights = nullptr, *weight = nullptr, *base = nullptr, *color_inside = nullptr,
+                  *radius_inside = nullptr;
     Rgb factor{1, 1, 1};               ///< times the tint's texture
     double at_entry = 0, at_exit = 1;  ///< exponents of the tint
     bool has_tint = false, has_uv = false, has_tangents = false;
@@ -84,8 +91,11 @@ void add_to_key(KeyBuilder& key, const Texture& texture);
 /// A mesh's UVs and tangents.
 void add_coordinates(KeyBuilder& key, const Mesh& mesh);
 /// Of entering_tints; a key of zeros where there are none.
-StageKey tint_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes,
-                  const StageKey& samples);
+StageKey tint_key(const Medium& medium, Method method, const World& world,
+                  std::span<const std::uint32_t> meshes, const StageKey& samples);
+/// Of how a medium varies inside bodies of these meshes; a key of zeros where it does not.
+StageKey medium_key(const Medium& medium, Method method, const World& world,
+                    std::span<const std::uint32_t> meshes);
 
 /// Where a cone meets a surface.
 /// in    direction: of the ray, of any length; width: of the cone there

@@ -159,9 +159,10 @@ constexpr NameList names_of(FilmColorSpace) {
   return kFilmColorSpaceNames;
 }
 
-/// Where a translucent body's tint t colours light: as it enters (pre), as it leaves (post), or by its root at both.
-enum class TextureMix { pre, post, split };
-inline constexpr std::array<std::string_view, 3> kTextureMixNames{"pre", "post", "split"};
+/// Where a translucent body's tint t colours light: as it enters (pre), as it leaves (post), or by its root at both. With
+/// `medium` a texture of the medium's colour is no tint: the medium itself differs from place to place.
+enum class TextureMix { pre, post, split, medium };
+inline constexpr std::array<std::string_view, 4> kTextureMixNames{"pre", "post", "split", "medium"};
 /// The words for its values, in their order.
 constexpr NameList names_of(TextureMix) {
   return kTextureMixNames;

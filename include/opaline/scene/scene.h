@@ -96,6 +96,8 @@ struct Medium {
   Rgb tint{1, 1, 1};
   std::optional<Texture> tint_texture{}, roughness_texture{};
   TextureMix texture_mix = TextureMix::split;
+  /// Of ArtistMedium::subsurface_radius, over its mean; the record has the mean.
+  std::optional<Texture> radius_texture{};
   /// Share of the light that scatters inside, [0, 1]; the rest is reflected diffusely at the surface, by base_color.
   double subsurface_weight = 1;
   Rgb base_color{.8, .8, .8};
@@ -108,6 +110,15 @@ struct Medium {
 /// Whether some of its light is reflected diffusely at its surface.
 inline bool is_partly_opaque(const Medium& medium) {
   return medium.subsurface_weight < 1 || medium.weight_texture;
+}
+
+/// Whether the colour, or the colour or the radius, of the medium differs from place to place inside its bodies: where light
+/// is followed inside. Radial profiles have one medium everywhere.
+inline bool has_color_inside(const Medium& medium, Method method) {
+  return medium.texture_mix == TextureMix::medium && medium.tint_texture && has_cells(method);
+}
+inline bool varies_inside(const Medium& medium, Method method) {
+  return has_color_inside(medium, method) || (medium.radius_texture && has_cells(method));
 }
 
 inline ProfileKind profile_kind(const Medium& medium) {

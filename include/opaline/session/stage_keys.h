@@ -75,12 +75,14 @@ StageKey view_light_key(const Light& light);
 /// Of the sums of random walks, one for each of their sources (VolumeSums): the samples (or their tint_key where one
 /// colours light that enters), the media's coefficients, all meshes, where the source's light is and how large; its
 /// colour only where sources have several lights.
+/// in    medium_inside: medium_key
 std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& samples,
-                                std::span<const MeshKeys> meshes);
+                                const StageKey& medium_inside, std::span<const MeshKeys> meshes);
 
 /// Of the cells of volume_diffusion inside a body.
-/// in    samples: key of the body's
-StageKey diffusion_cells_key(const Body& body, const StageKey& samples, std::span<const MeshKeys> meshes);
+/// in    samples: key of the body's; medium_inside: medium_key
+StageKey diffusion_cells_key(const Body& body, const StageKey& samples, const StageKey& medium_inside,
+                             std::span<const MeshKeys> meshes);
 /// Of what leaves by diffusion.
 /// in    light: octree_key of what enters
 StageKey diffusion_key(const StageKey& cells, const StageKey& light);

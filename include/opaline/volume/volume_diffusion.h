@@ -11,6 +11,7 @@
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/transport/medium.h"
 #include "opaline/volume/cut_surface.h"
+#include "opaline/volume/media_inside.h"
 #include "opaline/volume/volume_exitance.h"
 
 namespace opaline {
@@ -22,7 +23,16 @@ struct VolumeDiffusionInput {
   std::span<const Vec3f> normals;          ///< of that, too
   std::array<HomogeneousMedium, 3> media;  ///< R G B, isotropic, in the world's unit of length
   double cell = 1;                         ///< edge of the cells at the surface, world units
+  MediaInside media_inside = {};           ///< isotropic; instead of `media`. Empty: these throughout
 };
+
+/// Diffuse mean free paths that count as one mean free path, where they are less. Measured, src/volume/README.md.
+inline constexpr double kPerFading = .45;
+/// How far light goes before it is scattered, or before it has faded where that is less: what cells are to resolve.
+/// in    mean_free_path: 1/sigma_t', of any unit; absorbed: 1 - albedo'
+double length_to_resolve(double mean_free_path, double absorbed);
+/// Edge of a cell over that, at most: what is shorter is taken as this, the albedo as it is.
+inline constexpr double kWidestCell = 3;
 
 /// About how many cells a body has, from its area and the edge of a cell.
 double expected_cells(double area, double cell);

@@ -14,6 +14,7 @@
 #include "opaline/sampling/sample_surface.h"
 #include "opaline/scene/scene.h"
 #include "opaline/transport/medium.h"
+#include "opaline/volume/media_inside.h"
 
 namespace opaline {
 
@@ -30,6 +31,7 @@ struct VolumeInput {
   bool reenter = true;  ///< light that has left may meet the body again and enter
   /// Factor on light from the lamps as it enters at a place: mesh, triangle and barycentrics. Empty: none.
   std::function<RgbF(std::uint32_t mesh, std::uint32_t triangle, float u, float v)> entering_tint = {};
+  MediaInside media_inside = {};  ///< instead of `media`, which are about its mean. Empty: these throughout
 };
 
 /// Walks a sample, channel and light where no error is asked for, and at the most.

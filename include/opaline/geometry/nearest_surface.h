@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The point of a body's surface nearest to a point in space.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "opaline/geometry/ray_scene.h"
+
+namespace opaline {
+
+/// Nearest points of some meshes of a RayScene, which must outlive it. Thread-safe.
+class NearestSurface {
+ public:
+  NearestSurface(const RayScene& rays, std::span<const std::uint32_t> meshes);
+
+  struct Place {
+    std::uint32_t mesh, triangle;
+    float u, v;       ///< barycentrics of the second and third corner
+    double distance;  ///< world units
+  };
+  /// Of triangles that are equally near, the one with the lowest numbers.
+  /// in    position: world space; within: no place farther away is found
+  /// out   none: no triangle is within that distance
+  std::optional<Place> at(const Vec3d& position,
+                          double within = std::numeric_limits<double>::infinity()) const;
+
+ private:
+  const RayScene& rays_;
+  std::vector<bool> is_body_;
+};
+
+}  // namespace opaline

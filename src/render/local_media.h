@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A medium whose colour or radius textures vary: what it is at a place.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "opaline/diffusion/reduced_medium.h"
+#include "opaline/geometry/world.h"
+#include "opaline/render/precompute.h"
+#include "opaline/render/surface_textures.h"
+#include "opaline/scene/scene.h"
+#include "opaline/volume/media_inside.h"
+
+namespace opaline {
+
+/// What stands below the surface of bodies of one medium, by the textures above: R G B, reduced, lengths in the world's
+/// unit.
+class LocalMedia {
+ public:
+  /// medium: one whose coefficients are an artist's, and that varies inside. Scene and world must outlive it.
+  LocalMedia(const Scene& scene, const World& world, const Medium& medium);
+
+  /// Where there is least of it, over the mean radius: a radius of 0 would leave nothing to follow.
+  static constexpr float kLeastRadius = 1.0f / 64;
+
+  /// in    width: of the square around the place whose mean is looked up, world units
+  std::array<ReducedMedium, 3> at(std::uint32_t mesh, std::uint32_t triangle, float u, float v,
+                                  float width) const;
+
+ private:
+  double absorbed(double color) const;
+
+  const World& world_;
+  SurfaceTextures textures_;
+  ArtistMedium mean_;
+  double eta_;
+  std::vector<double>
+      totals_;  // of media whose 1 - albedo' is the square of 0 to 1, evenly; from 1 down to 0
+};
+
+/// What cells of a body whose medium varies are to resolve: the length that a tenth of its surface is below, mm.
+double short_length_of(const Scene& scene, const World& world, const GroupPlan& group);
+
+/// Inside a body: at each point the medium of the nearest point of its surface. Empty where the body's medium is the same
+/// throughout.
+/// in    input, body: outlive the result; convert: what to make of a reduced medium
+MediaInside media_inside(const PrecomputeInput& input, const Body& body,
+                         std::function<HomogeneousMedium(const ReducedMedium&)> convert);
+
+}  // namespace opaline
