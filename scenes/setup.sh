@@ -111,7 +111,7 @@ fetch_mannequin() {
 fetch_mitsuba() {
   local folder=$root/build-mitsuba
   [[ ! -e $folder/done ]] || return 0
-  say "fetching Mitsuba from PyPI (70 MB)"
+  say "fetching Mitsuba from PyPI (80 MB)"
   if python3 -m venv "$folder" && "$folder/bin/python3" -m pip install --quiet mitsuba==3.6.4 numpy; then
     touch "$folder/done"
   else
@@ -125,7 +125,7 @@ fetch_mitsuba() {
 fetch_blender() {
   local folder=$root/build-blender
   [[ ! -e $folder/done ]] || return 0
-  say "fetching Blender from PyPI (370 MB)"
+  say "fetching Blender from PyPI (400 MB)"
   if python3 -m venv "$folder" && "$folder/bin/python3" -m pip install --quiet 'bpy>=4.5,<4.6' &&
     "$folder/bin/python3" -c 'import bpy'; then
     touch "$folder/done"

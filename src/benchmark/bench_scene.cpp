@@ -152,7 +152,7 @@ BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& 
   scene.name = fs::path(file).stem().string();
   scene.key = scene_hash(file, scene.overrides, scene.scene);
   scene.planned_samples = planned_samples(scene, monitor);
-  scene.rungs = ladder({scene.planned_samples, arguments.quick});
+  scene.rungs = ladder({scene.planned_samples, arguments.quick, bounces_of(scene.scene) > 0});
   scene.rungs.insert(scene.rungs.end(), arguments.rungs.begin(), arguments.rungs.end());
   return scene;
 }

@@ -31,6 +31,7 @@ std::vector<Series> all_series(std::size_t samples) {
       {"hierarchical", "classic", "max_solid_angle", {"0.4", "0.1", "0.05", "0.02"}, {"0.4", "0.1"}},
       {"hierarchical", "brute_force", "", {""}, {}},
       {"hierarchical", "dual_tree", "samples", {quarter, planned, fourfold}, {quarter}},
+      {"hierarchical", "", "bounces", {"0"}, {"0"}},
       {"direct", "", "entry_samples", {"16", "64", "256"}, {"16"}},
   };
 }
@@ -60,6 +61,7 @@ std::vector<Rung> ladder(const LadderInput& input) {
   for (const Series& series : all_series(input.planned_samples)) {
     // Without anything translucent there are no samples to count, nor a tree to walk.
     if (input.planned_samples == 0 && series.method == "hierarchical") continue;
+    if (!input.bounces && series.knob == "bounces") continue;
     for (const std::string& value : input.quick ? series.quick_values : series.values)
       rungs.push_back({series.method, series.evaluator, series.knob, value});
   }

@@ -26,10 +26,12 @@ std::vector<std::string> overrides_of(const Rung& rung, std::span<const std::str
 struct LadderInput {
   std::size_t planned_samples = 0;  ///< of the group with the most; 0: nothing is translucent
   bool quick = false;
+  bool bounces = false;  ///< whether the scene has light between things
 };
 
 /// The first rung is `lambert`, what all the others are measured against. Sample counts are a quarter of the
-/// plan's, the plan's and four times that, the same for each group of the scene.
+/// plan's, the plan's and four times that, the same for each group of the scene. Of a scene with light between things, which
+/// all rungs gather and `direct`, their reference, traces from each place at which light enters, one rung is without.
 std::vector<Rung> ladder(const LadderInput& input);
 
 /// What is held against random walks: `lambert` first, then the scene as it is, with each radial profile in turn, and

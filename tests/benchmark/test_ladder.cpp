@@ -47,14 +47,25 @@ TEST(Ladder, QuickAndOpaque) {
       names_of(ladder({.planned_samples = 1, .quick = true})).contains("hierarchical dual_tree samples=1"));
 }
 
+// Claim: where there is light between things one rung is without it, and only there. Source: ladder.h. Fails if: no rung
+// tells what gathering costs and what it is worth, or two rungs of other scenes are the same.
+TEST(Ladder, WithoutLightBetweenThings) {
+  for (const bool quick : {false, true})
+    for (const bool bounces : {false, true})
+      EXPECT_EQ(names_of(ladder({.planned_samples = 1000, .quick = quick, .bounces = bounces}))
+                    .contains("hierarchical bounces=0"),
+                bounces);
+}
+
 // Claim: a scene takes every rung's settings, and they are what the rung says. Source: scenes/README.md.
 // Fails if: a knob or evaluator of the ladder is misspelt, or overrides lose one of them.
 TEST(Ladder, SettingsAreTheScenes) {
-  for (const Rung& rung : ladder({.planned_samples = 1000, .quick = false})) {
+  for (const Rung& rung : ladder({.planned_samples = 1000, .quick = false, .bounces = true})) {
     Scene scene;
     ASSERT_NO_THROW(scene = parse_scene("{}", "empty.json", overrides_of(rung))) << name_of(rung);
     EXPECT_EQ(scene.settings.method == Method::hierarchical, rung.method == "hierarchical");
     EXPECT_EQ(scene.settings.evaluator == EvaluatorKind::brute_force, rung.evaluator == "brute_force");
+    EXPECT_EQ(scene.settings.bounces.has_value(), rung.knob == "bounces");
     if (rung.knob == "max_solid_angle") {
       EXPECT_EQ(scene.settings.max_solid_angle, std::stod(rung.value));
     }
