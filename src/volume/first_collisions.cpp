@@ -392,9 +392,10 @@ FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLigh
         depositor);
   }
   if (light.even.empty()) return depositor.take();
-  const std::vector<Rgb> flux = entering_flux(
-      space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
-  enter_everywhere(space, flux, [&](std::size_t i) { return all_around(elements[i], eta, i); }, depositor);
+  const std::vector<Rgb> flux =
+      entering_flux(space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
+  enter_everywhere(
+      space, flux, [&](std::size_t i) { return all_around(elements[i], eta, i); }, depositor);
   return depositor.take();
 }
 
