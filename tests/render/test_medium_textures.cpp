@@ -105,7 +105,7 @@ Exitance exitance_of(const ScratchFolder& folder, const std::string& text) {
 }
 
 // Claim: a ball whose texture has two colours, and one whose texture has two radii, send out, cell for cell, what random walks
-// say, as nearly as a ball of the mean medium does what they say of that, and farther from that one. Source: the walks.
+// say, and not what a ball of the mean medium does, which is more than 10 % off. Source: the walks.
 // Tolerance: 5 % rms of the mean. Fails if: what is inside is not that of the nearest place, by either method.
 TEST(MediumTextures, HoldInsideAsWalked) {
   const ScratchFolder folder;
