@@ -23,7 +23,7 @@ class LocalMedia {
   /// medium: one whose coefficients are an artist's, and that varies inside. Scene and world must outlive it.
   LocalMedia(const Scene& scene, const World& world, const Medium& medium);
 
-  /// Where there is least of it, over the mean radius: a radius of 0 would leave nothing to follow.
+  /// The least radius over the mean one: one of 0 would make walks endless.
   static constexpr float kLeastRadius = 1.0f / 64;
 
   /// in    width: of the square around the place whose mean is looked up, world units

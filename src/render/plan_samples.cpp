@@ -112,11 +112,13 @@ bool is_too_thin_for_cells(const GroupPlan& group) {
 void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
                   std::vector<std::string>& warnings) {
   constexpr double kAcrossThin = 4, kSmallest = .25;
+  constexpr double kOfVarying =
+      .5;  // a cell has one medium, and light blurs what is finer than a mean free path
   constexpr double kFewestFaces = 60;  // of cells, on the surface
   const double length = group.smallest_mean_free_path;
   const Medium& medium = scene.media[group.medium];
   group.cell = scene.settings.cell_size * (varies_inside(medium, scene.settings.method)
-                                               ? short_length_of(scene, world, group)
+                                               ? kOfVarying * short_length_of(scene, world, group)
                                                : std::min(length, kPerFading * shortest_fading(medium)));
   if (group.thickness > 0)
     group.cell = std::min(group.cell, std::max(group.thickness / kAcrossThin, kSmallest * group.cell));

@@ -125,7 +125,6 @@ class Depositor {
     std::uint32_t element;  // of the boundary, nearest
     std::uint32_t cell;     // the last
   };
-
   Vec3d at(const Way& way, double length) const {
     return way.from + way.along * (length / space_.lattice.cell);
   }
@@ -134,7 +133,6 @@ class Depositor {
     double length = 0;
     std::array<double, 3> share{}, middle{}, scattered{};  // scattered: of what collides
   };
-
   // Of what collides. In one medium throughout what is absorbed is taken off at the entry.
   double scattered_of(const CalibratedMedium& medium) const { return space_.varies() ? medium.albedo : 1; }
   Stretch stretch_of(double length, std::uint32_t cell) const;
@@ -380,7 +378,6 @@ void enter_everywhere(const DiffusionSpace& space, std::span<const Rgb> flux, co
 FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light) {
   Depositor depositor(space);
   const std::vector<BoundaryElement>& elements = space.boundary.elements;
-  const double eta = space.eta();
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
     const std::vector<Rgb> flux = entering_flux(space, [&](std::size_t s) {
       const Rgb tint = light.tints.empty() ? Rgb(1) : Rgb(light.tints[s]);
@@ -388,13 +385,15 @@ FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLigh
              (double(space.samples[s].area) * double(light.transfers[l].weights[s]));
     });
     enter_everywhere(
-        space, flux, [&](std::size_t i) { return towards_light(light.lights[l], elements[i], eta, i); },
+        space, flux,
+        [&](std::size_t i) { return towards_light(light.lights[l], elements[i], space.eta(), i); },
         depositor);
   }
   if (light.even.empty()) return depositor.take();
-  const std::vector<Rgb> flux = entering_flux(
-      space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
-  enter_everywhere(space, flux, [&](std::size_t i) { return all_around(elements[i], eta, i); }, depositor);
+  const std::vector<Rgb> flux =
+      entering_flux(space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
+  enter_everywhere(
+      space, flux, [&](std::size_t i) { return all_around(elements[i], space.eta(), i); }, depositor);
   return depositor.take();
 }
 

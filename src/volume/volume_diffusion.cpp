@@ -14,8 +14,8 @@ constexpr float kLeft = .8f;
 
 BodyMedia calibrated(const VolumeDiffusionInput& input) {
   const auto& media = input.media;
-  BodyMedia body{
-      {{CalibratedMedium(media[0]), CalibratedMedium(media[1]), CalibratedMedium(media[2])}}, {}, {}};
+  BodyMedia body;
+  for (std::size_t c = 0; c < 3; ++c) body.throughout[0][c] = CalibratedMedium(media[c]);
   if (!input.media_inside) return body;
   body.inside = input.media_inside;
   body.calibrations = calibrations_of(media[0].eta);

@@ -100,14 +100,13 @@ TEST(SceneTextures, OfOneColourAreConstants) {
   EXPECT_FALSE(needs_uvs(textured, textured.shapes[0]));
   EXPECT_EQ(files.scene(shape(R"("reflectance": {"texture": "even.png"})")),
             files.scene(shape(R"("reflectance": "#808080")")));
-  const auto wax = [&](const std::string& color, const std::string& radius) {
-    Scene scene = files.scene(medium(R"("texture_mix": "medium", "subsurface_color": )" + color +
-                                     R"(, "subsurface_radius": )" + radius));
-    scene.media[0].place = {};
-    return scene;
-  };
-  EXPECT_EQ(wax(R"({"texture": "even.png"})", R"({"texture": "even.png", "scale": 2})"),
-            wax("\"#808080\"", std::to_string(256 / 255.) + "0"));
+  const Medium wax =
+      files
+          .scene(medium(R"("texture_mix": "medium", "subsurface_color": {"texture": "even.png"},
+                 "subsurface_radius": {"texture": "even.png", "scale": 2})"))
+          .media[0];
+  EXPECT_FALSE(wax.tint_texture || wax.radius_texture);
+  EXPECT_NEAR(std::get<ArtistMedium>(wax.coefficients).subsurface_radius.x, 2 * 128 / 255., 1e-6);
 }
 
 // Claim: what is wrong with a texture is said at its place in the scene, line 2 here, with the file's name. Fails if a

@@ -24,8 +24,9 @@ inline std::vector<LightTransfer> transfers_of(const LitBody& body, const LightS
 
 /// At the samples that the body has from now on, where cells cut its surface.
 /// in    media, cell: in mm; inside: in the world's space and unit
-inline VolumeExitance diffused(LitBody& body, std::array<HomogeneousMedium, 3> media, const LightSource& source,
-                        double cell, int parts = 1, const MediaInside& inside = {}) {
+inline VolumeExitance diffused(LitBody& body, std::array<HomogeneousMedium, 3> media,
+                               const LightSource& source, double cell, int parts = 1,
+                               const MediaInside& inside = {}) {
   CutSurface cut = cut_surface(body.world, body.meshes, cell / body.world.unit, parts);
   body.surface = std::move(cut.surface);
   for (HomogeneousMedium& medium : media) {
@@ -48,7 +49,7 @@ inline double entered_mean(const LitBody& body, const LightSource& source, doubl
 
 /// Means over coarser cells, those of other samples.
 inline std::vector<double> means_over(const std::vector<SurfaceSample>& cells, const LitBody& body,
-                               const VolumeExitance& solved) {
+                                      const VolumeExitance& solved) {
   const NearestSample nearest(cells, &body.world);
   std::vector<double> means(cells.size()), areas(cells.size());
   for (std::size_t i = 0; i < solved.exitance.size(); ++i) {

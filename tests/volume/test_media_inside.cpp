@@ -23,8 +23,7 @@ MediaInside inside_of(const LitBody& body, const Medium& medium) {
 double rms_from(const LitBody& body, const VolumeExitance& solved, double expected) {
   double square = 0;
   for (std::size_t i = 0; i < solved.exitance.size(); ++i)
-    square +=
-        double(body.surface.samples[i].area) * std::pow(double(solved.exitance[i].x) / expected - 1, 2);
+    square += double(body.surface.samples[i].area) * std::pow(double(solved.exitance[i].x) / expected - 1, 2);
   return std::sqrt(square / body.surface.area);
 }
 
@@ -59,12 +58,13 @@ TEST(MediaInside, WhiteFurnace) {
 // each sample: calibrations are of albedos nearby. Fails if: an absorbed share is taken off twice or not at all, or what
 // crosses is not what has not collided.
 TEST(MediaInside, OneMediumToldByPlace) {
-  for (const HomogeneousMedium& medium : {HomogeneousMedium{.1, 2, 0, 1.4}, HomogeneousMedium{.02, .4, 0, 1.4}}) {
+  for (const HomogeneousMedium& medium :
+       {HomogeneousMedium{.1, 2, 0, 1.4}, HomogeneousMedium{.02, .4, 0, 1.4}}) {
     LitBody body(SphereShape{{}, 3}, 1000);
     const DirectionalLight light{normalized(Vec3d(.2, -1, .3)), Rgb(1)};
     const VolumeExitance one = diffused(body, grey(medium), light, .5);
-    const VolumeExitance told = diffused(body, grey(medium), light, .5, 1,
-                                         inside_of(body, [&](const Vec3d&) { return medium; }));
+    const VolumeExitance told =
+        diffused(body, grey(medium), light, .5, 1, inside_of(body, [&](const Vec3d&) { return medium; }));
     const double mean = body.mean_where(one, everywhere).value;
     for (std::size_t i = 0; i < one.exitance.size(); ++i)
       ASSERT_NEAR(double(told.exitance[i].x), double(one.exitance[i].x),
@@ -119,13 +119,14 @@ Difference difference_in(const std::function<HomogeneousMedium(const Vec3d&)>& m
 
 // Claim: on a sphere of two halves, lit from one side, diffusion is as near to random walks, cell for cell, as it is on spheres
 // of one of the two media, also where the halves meet and light crosses from one into the other. Source: the walks.
-// Tolerance: 1.15 times the larger of the two (measured 1.6, 3.4 and of both halves 1.9 %), and in the mean 1 %. Fails if: the flow between two cells is by one diffusion
+// Tolerance: 1.15 times the larger of the two, and in the mean 1 %. Measured with this seed: 1.6, 3.4 and of both halves 1.9 %; the
+// walks' noise leaves each uncertain by about 2.5 %, so that finer differences do not show. Fails if: the flow between two cells is by one diffusion
 // coefficient alone, or light that crosses the body fades by that of its entry.
 TEST(MediaInside, HalvesAsWalked) {
   const HomogeneousMedium left{.01, 2, 0, 1.4}, right{.05, .8, 0, 1.4};
   const Difference of_left = difference_in([&](const Vec3d&) { return left; }),
                    of_right = difference_in([&](const Vec3d&) { return right; }),
-                   of_both = difference_in([&](const Vec3d& p) { return p.x < 0 ? left : right; });
+                   of_both = difference_in([&](const Vec3d&p) { return p.x < 0 ? left : right; });
   const std::string all = std::to_string(of_left.rms) + " " + std::to_string(of_right.rms) + " " +
                           std::to_string(of_both.rms) + "; " + std::to_string(of_left.bias) + " " +
                           std::to_string(of_right.bias) + " " + std::to_string(of_both.bias);
