@@ -264,11 +264,12 @@ Plan make_plan(const Scene& scene, const World& world) {
   std::size_t samples = 0;
   for (GroupPlan& group : plan.groups) {
     group.method = scene.settings.method;
-    if (is_too_thin_for_cells(group)) group.model.expected_error_of_diffusion.reset();
+    const bool varies = varies_inside(scene.media[group.medium], group.method);
+    // Measured for media that are one throughout.
+    if (is_too_thin_for_cells(group) || varies) group.model.expected_error_of_diffusion.reset();
     if (is_too_large_for_cells(scene.settings, group)) {
       group.model.expected_error_of_diffusion.reset();
-      if (group.method == Method::volume_diffusion && !varies_inside(scene.media[group.medium], group.method))
-        group.method = Method::hierarchical;
+      if (group.method == Method::volume_diffusion && !varies) group.method = Method::hierarchical;
     }
     if (group.method == Method::volume_diffusion) {
       choose_cells(scene, world, group, plan.warnings);

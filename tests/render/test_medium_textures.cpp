@@ -68,6 +68,23 @@ TEST(MediumTextures, OfRadialProfilesAreMeans) {
   }
 }
 
+// Claim: how far cells are off random walks is said of media that are one throughout, for which it was measured, alone.
+// Fails if: the mean medium's is said of one that varies.
+TEST(MediumTextures, NoErrorIsSaidThatWasNotMeasured) {
+  const ScratchFolder folder;
+  put_png(folder.file("two.png"), 2, 2, [](int x, int) {
+    return x < 1 ? Bytes{200, 160, 120} : Bytes{100, 220, 180};
+  });
+  const auto is_said = [&](const std::string& radius) {
+    Session session;
+    session.edit(
+        parse_scene(wax_scene("0.8", radius, R"("method": "volume_diffusion")"), folder.file("a.json"), {}));
+    return session.plan().groups.at(0).model.expected_error_of_diffusion.has_value();
+  };
+  EXPECT_TRUE(is_said("0.8"));
+  EXPECT_FALSE(is_said(R"({"texture": "two.png"})"));
+}
+
 /// Exitance of the samples' cells.
 struct Exitance {
   std::vector<SurfaceSample> samples;
