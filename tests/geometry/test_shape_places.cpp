@@ -29,7 +29,8 @@ TEST(ShapePlaces, ErrorsNameLineAndColumnOfTheScene) {
   put_bytes(folder.file("bunny.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
   const std::string scene = folder.file("scene.json"), bunny = folder.file("bunny.obj");
   EXPECT_EQ(world_error(folder, "{\"shapes\": [\n  {\"file\": \"buny.obj\"}]}"),
-            scene + ":2:12: " + folder.file("buny.obj") + ": no such mesh file (did you mean 'bunny.obj'?)");
+            scene + ":2:12: " + folder.file("buny.obj") + ": no such mesh file (did you mean '" +
+                folder.file("bunny.obj") + "'?)");
   EXPECT_EQ(
       world_error(folder, "{\"shapes\": [\n  {\"sphere\": {\"radius\": 1}},\n{\"file\": \"bunny.obj\"}]}"),
       scene + ":3:10: " + bunny + ":4: vertex index out of range in a face (expected at most 3, got 9)");

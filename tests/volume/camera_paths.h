@@ -106,13 +106,13 @@ class CameraPaths {
       if (!met) return 0;  // a hole
       if (flown + sigma_t * met->distance > goal) {
         position += direction * ((goal - flown) / sigma_t);
-        flown = 0;
-        goal = -std::log1p(-uniform());
         const HomogeneousMedium here = setup_.medium_at ? setup_.medium_at(position) : medium;
         const double event = uniform() * sigma_t;
-        if (event >= here.sigma_t()) continue;
-        if (event >= here.sigma_s) return 0;
-        direction = scattered(direction, medium.g);
+        const bool is_real = event < here.sigma_t();
+        if (is_real && event >= here.sigma_s) return 0;
+        if (is_real) direction = scattered(direction, medium.g);
+        flown = 0;
+        goal = -std::log1p(-uniform());
         continue;
       }
       flown += sigma_t * met->distance;
