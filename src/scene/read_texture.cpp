@@ -51,17 +51,24 @@ double checked(const Value& value, double number) {
   return number;
 }
 
+/// Of a texture with red, green and blue, whose texels are all alike; else empty. what: it is, a channel of it being none.
+std::optional<Vec3d> constant_of(const Value& value, const Texture& texture, const char* what) {
+  if (value.member("channel", value.info())) value.fail(what, "no 'channel'");
+  const std::optional<Texel>& constant = texture.file->constant();
+  if (!constant) return {};
+  Vec3d triple;
+  for (std::size_t c = 0; c < 3; ++c) triple[c] = checked(value, (*constant)[c] * texture.scale[c]);
+  return triple;
+}
+
 }  // namespace
 
 ColorReading read_color(const Value& value) {
   if (!is_texture(value)) return {value.color(), {}};
   Texture texture = read_texture(value, true);
-  if (value.member("channel", value.info())) value.fail("is a colour", "no 'channel'");
-  const std::optional<Texel>& constant = texture.file->constant();
-  if (!constant) return {Rgb(1), std::move(texture)};
-  Rgb color;
-  for (std::size_t c = 0; c < 3; ++c) color[c] = checked(value, (*constant)[c] * texture.scale[c]);
-  return {color, {}};
+  if (const std::optional<Vec3d> constant = constant_of(value, texture, "is a colour"))
+    return {Rgb(*constant), {}};
+  return {Rgb(1), std::move(texture)};
 }
 
 NumberReading read_number(const Value& value) {
@@ -75,12 +82,9 @@ NumberReading read_number(const Value& value) {
 TripleReading read_triple(const Value& value) {
   if (!is_texture(value)) return {value.number_or_triple(), {}};
   Texture texture = read_texture(value, false);
-  if (value.member("channel", value.info())) value.fail("is three numbers", "no 'channel'");
-  const std::optional<Texel>& constant = texture.file->constant();
-  if (!constant) return {Vec3d(1), std::move(texture)};
-  Vec3d triple;
-  for (std::size_t c = 0; c < 3; ++c) triple[c] = checked(value, (*constant)[c] * texture.scale[c]);
-  return {triple, {}};
+  if (const std::optional<Vec3d> constant = constant_of(value, texture, "is three numbers"))
+    return {*constant, {}};
+  return {Vec3d(1), std::move(texture)};
 }
 
 Texture read_normal_map(const Value& value) {
