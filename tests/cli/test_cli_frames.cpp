@@ -138,6 +138,7 @@ TEST(CliFrames, CameraAlone) {
       "--set", "lights.key.position=[20, 30, 40]",
       "--set", "shapes.blob.file=blob.01.obj",
       "--set", "media.marble.profile=dipole",  // smooth enough for a cache of 800 samples
+      "--set", "film.resolution=[64,64]",      // many enough for one
       "--set", R"(camera.position={"keyed": {"1": [0, 0, 50], "96": [50, 0, 0]}})"};
   const Outcome all = shot.render("1-6", "all", still);
   ASSERT_EQ(all.exit_code, 0) << all.out;
