@@ -76,7 +76,9 @@ double needle_share(const World& world, const GroupPlan& group) {
 
 // Measured: where a cell cuts the surface, its exitance and error, while all are fitted.
 constexpr std::size_t kBytesOfCutSample = 640;
-// Besides, where light bounces: weights kept for a second fit, that fit, what is gathered and what it brings.
+// Of a cell whose medium is its own: that, and what flows to each neighbour.
+constexpr double kBytesOfCellMedium = 350;
+// Of a cut sample besides, where light bounces: weights kept for a second fit, that fit, what is gathered and what it brings.
 constexpr std::size_t kBytesOfBouncedSample = 600 + 170 + 40;
 
 // Measured: what finds the cells, their fits and exitance; of each channel counts of a pass's chunks, and of each light
@@ -279,7 +281,8 @@ Plan make_plan(const Scene& scene, const World& world) {
       plan.bytes +=
           std::size_t(std::max(1., in_wires) * double(group.samples)) *
           (kBytesOfCutSample + 4 * lights.size() + (bounces_of(scene) > 0 ? kBytesOfBouncedSample : 0));
-      plan.bytes += std::size_t(kBytesOfCell * expected_cells(group.area, group.cell));
+      plan.bytes += std::size_t((kBytesOfCell + (varies ? kBytesOfCellMedium : 0)) *
+                                expected_cells(group.area, group.cell));
       continue;
     }
     choose_samples(scene, group, plan.warnings);
