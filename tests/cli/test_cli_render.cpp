@@ -309,9 +309,9 @@ PlannedMemory planned_memory(const std::string& scene, const std::vector<std::st
   return {event_of(events, "plan")["memory_bytes"], events.back()["peak_memory_bytes"]};
 }
 
-// Claim: the plan's memory is an upper bound, and at most 1.3 times what is taken, for small and large
-// pictures, all layers, area lights, a plate, media that vary inside, and cells that light bounces to. Fails if: empty pixels count (1.7 at 2048 x 2048), or what
-// is on its way into the file does not (.95).
+// Claim: the plan's memory is an upper bound, and at most 1.3 times what is taken, for small and large pictures, all
+// layers, area lights, a plate, media that vary inside, and cells that light bounces to. Fails if: empty pixels count (1.7
+// at 2048 x 2048), what is on its way into the file does not (.95), or a cell's own medium does not (.94).
 TEST(CliRender, PlansTheMemoryItTakes) {
   const std::string scenes = std::string(OPALINE_SCENES_DIR) + "/";
   const std::vector<std::vector<std::string>> jobs{
@@ -330,8 +330,8 @@ TEST(CliRender, PlansTheMemoryItTakes) {
   }
 }
 
-// Claim: so it is in the light of a picture, small and of 2048 x 1024 pixels. Fails if: the library that reads it is left
-// out (.54 of what is taken), or the picture (.94).
+// Claim: so it is in the light of a picture, small and of 2048 x 1024 pixels. Fails if: the library that reads it is
+// left out (.54 of what is taken), or the picture (.94).
 TEST(CliRender, PlansTheMemoryOfEnvironments) {
   const SceneFolder folder;
   for (const int height : {8, 1024}) {
