@@ -20,7 +20,7 @@ constexpr double kEvaluationShare = 0.6, kInterpolationShare = 0.4;
 // not come closer are left to points for the worst alone: with .2 skin at 2048 x 2048 takes 1.75 times as long.
 constexpr float kRiseError = 0.6f, kRest = 0.6f, kRestAtFinest = 0.05f;
 // The cosine between normals of two vertices, between which slopes tell nothing. With them trusted there and on
-// patches of any length the worst p99 of five foreign meshes of 500 to 32,000 triangles was 2.2 % in even light
+// patches of any length the worst p99 of four foreign meshes of 500 to 32,000 triangles was 2.2 % in even light
 // at a tolerance of .5 %; it is .66 %, and .47 % without the ogre, whose face has wrinkles finer than its near field.
 constexpr float kBent = 0.95f;
 // In near-field radii, over which the far kernel varies: patches longer than kReach could hide what lies
