@@ -27,7 +27,7 @@ struct AssetScene {
   double center_irradiance = 0;  ///< that its lights bring to a surface there that faces them
   bool is_one_mesh = false;      ///< its shapes are parts of one body
   std::vector<std::string> translated, not_carried;
-  std::vector<std::string> missing_files;  ///< that it names: where, and what is done without
+  std::vector<std::string> missing_files;  ///< that it names, or that cannot be read, and where
 };
 
 /// What the material of a shape becomes.

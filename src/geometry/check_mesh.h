@@ -32,8 +32,8 @@ struct CheckMemory {
 };
 
 /// Welds vertices that are exactly equal (what is below 1e-12 of the largest along an axis counts as 0), drops and counts
-/// zero-area and duplicate triangles, winds what is left consistently and closed components outward, fills holes if asked, counts open and non-manifold edges,
-/// and completes the normals.
+/// zero-area and duplicate triangles, winds what is left consistently and closed components outward, fills holes if asked,
+/// counts open and non-manifold edges, and completes the normals.
 /// in    positions finite; normals of any length, zero or not finite where there
 /// is none
 /// out   at least one triangle, only vertices that a triangle uses. A vertex at which the source has

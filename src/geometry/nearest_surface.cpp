@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "geometry/embree_handles.h"
+#include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 
 namespace opaline {
@@ -46,14 +48,15 @@ NearestSurface::NearestSurface(const RayScene& rays, std::span<const std::uint32
   for (const std::uint32_t m : meshes) is_body_[m] = true;
 }
 
-std::optional<NearestSurface::Place> NearestSurface::at(const Vec3d& position, double within) const {
+NearestSurface::Place NearestSurface::at(const Vec3d& position) const {
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
   struct Search {
     const std::vector<RayScene::MeshView>& meshes;
     const std::vector<bool>& is_body;
     Vec3d position;
     double square;
     Place found{RTC_INVALID_GEOMETRY_ID, RTC_INVALID_GEOMETRY_ID, 0, 0, 0};
-  } search{rays_.meshes_, is_body_, position, within * within};
+  } search{rays_.meshes_, is_body_, position, kAnywhere};
   const auto visit = [](RTCPointQueryFunctionArguments* candidate) {
     constexpr double kWider = 1 + 1e-5;  // so that no triangle is passed over that is as near
     Search& to = *static_cast<Search*>(candidate->userPtr);
@@ -72,11 +75,11 @@ std::optional<NearestSurface::Place> NearestSurface::at(const Vec3d& position, d
   };
   const FlushDenormals mode;
   const Vec3f at(position);
-  RTCPointQuery query{at.x, at.y, at.z, 0, float(within)};
+  RTCPointQuery query{at.x, at.y, at.z, 0, float(kAnywhere)};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(rays_.handles_->scene, &query, &context, visit, &search);
-  if (search.found.mesh == RTC_INVALID_GEOMETRY_ID) return {};
+  require(search.found.mesh != RTC_INVALID_GEOMETRY_ID, "a point has a nearest one on the surface");
   return search.found;
 }
 

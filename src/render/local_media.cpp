@@ -109,10 +109,9 @@ MediaInside media_inside(const PrecomputeInput& input, const Body& body,
   return [media = std::make_shared<const LocalMedia>(input.scene, input.world, medium),
           surface = NearestSurface(input.rays, body.plan.meshes),
           convert = std::move(convert)](const Vec3d& position, double width) {
-    const std::optional<NearestSurface::Place> place = surface.at(position);
-    require(place.has_value(), "a point has a nearest one on the surface");
+    const NearestSurface::Place place = surface.at(position);
     const std::array<ReducedMedium, 3> reduced =
-        media->at(place->mesh, place->triangle, place->u, place->v, float(width));
+        media->at(place.mesh, place.triangle, place.u, place.v, float(width));
     return std::array<HomogeneousMedium, 3>{convert(reduced[0]), convert(reduced[1]), convert(reduced[2])};
   };
 }

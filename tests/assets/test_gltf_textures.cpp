@@ -176,6 +176,7 @@ TEST(GltfTextures, ThatCannotBeHadAreSaid) {
   const auto expect = [](const Asset& asset, const std::string& what) {
     const ImportedAsset result = imported(asset);
     EXPECT_TRUE(has(result.not_carried, "baseColorTexture: ") && has(result.not_carried, what)) << what;
+    EXPECT_TRUE(has(result.missing_files, "baseColorTexture: ") && has(result.missing_files, what)) << what;
     EXPECT_FALSE(scene_of(asset.glb(), "a.glb").shapes.at(0).reflectance_texture);
   };
   expect(textured_triangle(colored({{"index", 7}}), good), "textures[7] is not there");

@@ -21,7 +21,7 @@ std::string world_error(const ScratchFolder& folder, const std::string& text,
 }
 
 // Claim: a mesh that is missing, broken or too far out, and a built-in shape too far out, are named with
-// file, line and column of their source in the scene; a missing one with the nearest name in its folder; a
+// file, line and column of their source in the scene; a missing one with the nearest name in its folder, or with the script that fetches it; a
 // value from the command line with its --set. Source: world.h; lines and columns counted by hand. Fails if:
 // told_at is left out of update_world, or a place counts from the shape instead of its source.
 TEST(ShapePlaces, ErrorsNameLineAndColumnOfTheScene) {
@@ -41,6 +41,10 @@ TEST(ShapePlaces, ErrorsNameLineAndColumnOfTheScene) {
                 "below 1e18)");
   EXPECT_EQ(world_error(folder, "{\"shapes\": [{\"file\": \"a.obj\"}]}", {"shapes.0.file=b.obj"}),
             "--set shapes.0.file=b.obj: " + folder.file("b.obj") + ": no such mesh file");
+  put_bytes(folder.file("gallery"), "fetches them");
+  EXPECT_EQ(world_error(folder, R"({"shapes": [{"file": "assets/a.obj"}]})"),
+            scene + ":1:22: " + folder.file("assets/a.obj") + ": no such mesh file (" +
+                folder.file("gallery") + " fetches the assets of the scenes beside it)");
 }
 
 // Claim: where a record is written is no part of it: two texts of one scene are equal, and edits that move

@@ -11,7 +11,7 @@ struct ImportedAsset {
   std::string text;                        ///< a scene file, see scenes/README.md
   std::vector<std::string> translated;     ///< what became of its values, a line each
   std::vector<std::string> not_carried;    ///< what the scene lacks of the asset, a line each
-  std::vector<std::string> missing_files;  ///< that it names: where, and what is done without; a line each
+  std::vector<std::string> missing_files;  ///< that it names, or that cannot be read, and where; a line each
   std::string summary;                     ///< one line
 };
 

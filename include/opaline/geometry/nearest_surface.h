@@ -3,8 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,10 +21,8 @@ class NearestSurface {
     double distance;  ///< world units
   };
   /// Of triangles that are equally near, the one with the lowest numbers.
-  /// in    position: world space; within: no place farther away is found
-  /// out   none: no triangle is within that distance
-  std::optional<Place> at(const Vec3d& position,
-                          double within = std::numeric_limits<double>::infinity()) const;
+  /// in    position: world space, finite; the meshes have a triangle
+  Place at(const Vec3d& position) const;
 
  private:
   const RayScene& rays_;

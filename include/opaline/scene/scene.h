@@ -329,8 +329,8 @@ struct Settings {
 struct Scene {
   std::string file;         ///< for messages
   std::string translation;  ///< of an asset: what its import made of it, in a line; empty: a scene file
-  std::vector<std::string>
-      missing_files;       ///< that an asset names: where, and what is done without; a line each
+  /// That an asset names and that are not there or cannot be read, and where it does; a line each.
+  std::vector<std::string> missing_files;
   double mm_per_unit = 1;  ///< of the file, for what is written in its units; nothing here is
   std::vector<Medium> media;
   std::vector<Shape> shapes;
