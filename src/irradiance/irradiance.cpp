@@ -156,8 +156,12 @@ std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std:
   const Halves halves(batch.samples());
   std::vector<std::array<double, 2>> sums;  // over the halves of a point's rays, light by light
   batch.reserve(std::min(batch_size, n));
-  for (std::size_t begin = 0; begin < n; begin += batch_size) {
-    const std::size_t count = std::min(n - begin, batch_size);
+  for (std::size_t begin = 0, count = 0; begin < n; begin += count) {
+    count = std::min(n - begin, batch_size);
+    const auto is_same_pixel = [&](std::size_t i) {
+      return part_of(input.keys[i]).shift == part_of(input.keys[i - 1]).shift;
+    };
+    while (begin + count < n && is_same_pixel(begin + count)) ++count;
     for (std::size_t i = begin; i < begin + count; ++i) add_point(input, i, batch);
     if (batch.samples() < 2) {
       batch.trace_lights(

@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "lights/environment_sample.h"
 #include "opaline/core/morton.h"
 #include "opaline/core/random.h"
 #include "opaline/geometry/ray_scene.h"
@@ -43,6 +45,7 @@ class ShadowBatch {
         samples_(is_delta(lights[0]) ? 1 : samples),
         seed_(seed),
         many_(std::get_if<ManyLights>(&lights[0].source)),
+        room_(std::get_if<EnvironmentLight>(&lights[0].source)),
         mean_transmitted_(eta > 0 ? fresnel_transmittance(kMeanCosine, float(eta)) : 1) {}
   ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
       : ShadowBatch(rays, std::span(&light, 1), eta, samples, seed) {}
@@ -68,6 +71,8 @@ class ShadowBatch {
     if (!is_delta(lights_[0]))
       shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
     if (many_ != nullptr) return add_drawn(point, index, shift, first, lobe);
+    if (room_ != nullptr && lobe != nullptr) return add_mirrored(point, index, shift, first, *lobe);
+    if (room_ != nullptr && !keeps_directions_) return add_of_room(point, index, shift, first);
     for (int s = 0; s < samples_; ++s) {
       const std::array<double, 2> square = r2_point(first + std::uint64_t(s), shift);
       std::array<float, 3> weights{};
@@ -97,10 +102,14 @@ class ShadowBatch {
         continue;
       }
       controls_[sample].lit = lit;
-      if (s + 1 == samples) use_controlled(point, use);
+      if (many_ != nullptr && s + 1 == samples) use_controlled(point, use);
     }
+    for (std::size_t p = 0; p < pools_.size(); ++p)
+      use_pool(pools_[p], p + 1 < pools_.size() ? pools_[p + 1] : means_.size(), use);
     carried_.clear();
     controls_.clear();
+    means_.clear();
+    pools_.clear();
     shadow_.clear();
     directions_.clear();
   }
@@ -117,9 +126,10 @@ class ShadowBatch {
   }
 
  private:
-  static constexpr std::size_t kSorted = 256;     // rays that Embree takes at once
-  static constexpr float kMeanCosine = 2.0f / 3;  // of even light
-  static constexpr float kRounding = 1e-4f;       // of a sum of a few floats, less one of them
+  static constexpr std::size_t kSorted = 256;       // rays that Embree takes at once
+  static constexpr float kMeanCosine = 2.0f / 3;    // of even light
+  static constexpr std::size_t kFewestOfRoom = 32;  // rays: a ratio of sums over fewer is biased
+  static constexpr float kRounding = 1e-4f;         // of a sum of a few floats, less one of them
 
   void carry(const SurfacePoint& point, const LightSample& sample, const std::array<float, 3>& weights) {
     const float cosine = dot(point.normal, sample.direction);
@@ -166,7 +176,58 @@ class ShadowBatch {
   }
 
   std::size_t channel(std::size_t light) const {
-    return std::get<ManyLights>(lights_[light].source).channel.value_or(0);
+    return std::visit(
+        [](const auto& kind) -> std::size_t {
+          if constexpr (requires { kind.channel; }) return kind.channel.value_or(0);
+          return 0;
+        },
+        lights_[light].source);
+  }
+
+  // Of a few directions one is traced, by how much of it the lobe mirrors, and stands for all.
+  void add_mirrored(const SurfacePoint& point, std::uint64_t index, const std::array<double, 2>& shift,
+                    std::uint64_t first, const Lobe& lobe) {
+    constexpr float kEven = .1f;  // of the choice: the lobe of a grazing view is another
+    constexpr std::size_t draws = kLobeDraws;
+    std::array<EnvironmentSample, draws> drawn;
+    std::array<float, draws> chances{};
+    for (int s = 0; s < samples_; ++s) {
+      const std::uint64_t number = first + std::uint64_t(s);
+      float sum = 0;
+      for (std::size_t d = 0; d < draws; ++d) {
+        drawn[d] = sample_environment(*room_, point.normal, r2_point(number * draws + d, shift),
+                                      samples_ * kLobeDraws);
+        const RgbF& w = drawn[d].weights;
+        const float cosine = std::max(0.0f, dot(point.normal, drawn[d].direction));
+        chances[d] = (w.x + w.y + w.z) * cosine * mirrored(lobe, dot(lobe.mirrored, drawn[d].direction));
+        sum += chances[d];
+      }
+      const float even = kEven / float(draws);
+      for (float& chance : chances) chance = sum > 0 ? (1 - kEven) * chance / sum + even : 1 / float(draws);
+      float place = float(unit_double(hash_bits(seed_ + index, number)));
+      std::size_t taken = 0;
+      while (taken + 1 < draws && place >= chances[taken]) place -= chances[taken++];
+      std::array<float, 3> weights{};
+      for (std::size_t l = 0; l < lights_.size(); ++l)
+        weights[l] = drawn[taken].weights[channel(l)] / chances[taken];
+      carry(point, {drawn[taken].direction, std::numeric_limits<float>::infinity(), weights[0]}, weights);
+    }
+  }
+
+  // Points that follow each other and share a sequence are a pixel's: a pool.
+  void add_of_room(const SurfacePoint& point, std::uint64_t index, const std::array<double, 2>& shift,
+                   std::uint64_t first) {
+    if (pools_.empty() || index != pooled_) pools_.push_back(means_.size());
+    pooled_ = index;
+    means_.push_back(unshadowed(*room_, point.normal));
+    for (int s = 0; s < samples_; ++s) {
+      const EnvironmentSample drawn =
+          sample_environment(*room_, point.normal, r2_point(first + std::uint64_t(s), shift), samples_);
+      std::array<float, 3> weights{};
+      for (std::size_t l = 0; l < lights_.size(); ++l) weights[l] = drawn.weights[channel(l)];
+      carry(point, {drawn.direction, std::numeric_limits<float>::infinity(), weights[0]}, weights);
+      controls_.push_back({drawn.unshadowed, {}, 0, false});
+    }
   }
 
   void control(const LightTree::Drawn& draw) {
@@ -200,6 +261,34 @@ class ShadowBatch {
     }
   }
 
+  // What a room brings where nothing is in the way is known. The rays of a pool tell, channel by channel, the part of it
+  // that reaches its points: what they bring over what they would. A point's own rays count as far as they differ.
+  template <class Use>
+  void use_pool(std::size_t begin, std::size_t end, const Use& use) const {
+    const std::size_t samples = std::size_t(samples_), lights = lights_.size();
+    const bool is_known = (end - begin) * samples >= kFewestOfRoom;
+    for (std::size_t l = 0; l < lights; ++l) {
+      const std::size_t k = channel(l);
+      float lit = 0, carried = 0, all = 0, mean = 0;
+      for (std::size_t i = begin * samples; i < end * samples; ++i) {
+        carried += carried_[i * lights + l];
+        if (controls_[i].lit) lit += carried_[i * lights + l];
+        all += controls_[i].here[k];
+      }
+      for (std::size_t p = begin; p < end; ++p) mean += means_[p][k];
+      const bool is_controlled = is_known && all > 0;
+      const float scale = is_controlled ? mean / all : 1, part = is_controlled ? lit / all : 0,
+                  free = is_controlled ? carried / all : 0;
+      for (std::size_t p = begin; p < end; ++p)
+        for (std::size_t s = 0; s < samples; ++s) {
+          const std::size_t i = p * samples + s;
+          const float c = carried_[i * lights + l] * scale, here = controls_[i].here[k] * scale,
+                      known = means_[p][k] / float(samples) - here;
+          use(l, p, int(s), (controls_[i].lit ? c : 0) + part * known, c + free * known);
+        }
+    }
+  }
+
   // Points that follow each other need not lie together, and rays that do are traced in half the time.
   void trace_sorted() {
     constexpr float kCells = 1023;
@@ -226,8 +315,9 @@ class ShadowBatch {
   float eta_;
   int samples_;
   std::uint64_t seed_;
-  const ManyLights* many_;  // null: a light that is not drawn
-  float mean_transmitted_;  // about as much as the boundary lets in
+  const ManyLights* many_;        // null: a light that is not drawn
+  const EnvironmentLight* room_;  // null: another light
+  float mean_transmitted_;        // about as much as the boundary lets in
   std::vector<LightTree::Drawn> drawn_;
   bool scattered_ = false, keeps_directions_ = false;
   std::vector<float> carried_;
@@ -238,7 +328,10 @@ class ShadowBatch {
     float expected;
     bool lit;
   };
-  std::vector<Control> controls_;  // empty: none
+  std::vector<Control> controls_;   // empty: none
+  std::vector<RgbF> means_;         // of points that a room lights
+  std::vector<std::size_t> pools_;  // the first point of each
+  std::uint64_t pooled_ = 0;        // the last point's sequence
   std::vector<Vec3f> directions_;
   std::vector<Ray> shadow_, sorted_;
   std::vector<std::uint64_t> order_;

@@ -2,6 +2,7 @@
 // A picture that shines from all around.
 #include <limits>
 
+#include "lights/environment_sample.h"
 #include "lights/light_of.h"
 #include "opaline/core/error.h"
 #include "opaline/lights/environment_picture.h"
@@ -46,6 +47,20 @@ float channel_of(const EnvironmentLight& light, const RgbF& colour) {
 }
 
 }  // namespace
+
+EnvironmentSample sample_environment(const EnvironmentLight& light, const Vec3f& normal,
+                                     std::array<double, 2> unit_square, int samples) {
+  const EnvironmentPicture::Sample drawn =
+      light.picture->sample(unit_square, turned(Vec3d(normal), -light.rotation), light.rotation);
+  const Vec3f direction(drawn.direction);
+  const RgbF weights = drawn.weight * (1 / float(samples));
+  const float cosine = drawn.assumed_cosine > 0 ? drawn.assumed_cosine : dot(normal, direction);
+  return {direction, weights, weights * cosine};
+}
+
+RgbF unshadowed(const EnvironmentLight& light, const Vec3f& normal) {
+  return light.picture->unshadowed(turned(Vec3d(normal), -light.rotation));
+}
 
 template <>
 std::vector<KeyInfo> LightReader<EnvironmentLight>::rows() {
@@ -106,10 +121,9 @@ template <>
 LightSample LightOf<EnvironmentLight>::sample_channels(const EnvironmentLight& light, const Vec3f&,
                                                        const Vec3f& normal, std::array<double, 2> unit_square,
                                                        int samples, RgbF& weights) {
-  const EnvironmentPicture::Sample drawn =
-      light.picture->sample(unit_square, turned(Vec3d(normal), -light.rotation), light.rotation);
-  weights = drawn.weight * (1 / float(samples));
-  return {Vec3f(drawn.direction), std::numeric_limits<float>::infinity(), channel_of(light, weights)};
+  const EnvironmentSample drawn = sample_environment(light, normal, unit_square, samples);
+  weights = drawn.weights;
+  return {drawn.direction, std::numeric_limits<float>::infinity(), channel_of(light, weights)};
 }
 
 template <>

@@ -209,6 +209,33 @@ void EnvironmentPicture::make_blocks() {
     }
 }
 
+// In closed form, for the draws of a cell are uniform over its directions.
+std::vector<EnvironmentPicture::BlockIntegral> EnvironmentPicture::block_integrals() const {
+  const auto longitude = [this](std::size_t column) {
+    return (.5 - double(std::min(column * step_, width_)) / double(width_)) * 2 * kPi;
+  };
+  const auto squared_sine = [this](std::size_t row) {  // its integral over the angle from +y
+    const double cosine = row_cosines_[row];
+    return (std::acos(cosine) - cosine * std::sqrt(std::max(0.0, 1 - cosine * cosine))) / 2;
+  };
+  std::vector<BlockIntegral> blocks(block_columns_ * block_rows_);
+  for (std::size_t r = 0; r < rows_; ++r) {
+    const double top = row_cosines_[r], bottom = row_cosines_[r + 1];
+    const double sines = squared_sine(r + 1) - squared_sine(r);
+    for (std::size_t c = 0; c < columns_; ++c) {
+      const double right = longitude(c), left = longitude(c + 1);
+      const Vec3d direction{(std::cos(left) - std::cos(right)) * sines,
+                            (right - left) * (top * top - bottom * bottom) / 2,
+                            (std::sin(right) - std::sin(left)) * sines};
+      const Rgb colour(means_[r * columns_ + c]);
+      BlockIntegral& block = blocks[r / block_ * block_columns_ + c / block_];
+      block.radiance += colour * ((right - left) * (top - bottom));
+      for (std::size_t k = 0; k < 3; ++k) block.vectors[k] += direction * colour[k];
+    }
+  }
+  return blocks;
+}
+
 void EnvironmentPicture::make_cosine_tables() {
   const double half_block = std::hypot(kPi / double(block_rows_), 2 * kPi / double(block_columns_)) / 2;
   const double lowest = -std::sin(std::min(kPi / 2, kBetweenNormals + half_block));
@@ -219,6 +246,9 @@ void EnvironmentPicture::make_cosine_tables() {
           {(double(c) + .5) * double(block_ * step_), (double(r) + .5) * double(block_ * step_)}));
   block_row_ends_.resize(kNormals * kNormals * block_rows_);
   block_column_ends_.resize(kNormals * kNormals * middles.size());
+  assumed_cosines_.resize(kNormals * kNormals * middles.size());
+  unshadowed_.resize(kNormals * kNormals);
+  const std::vector<BlockIntegral> integrals = block_integrals();
   for (std::size_t n = 0; n < kNormals * kNormals; ++n) {
     const auto side = [](std::size_t i) { return 2 * double(i) / (kNormals - 1) - 1; };
     const Vec3d normal = unfolded_normal(side(n % kNormals), side(n / kNormals));
@@ -230,7 +260,14 @@ void EnvironmentPicture::make_cosine_tables() {
       for (std::size_t c = 0; c < block_columns_; ++c) {
         const std::size_t b = r * block_columns_ + c;
         const double cosine = dot(normal, middles[b]);
-        column_ends[c] = float(row += cosine > lowest ? block_flux_[b] * std::max(cosine, kLeastCosine) : 0);
+        const double assumed = cosine > lowest ? std::max(cosine, kLeastCosine) : 0;
+        column_ends[c] = float(row += block_flux_[b] * assumed);
+        if (cosine > -lowest) {
+          for (std::size_t k = 0; k < 3; ++k) unshadowed_[n].above[k] += integrals[b].vectors[k];
+          continue;
+        }
+        assumed_cosines_[n * middles.size() + b] = float(assumed);
+        unshadowed_[n].others += integrals[b].radiance * assumed;
       }
       normalize(column_ends, block_columns_, row);
       row_ends[r] = float(whole += row);
@@ -252,9 +289,11 @@ std::array<double, 2> EnvironmentPicture::place_of(const Vec3d& direction) const
 
 std::size_t EnvironmentPicture::memory() const {
   const std::size_t floats = 4 * pixels_.size() + importance_.size() + cell_rows_.size() +
-                             cell_columns_.size() + block_row_ends_.size() + block_column_ends_.size();
+                             cell_columns_.size() + block_row_ends_.size() + block_column_ends_.size() +
+                             assumed_cosines_.size();
   return floats * sizeof(float) + (pixels_.size() + means_.size()) * sizeof(RgbF) +
-         (row_cosines_.size() + block_flux_.size()) * sizeof(double);
+         (row_cosines_.size() + block_flux_.size()) * sizeof(double) +
+         unshadowed_.size() * sizeof(Unshadowed) + block_flux_.size() * sizeof(BlockIntegral);
 }
 
 RgbF EnvironmentPicture::radiance(const Vec3d& direction) const {
@@ -297,13 +336,19 @@ EnvironmentPicture::Sample EnvironmentPicture::sample(std::array<double, 2> unit
       first + draw(&cell_columns_[r * columns_ + first], std::min(block_, columns_ - first), u);
   const RgbF mean = means_[r * columns_ + c];
   const double density = block_share(n, block_row, block_column) * double(importance_[r * columns_ + c]);
-  if (!(density > 0)) return {{0, 1, 0}, {}};
+  if (!(density > 0)) return {{0, 1, 0}, {}, 0};
   const double cosine = row_cosines_[r] + (row_cosines_[r + 1] - row_cosines_[r]) * v,
                sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
   const double left = double(c * step_), right = std::min(double(width_), left + double(step_));
   const double longitude = (.5 - (left + (right - left) * u) / double(width_)) * 2 * kPi + turn * kPi / 180;
   return {{sine * std::sin(longitude), cosine, sine * std::cos(longitude)},
-          mean * float(block_flux_[block_row * block_columns_ + block_column] / density)};
+          mean * float(block_flux_[block_row * block_columns_ + block_column] / density),
+          assumed_cosines_[(n * block_rows_ + block_row) * block_columns_ + block_column]};
+}
+
+RgbF EnvironmentPicture::unshadowed(const Vec3d& normal) const {
+  const Unshadowed& of = unshadowed_[table_of(normal)];
+  return RgbF(of.others + Rgb{dot(normal, of.above[0]), dot(normal, of.above[1]), dot(normal, of.above[2])});
 }
 
 float EnvironmentPicture::density(const Vec3d& direction, const Vec3d& normal) const {

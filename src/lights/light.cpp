@@ -49,6 +49,16 @@ int shadow_rays(const Light& light, int light_samples) {
   return many == nullptr || many->tree->has_area() ? light_samples : (light_samples + kFewer - 1) / kFewer;
 }
 
+int lobe_draws(const Light& light) {
+  return std::holds_alternative<EnvironmentLight>(light.source) ? kLobeDraws : 1;
+}
+
+float mirrored(const Lobe& lobe, float cosine) {
+  const float half = .5f + .5f * std::min(1.0f, cosine), square = lobe.alpha * lobe.alpha,
+              facets = square / (1 - half * (1 - square));
+  return facets * facets;
+}
+
 bool is_visible(const Light& light) {
   const auto* many = std::get_if<ManyLights>(&light.source);
   return many != nullptr ? many->tree->has_area() : !is_delta(light);

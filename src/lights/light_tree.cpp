@@ -64,13 +64,6 @@ double facing(const LightTree::Node& node, float cosine, float ball) {
   return node.fades_by_square ? share * share : share;
 }
 
-/// Of a lobe's light how much comes from an angle off its middle: as many facets as face half of it, over the most.
-float mirrored(const Lobe& lobe, float cosine) {
-  const float half = .5f + .5f * std::min(1.0f, cosine), square = lobe.alpha * lobe.alpha,
-              facets = square / (1 - half * (1 - square));
-  return facets * facets;
-}
-
 /// Whether a node's lights are alike at a place.
 bool is_narrow(const LightTree::Node& node, const LightTree::Place& at) {
   const Vec3f to = node.center - at.point;

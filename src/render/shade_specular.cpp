@@ -192,7 +192,8 @@ struct Shader::GlossyHits {
   }
   float of_light(std::size_t i, const Light& light, const Vec3f& towards) const {
     const SurfacePoint& point = hits.points[i];
-    return float(to_lights) * sampling_density(light, point.position, point.normal, towards);
+    return float(to_lights * lobe_draws(light)) *
+           sampling_density(light, point.position, point.normal, towards);
   }
 
   struct LobeRay {

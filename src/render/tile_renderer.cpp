@@ -7,6 +7,27 @@ namespace opaline {
 namespace {
 
 constexpr int kTile = 16;
+constexpr std::uint64_t kBatchRays = std::uint64_t(kTile) * kTile;
+
+// Rays of a batch: all samples of a square of pixels, or where they are too many some of one pixel's. So they lie as close
+// together as can be, and what is known of a pixel's rays is known at once.
+struct Batch {
+  Rectangle pixels;
+  std::uint64_t first, end;  // samples
+};
+
+std::vector<Batch> batches_of(const Rectangle& tile, std::uint64_t samples) {
+  int side = kTile;
+  while (side > 1 && std::uint64_t(side * side) * samples > kBatchRays) side /= 2;
+  std::vector<Batch> batches;
+  for (int y = tile.y0; y < tile.y1; y += side)
+    for (int x = tile.x0; x < tile.x1; x += side)
+      for (std::uint64_t s = 0; s < samples; s += kBatchRays)
+        batches.push_back({{x, y, std::min(x + side, tile.x1), std::min(y + side, tile.y1)},
+                           s,
+                           std::min(s + kBatchRays, samples)});
+  return batches;
+}
 
 bool is_hit(const TracedRay& traced) {
   return traced.hit.mesh != Hit::kMiss;
@@ -77,32 +98,38 @@ TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass,
   const std::size_t pixels = std::size_t(tile.x1 - tile.x0) * std::size_t(tile.y1 - tile.y0);
   const auto samples = std::uint64_t(film.samples_per_pixel), width = std::uint64_t(film.resolution[0]);
   const std::uint64_t first_key = pass.index * width * std::uint64_t(film.resolution[1]) * samples;
+  const std::vector<Batch> batches = batches_of(tile, samples);
+  if (held != nullptr) held->resize(batches.size());
   std::vector<PixelSample> seen;
-  std::vector<TracedRay> rays(pixels);
-  std::vector<std::uint64_t> keys(pixels);
-  if (held != nullptr) held->resize(samples);
+  std::vector<TracedRay> rays;
+  std::vector<std::uint64_t> keys;
+  std::vector<std::size_t> pixel_of_ray;
   Tile result;
-  for (std::uint64_t s = 0; s < samples; ++s) {
-    HeldView::Batch* const batch = held != nullptr ? &(*held)[s] : nullptr;
-    advance(input_.monitor, 1);
-    if (batch != nullptr && batch->is_traced && batch->hits.empty() && !shader_.has_visible_lights())
-      continue;
-    std::size_t i = 0;
-    for (int y = tile.y0; y < tile.y1; ++y)
-      for (int x = tile.x0; x < tile.x1; ++x, ++i) {
-        rays[i] = {camera_.ray(x, y, int(s)), {}};
-        keys[i] = first_key + (std::uint64_t(y) * width + std::uint64_t(x)) * samples + s;
+  for (std::size_t b = 0; b < batches.size(); ++b) {
+    HeldView::Batch* const kept = held != nullptr ? &(*held)[b] : nullptr;
+    advance(input_.monitor, (b + 1) * samples / batches.size() - b * samples / batches.size());
+    if (kept != nullptr && kept->is_traced && kept->hits.empty() && !shader_.has_visible_lights()) continue;
+    rays.clear();
+    keys.clear();
+    pixel_of_ray.clear();
+    for_each_pixel(tile, batches[b].pixels, [&](int x, int y, std::size_t pixel) {
+      const std::uint64_t pixel_key = first_key + (std::uint64_t(y) * width + std::uint64_t(x)) * samples;
+      for (std::uint64_t s = batches[b].first; s < batches[b].end; ++s) {
+        rays.push_back({camera_.ray(x, y, int(s)), {}});
+        keys.push_back(pixel_key + s);
+        pixel_of_ray.push_back(pixel);
       }
-    trace(rays, batch);
+    });
+    trace(rays, kept);
     if (!shader_.has_visible_lights() && std::ranges::none_of(rays, is_hit)) continue;
-    if (result.sums.empty()) {
-      result.sums.resize(pixels);
-      result.queries += shader_.shade(rays, keys, result.sums, pass, batch);
-    } else {
-      seen.assign(pixels, PixelSample{});
-      result.queries += shader_.shade(rays, keys, seen, pass, batch);
-      for (i = 0; i < pixels; ++i) add_sample(result.sums[i], seen[i]);
+    result.sums.resize(pixels);
+    if (samples == 1) {
+      result.queries += shader_.shade(rays, keys, result.sums, pass, kept);
+      continue;
     }
+    seen.assign(rays.size(), PixelSample{});
+    result.queries += shader_.shade(rays, keys, seen, pass, kept);
+    for (std::size_t i = 0; i < rays.size(); ++i) add_sample(result.sums[pixel_of_ray[i]], seen[i]);
   }
   return result;
 }

@@ -15,7 +15,11 @@ Outcome render_of(const SceneFolder& folder, const std::string& mesh, const std:
   put_bytes(folder.scene, R"({"shapes": [{"file": ")" + mesh + R"("}], "film": {"resolution": [8, 8]}})");
   std::vector<std::string> words{command, folder.scene};
   if (command == "render") words.insert(words.end(), {"-o", folder.file("a.exr")});
-  return Child(words, ".", {.file_size = {}, .address_space = rlim_t(2) << 30}).wait(20);
+  Limits limits;
+#ifndef __SANITIZE_ADDRESS__  // which needs more address space
+  limits.address_space = rlim_t(2) << 30;
+#endif
+  return Child(words, ".", limits).wait(20);
 }
 
 // Claim: `render` looks at what a mesh path leads to before it reads it, as `info` does: a folder, a pipe

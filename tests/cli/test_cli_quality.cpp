@@ -98,7 +98,7 @@ std::string closing_line(const std::string& out, const std::string& label) {
 TEST(CliQuality, BudgetStatesWhatWasSpentAndHowToRepeatIt) {
   const QualityFolder folder;
   const Outcome json = folder.render(
-      {"--time-budget", "1500ms", "--verify", "--log", "json", "--set", "settings.max_samples=300"});
+      {"--time-budget", "3s", "--verify", "--log", "json", "--set", "settings.max_samples=300"});
   ASSERT_EQ(json.exit_code, 0) << json.err;
   const nlohmann::json done = event_of(events_of(json.out), "done"), budget = done["budget"];
   double verifying = 0;
@@ -106,10 +106,10 @@ TEST(CliQuality, BudgetStatesWhatWasSpentAndHowToRepeatIt) {
     if (stage["stage"] == "verifying") verifying = stage["cpu_seconds"];
   EXPECT_GT(verifying, 0);
   EXPECT_EQ(done["stages"][0]["stage"], "start");
-  EXPECT_EQ(budget["seconds"], 1.5);
+  EXPECT_EQ(budget["seconds"], 3);
   EXPECT_NEAR(double(budget["spent"]), double(done["cpu_seconds"]) - verifying, 1e-6);
-  EXPECT_GT(done["errors"]["predicted"], 0);
-  EXPECT_GT(done["errors"]["measured"], 0);
+  EXPECT_GT(done["errors"].value("predicted", 0.0), 0);
+  EXPECT_GT(done["errors"].value("measured", 0.0), 0);
 
   const std::string command = metadata_of(folder.file("a.exr"), "opaline:command");
   ASSERT_TRUE(contains(command, "--set settings.samples=")) << command;

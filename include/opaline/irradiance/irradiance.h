@@ -68,7 +68,8 @@ struct PointIrradianceInput {
 
 /// What reaches points from one light per unit emission.
 struct PointTransfers {
-  std::vector<float> weights;     ///< one a point: E per unit emission, >= 0
+  /// One a point: E per unit emission; >= 0, or of a room's light the mean over the points of a pixel is.
+  std::vector<float> weights;
   std::vector<float> deviations;  ///< standard errors of the weights; empty: not asked for
 };
 

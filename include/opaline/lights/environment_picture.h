@@ -33,10 +33,14 @@ class EnvironmentPicture {
   struct Sample {
     Vec3d direction;
     RgbF weight;
+    float assumed_cosine = 0;  ///< in the means of `unshadowed`, in place of its own; 0: its own
   };
   /// in    normal: unit, of the surface, where some directions below it are drawn, too
   ///       turn: about +y, degrees, from the picture to where the direction is wanted
   Sample sample(std::array<double, 2> unit_square, const Vec3d& normal, double turn = 0) const;
+  /// The mean over the unit square of a sample's weight times its assumed cosine: the irradiance of a surface that
+  /// nothing shadows, but for what comes from near its horizon.
+  RgbF unshadowed(const Vec3d& normal) const;
   /// Of sample(), 1/sr.
   float density(const Vec3d& direction, const Vec3d& normal) const;
 
@@ -54,6 +58,12 @@ class EnvironmentPicture {
   void make_importance();
   void make_blocks();
   void make_cosine_tables();
+  /// Over a block's directions: of the radiance, and of the radiance times the direction in each channel.
+  struct BlockIntegral {
+    Rgb radiance;
+    std::array<Vec3d, 3> vectors{};
+  };
+  std::vector<BlockIntegral> block_integrals() const;
   double flux_of(std::size_t row, std::size_t column) const;
   double block_share(std::size_t normal, std::size_t block_row, std::size_t block_column) const;
 
@@ -72,6 +82,14 @@ class EnvironmentPicture {
   std::vector<float> cell_rows_;    ///< cumulative shares of a block's rows, one block column after the other
   std::vector<float> cell_columns_;  ///< cumulative shares of a row's cells within each block
   std::vector<float> block_row_ends_, block_column_ends_;  ///< cumulative shares of blocks, for each normal
+  std::vector<float> assumed_cosines_;  ///< of blocks, for each normal; 0: the sample's own
+  /// Of a normal: of blocks that are wholly above it the integral of radiance times direction, channel by channel, and
+  /// of others radiance times the assumed cosine.
+  struct Unshadowed {
+    std::array<Vec3d, 3> above{};
+    Rgb others;
+  };
+  std::vector<Unshadowed> unshadowed_;
 };
 
 }  // namespace opaline

@@ -43,6 +43,13 @@ struct Lobe {
   float alpha;     ///< > 0
 };
 
+/// Of a lobe's light how much comes from an angle off its middle: as many facets as face half of it, over the most.
+float mirrored(const Lobe& lobe, float cosine);
+
+/// Directions that are drawn for each shadow ray that is to show what a lobe mirrors: of a room, whose lamps are many and
+/// small, some, of which the ray takes one.
+int lobe_draws(const Light& light);
+
 /// True for the channels of one picture, or of one tree of lights: their samples have the same directions.
 bool share_rays(const Light& a, const Light& b);
 

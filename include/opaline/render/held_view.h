@@ -41,7 +41,7 @@ struct HeldView {
     std::unique_ptr<Coat> coat;            ///< null: what it mirrors is to be found
     std::unique_ptr<Gathering> gathering;  ///< of hits that gather for themselves (BouncedLight)
   };
-  /// One camera ray of each pixel of a tile.
+  /// Camera rays that are shaded together.
   struct Batch {
     bool is_traced = false;
     std::vector<CameraHit> hits;       ///< empty: all missed
@@ -102,7 +102,7 @@ struct HeldView {
     std::vector<std::uint32_t> points;  ///< which of their batch gather
     std::vector<Gathered> parts;        ///< of a few points each, in their order
   };
-  std::vector<std::vector<Batch>> tiles;  ///< one batch a sample of the pixels
+  std::vector<std::vector<Batch>> tiles;  ///< in the order of their batches
   bool has_room = false;                  ///< for the points
   std::unique_ptr<std::atomic<std::size_t>> coat_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 
