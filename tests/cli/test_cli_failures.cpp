@@ -135,6 +135,25 @@ TEST(CliFailures, InterruptKeepsTheOldFile) {
   }
 }
 
+// Claim: Ctrl-C while the error is measured ends the run soon, says that the picture is not written yet and how to have it
+// next time; the old one stays. Fails if: the measurement does not look at its monitor, or it reads as any other stop.
+TEST(CliFailures, InterruptWhileVerifying) {
+  const SceneFolder folder;
+  const std::string out = folder.file("a.exr");
+  put_bytes(out, "old");
+  Child child({"render", folder.scene, "-o", out, "--log", "json", "--verify", "--resolution", "16x16", "--set",
+               "settings.samples=60000"});
+  ASSERT_TRUE(child.prints(R"({"event":"progress","stage":"verifying")"));
+  child.send(SIGINT);
+  const Outcome outcome = child.wait(20);
+  EXPECT_EQ(outcome.exit_code, 130) << "signal " << outcome.signal;
+  const nlohmann::json error = event_of(events_of(outcome.out), "error");
+  EXPECT_EQ(error["kind"], "interrupted");
+  EXPECT_TRUE(contains(error["message"].get<std::string>(), "without --verify")) << error.dump();
+  EXPECT_EQ(bytes_of(out), "old");
+  EXPECT_EQ(folder.entries(), 2u);
+}
+
 // Claim: a second Ctrl-C kills at once, whatever the stage does: here one tile of 100 million kernels, in
 // which nobody looks at the monitor. Source: interrupt.h. On a loaded machine the first may be heard before
 // the tile begins, which ends in 130: three tries. Fails if: the handler stays after the first.
