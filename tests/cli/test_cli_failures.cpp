@@ -141,8 +141,8 @@ TEST(CliFailures, InterruptWhileVerifying) {
   const SceneFolder folder;
   const std::string out = folder.file("a.exr");
   put_bytes(out, "old");
-  Child child({"render", folder.scene, "-o", out, "--log", "json", "--verify", "--resolution", "16x16", "--set",
-               "settings.samples=60000"});
+  Child child({"render", folder.scene, "-o", out, "--log", "json", "--verify", "--resolution", "16x16",
+               "--set", "settings.samples=60000"});
   ASSERT_TRUE(child.prints(R"({"event":"progress","stage":"verifying")"));
   child.send(SIGINT);
   const Outcome outcome = child.wait(20);
