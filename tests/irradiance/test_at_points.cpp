@@ -2,7 +2,13 @@
 // Irradiance at points that are not samples.
 #include <gtest/gtest.h>
 
+#include <complex>
+#include <numbers>
+#include <set>
+
+#include "opaline/core/random.h"
 #include "opaline/irradiance/sample_key.h"
+#include "support/clouds.h"
 #include "support/lighting.h"
 
 namespace opaline {
@@ -100,10 +106,54 @@ TEST(IrradianceAtPoints, RaysOfAPixelShareASequence) {
   for (const std::uint64_t pixel : {0u, 1u, 5000u}) {
     mean = {};
     for (std::uint64_t s = 0; s < 16; ++s) mean += at(key_in_pixel(16 * pixel + s, 16), 4) * (1.0f / 16);
-    const RgbF whole = at(key_in_pixel(16 * pixel, 16), 64);
+    std::uint64_t first = 0;
+    while (part_of(key_in_pixel(16 * pixel + first, 16)).part != 0) ++first;
+    const RgbF whole = at(key_in_pixel(16 * pixel + first, 16), 64);
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(mean[c] / whole[c], 1, 1e-5);
     EXPECT_NE(whole, last);
     last = whole;
+  }
+}
+
+/// exp(2 pi i k v) of a place v in a square, for k of -2 to 2 along both sides.
+std::array<std::complex<double>, 25> waves(const std::array<double, 2>& place) {
+  std::array<std::complex<double>, 25> found;
+  for (int i = 0; i < 25; ++i)
+    found[std::size_t(i)] =
+        std::polar(1.0, 2 * std::numbers::pi * ((i % 5 - 2) * place[0] + (i / 5 - 2) * place[1]));
+  return found;
+}
+
+// Claim: where a camera ray goes through its pixel does not tell which way its light rays go: of pairs of waves over
+// both squares the mean over a pixel's rays has an rms over pixels of at most 1.2 times that of as many random
+// pairs, 1 / sqrt(rays); and a pixel's parts are all different. Source: independent draws. Fails if: parts are in the
+// order of the rays, both points of the R2 sequence (sqrt(rays): 256 light rays had the noise of 64).
+TEST(SampleKey, LightRaysDoNotHangOnTheirPlaceInThePixel) {
+  constexpr std::uint64_t kPixels = 500;
+  constexpr std::size_t kEven = 12;  // the wave that is 1
+  for (const std::uint64_t rays : {16u, 49u, 64u, 256u}) {
+    std::array<std::array<double, 25>, 25> squares{};
+    for (std::uint64_t pixel = 0; pixel < kPixels; ++pixel) {
+      std::array<std::array<std::complex<double>, 25>, 25> sums{};
+      for (std::uint64_t s = 0; s < rays; ++s) {
+        const auto place = waves(r2_point(s, {})),
+                   light = waves(r2_point(part_of(key_in_pixel(rays * pixel + s, rays)).part, {}));
+        for (std::size_t i = 0; i < 25; ++i)
+          for (std::size_t j = 0; j < 25; ++j) sums[i][j] += place[i] * light[j];
+      }
+      for (std::size_t i = 0; i < 25; ++i)
+        for (std::size_t j = 0; j < 25; ++j) squares[i][j] += std::norm(sums[i][j]);
+    }
+    double worst = 0;
+    for (std::size_t i = 0; i < 25; ++i)
+      for (std::size_t j = 0; j < 25; ++j)
+        if (i != kEven && j != kEven) worst = std::max(worst, squares[i][j] / double(kPixels * rays));
+    report(std::to_string(rays) + " rays, worst rms over that of random pairs", std::sqrt(worst));
+    EXPECT_LT(std::sqrt(worst), 1.2) << rays;
+    std::set<std::uint64_t> parts;
+    for (std::uint64_t s = 0; s < rays; ++s) parts.insert(part_of(key_in_pixel(rays * 7 + s, rays)).part);
+    EXPECT_EQ(parts.size(), rays);
+    EXPECT_EQ(*parts.rbegin(), rays - 1);
   }
 }
 
