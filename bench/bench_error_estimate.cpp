@@ -6,13 +6,15 @@
 // is taken out by their difference; pairs whose error that noise hides are counted apart. An estimate is of the
 // error that is to be expected: where the mean free path is as long as the body, the error of one picture is a
 // single number drawn from a distribution, within .4 and 1.6 of whose deviation only 58 % of draws lie. So the
-// error is the mean over five pictures of other seeds; the share for the one picture is printed beside it. Truths
-// are kept in FOLDER, beside the scene files: delete it when pictures of many samples have become others.
+// error is the mean over pictures of other seeds: at least five, and as many as tell that mean to 12 % (at most
+// 40); the share for the one picture is printed beside it. Truths are kept in FOLDER, beside the scene files:
+// delete it when pictures of many samples have become others.
 // usage: bench_error_estimate FOLDER [--quick] [--pairs FIRST-LAST] [--direct]
 //   --quick   every fifth pair;  --direct   measures each twentieth by Method::direct, too
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <exception>
 #include <filesystem>
@@ -34,14 +36,16 @@ namespace {
 
 using namespace opaline;
 
-constexpr std::size_t kPairs = 200, kQuickStep = 5, kDirectStep = 20, kDraws = 5;
+constexpr std::size_t kPairs = 200, kQuickStep = 5, kDirectStep = 20;
+constexpr std::size_t kFewestDraws = 5, kMostDraws = 40;
+constexpr double kUncertainty = .12;
 constexpr double kFewestTruth = 50000, kMostTruth = 250000, kTruthRays = 5e6;
 
 struct Row {
   std::size_t index = 0;
   RandomPair pair;
   std::size_t samples = 0;             // of the largest group
-  double estimated = 0, expected = 0;  // mean error: as the picture says; of pictures of kDraws seeds
+  double estimated = 0, expected = 0;  // mean error: as the picture says; of pictures of other seeds
   TrueError truth;                     // of the picture itself
   MeasuredError direct;                // points == 0: not asked for
 
@@ -74,6 +78,12 @@ Image truth_of(Scene scene, std::size_t samples, std::uint64_t seed, const std::
   return image;
 }
 
+/// Of the mean of these errors, relative: its standard error.
+double uncertainty(const std::vector<double>& errors) {
+  const auto [mean, variance] = boost::math::statistics::mean_and_sample_variance(errors);
+  return std::sqrt(variance / double(errors.size())) / mean;
+}
+
 Row measure(std::size_t index, const Options& options) {
   Row row{index, random_pair(index, OPALINE_SCENES_DIR), 0, 0, 0, {}, {}};
   const std::string name = fmt::format("{}/pair-{:03}", options.folder, index);
@@ -88,12 +98,13 @@ Row measure(std::size_t index, const Options& options) {
   const Image a = truth_of(scene, row.samples, 1, name + "-a.exr"),
               b = truth_of(scene, row.samples, 2, name + "-b.exr");
   row.truth = true_error(picture.image, a, b, picture.translucent);
-  row.expected = row.truth.mean / kDraws;
-  for (std::size_t draw = 1; draw < kDraws; ++draw) {
-    scene.settings.seed = hash_bits(std::uint64_t(index), 100 + draw);
+  std::vector<double> errors{row.truth.mean};
+  while (errors.size() < kFewestDraws || (errors.size() < kMostDraws && uncertainty(errors) > kUncertainty)) {
+    scene.settings.seed = hash_bits(std::uint64_t(index), 100 + errors.size());
     session.edit(scene);
-    row.expected += true_error(session.render().image, a, b, picture.translucent).mean / kDraws;
+    errors.push_back(true_error(session.render().image, a, b, picture.translucent).mean);
   }
+  row.expected = boost::math::statistics::mean(errors);
   if (options.direct && index % kDirectStep == 0)
     row.direct = measure_error(session, std::max(1e-3, row.truth.mean));
   return row;

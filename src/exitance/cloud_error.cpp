@@ -3,23 +3,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "exitance/near_samples.h"
 #include "exitance/point_sums.h"
 #include "opaline/core/parallel.h"
+#include "opaline/core/random.h"
 #include "opaline/exitance/refined_stake.h"
 #include "opaline/sampling/sample_surface.h"
 
 namespace opaline {
 namespace {
 
-constexpr std::size_t kRuns = 16, kRun = 4;  // of trial sums, at samples that follow each other in the tree
-constexpr std::size_t kRoughnessTrials = 128;
+constexpr std::size_t kRuns = 16,
+                      kRun = 4;  // of trial sums, beside samples that follow each other in the tree
+constexpr std::size_t kRoughnessTrials = 512;
 constexpr double kFineTolerance = 1.5e-3;
 // Samples so near each other, in spacings, are neighbours.
 constexpr float kNeighbours = 1.6f;
-// Normals of neighbours with a cosine below this belong to a crease, or to samples too few for the curvature.
+// A neighbour whose normal has a cosine below kCrease lies beyond a crease if those above have a mean of kFlat;
+// else the samples are too few for the curvature.
 constexpr float kCrease = 0.7f;
+constexpr double kFlat = 0.99;
+// Beside an edge of a shadow the irradiance of neighbours differs by kStep or more. Of a light without area it
+// is no error there, for each sample has the mean over its cell: kStepLeft of the difference counts. A
+// neighbour at a steeper sine than kStacked belongs to another sheet.
+constexpr float kStep = 0.5f, kStepLeft = 0.2f, kStacked = 0.3f;
+// Neighbours in a line tell no slope: their moments' determinant over the squared trace is less.
+constexpr float kDegenerate = 1e-3f;
 // Where creases are all over, errors are so much larger than neighbours show; in part where fewer than
 // kManyCreases of the samples are beside one. On smooth surfaces they are smaller, down to kLeast, but for
 // shadows, which few of the trials meet: kRough times the roughness at least, up to 1.
@@ -36,30 +47,59 @@ struct Roughness {
   double creased = 0, trials = 0;
 };
 
-/// Adds what a sample is off its neighbours' mean, weighted by their nearness.
-void add_roughness(const Octree& tree, std::uint32_t sample, float spacing, Roughness& sums) {
+/// What lies around a sample.
+struct Neighbours {
+  RgbF mean{}, low{}, high{};  // irradiance: weighted by nearness; with the sample's own
+  float weights = 0;
+  double cosines = 0, same_face = 0;  // sum over those of the sample's own face, and their number
+  bool other_face = false, stacked = false;
+
+  bool creased() const { return other_face && cosines >= kFlat * same_face; }
+  /// On a surface that has no other sheet near.
+  bool has_step(std::size_t c) const { return !creased() && !stacked && low[c] < kStep * high[c]; }
+};
+
+Neighbours neighbours_of(const Octree& tree, std::uint32_t sample, float spacing) {
   const TreeSample& own = tree.samples[sample];
   const Vec3f position{own.x, own.y, own.z};
   const float reach = kNeighbours * spacing;
-  RgbF mean{};
-  float weights = 0;
-  bool creased = false;
+  Neighbours found;
+  found.low = found.high = irradiance_of(own);
   for_each_near(tree, position, reach, [&](std::uint32_t s) {
     const TreeSample& other = tree.samples[s];
     const Vec3f apart = Vec3f{other.x, other.y, other.z} - position;
     const float r2 = dot(apart, apart), cosine = dot(tree.normals[s], tree.normals[sample]);
     if (s == sample || r2 >= reach * reach || cosine <= -kCrease) return;
-    creased = creased || cosine < kCrease;
+    if (cosine < kCrease)
+      found.other_face = true;
+    else
+      found.cosines += double(cosine), found.same_face += 1;
     if (cosine <= 0) return;
-    const float weight = 1 / (r2 + 0.1f * spacing * spacing);
-    mean += irradiance_of(other) * weight;
-    weights += weight;
+    const RgbF e = irradiance_of(other);
+    const float weight = 1 / (r2 + 0.1f * spacing * spacing), across = dot(apart, tree.normals[sample]);
+    found.stacked = found.stacked || across * across > kStacked * kStacked * r2;
+    found.low = component_min(found.low, e);
+    found.high = component_max(found.high, e);
+    found.mean += e * weight;
+    found.weights += weight;
   });
+  if (found.weights > 0) found.mean = found.mean / found.weights;
+  return found;
+}
+
+/// Adds what a sample is off its neighbours' mean.
+void add_roughness(const Octree& tree, std::uint32_t sample, float spacing,
+                   const std::array<float, 3>& from_points, Roughness& sums) {
+  const Neighbours near = neighbours_of(tree, sample, spacing);
   sums.trials += 1;
-  sums.creased += creased ? 1 : 0;
-  if (!(weights > 0)) return;
-  const RgbF e = irradiance_of(own), off = e - mean / weights;
-  sums.residual += off * off * own.area;
+  sums.creased += near.creased() ? 1 : 0;
+  if (!(near.weights > 0)) return;
+  const TreeSample& own = tree.samples[sample];
+  const RgbF e = irradiance_of(own), off = e - near.mean;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float left = near.has_step(c) ? 1 - from_points[c] * (1 - kStepLeft * kStepLeft) : 1;
+    sums.residual[c] += left * off[c] * off[c] * own.area;
+  }
   sums.square += e * e * own.area;
 }
 
@@ -68,15 +108,58 @@ struct Trials {
   std::vector<RgbF> irradiance;
 };
 
-Trials trials_at_samples(const Octree& tree) {
+/// From a sample to somewhere in the disc that stands for its cell, in the tangent plane's axes.
+struct Step {
+  Vec3f u, v;
+  float along_u, along_v;
+
+  Step(const Octree& tree, std::size_t sample) {
+    tangent_frame(tree.normals[sample], u, v);
+    const double angle = 2 * std::numbers::pi * unit_double(hash_bits(5000, sample)),
+                 r = std::sqrt(double(tree.samples[sample].area) * std::numbers::inv_pi *
+                               unit_double(hash_bits(5001, sample)));
+    along_u = float(r * std::cos(angle));
+    along_v = float(r * std::sin(angle));
+  }
+};
+
+/// What a step changes the irradiance by: the least squares' slope through a sample and those around it.
+RgbF change_of_irradiance(const Octree& tree, std::uint32_t sample, const Step& step, float spacing) {
+  const TreeSample& own = tree.samples[sample];
+  const Vec3f position{own.x, own.y, own.z};
+  const float reach = kNeighbours * spacing;
+  const RgbF e = irradiance_of(own);
+  float uu = 0, uv = 0, vv = 0;
+  RgbF u{}, v{};
+  for_each_near(tree, position, reach, [&](std::uint32_t s) {
+    const TreeSample& other = tree.samples[s];
+    const Vec3f apart = Vec3f{other.x, other.y, other.z} - position;
+    if (dot(apart, apart) >= reach * reach || dot(tree.normals[s], tree.normals[sample]) < kCrease) return;
+    const float x = dot(apart, step.u), y = dot(apart, step.v);
+    uu += x * x, uv += x * y, vv += y * y;
+    const RgbF off = irradiance_of(other) - e;
+    u += off * x;
+    v += off * y;
+  });
+  const float determinant = uu * vv - uv * uv;
+  if (!(determinant > kDegenerate * (uu + vv) * (uu + vv))) return {};
+  const RgbF slope_u = (u * vv - v * uv) / determinant, slope_v = (v * uu - u * uv) / determinant;
+  return slope_u * step.along_u + slope_v * step.along_v;
+}
+
+// Not at the samples: each stands in the middle of a hole between the others, where sums are low.
+Trials trials_beside_samples(const Octree& tree, float spacing) {
   Trials trials;
   const std::size_t n = tree.samples.size(), run = std::min(kRun, n);
   for (std::size_t r = 0; r < kRuns; ++r)
     for (std::size_t k = 0; k < run; ++k) {
       const std::size_t i = (2 * r + 1) * (n - run) / (2 * kRuns) + k;
       const TreeSample& s = tree.samples[i];
-      trials.queries.push_back({{s.x, s.y, s.z}, tree.normals[i]});
-      trials.irradiance.push_back(irradiance_of(s) * tree.flux_unit);
+      const Step step(tree, i);
+      trials.queries.push_back(
+          {Vec3f{s.x, s.y, s.z} + step.u * step.along_u + step.v * step.along_v, tree.normals[i]});
+      const RgbF e = irradiance_of(s) + change_of_irradiance(tree, std::uint32_t(i), step, spacing);
+      trials.irradiance.push_back(component_max(e, RgbF{}) * tree.flux_unit);
     }
   return trials;
 }
@@ -135,8 +218,9 @@ CloudError tell_cloud_error(const CloudErrorInput& input) {
   Roughness rough;
   const std::size_t tried = std::min(n, kRoughnessTrials);
   for (std::size_t k = 0; k < tried; ++k)
-    add_roughness(tree, std::uint32_t((2 * k + 1) * n / (2 * tried)), float(spacing), rough);
-  const Trials trials = trials_at_samples(tree);
+    add_roughness(tree, std::uint32_t((2 * k + 1) * n / (2 * tried)), float(spacing), input.light_from_points,
+                  rough);
+  const Trials trials = trials_beside_samples(tree, float(spacing));
   const double fine_tolerance = std::min(input.tolerance, kFineTolerance);
   const auto sums = [&](const SplitKernel& kernel, double tolerance) {
     const CloudError none{.hierarchy = {}, .other_sheets = 0};

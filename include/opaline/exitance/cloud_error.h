@@ -17,12 +17,13 @@ struct CloudErrorInput {
   double tolerance = 0.005;
   double max_solid_angle = 0.05;
   InstructionSet instruction_set = InstructionSet::automatic;
+  std::array<float, 3> light_from_points{};  ///< share of the light that comes from lights without area
 };
 
-/// The sums at some 64 samples are compared with those of a near field that is sqrt(2) times as wide, whose
+/// The sums beside some 64 samples are compared with those of a near field that is sqrt(2) times as wide, whose
 /// plane is off a curved surface by twice as much and whose interpolated irradiance is smoother: the
 /// difference is about the error. So much smaller a tolerance tells the tree's error; what the irradiance of
-/// 128 samples is off their neighbours' mean, its roughness.
+/// 512 samples is off their neighbours' mean, its roughness.
 CloudError tell_cloud_error(const CloudErrorInput& input);
 
 }  // namespace opaline

@@ -51,6 +51,10 @@ RgbF crease_deviation(const RenderInput& input, const Body& group) {
   return RgbF{error[0], error[1], error[2]} * std::sqrt(float(std::numbers::pi) / 2);
 }
 
+RgbF in_quadrature(const RgbF& a, const RgbF& b) {
+  return {std::hypot(a.x, b.x), std::hypot(a.y, b.y), std::hypot(a.z, b.z)};
+}
+
 /// Null: pictures hold nothing.
 std::shared_ptr<IrradianceLattice>* held_lattice(const RenderInput& input, const Body& group) {
   if (input.view == nullptr) return nullptr;
@@ -129,7 +133,7 @@ void SampleField::put_exitance(std::span<const Exitance> exitance, LeavingLight&
     values->reserve(exitance.size());
   for (const Exitance& e : exitance) {
     light.exitance.push_back(e.exitance);
-    light.error.push_back(e.error + e.exitance * creases_);
+    light.error.push_back(in_quadrature(e.error, e.exitance * creases_));
     if (!is_traced) light.irradiance.push_back(e.irradiance);
   }
 }
