@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "opaline/core/parallel.h"
 #include "opaline/core/random.h"
@@ -13,11 +14,17 @@ namespace {
 
 constexpr std::uint64_t kSeed = 4000;
 // Rays from a sample, whose neighbours' are added to its own by the medium; from a hit that nothing stands for; from a
-// place that stands for the pixels around it: for each of them, at least and at most.
+// place that stands for the pixels around it: for each of them, at least and at most (which closer places take).
 constexpr int kOfSample = 16, kOfHit = 24, kOfPixel = 3, kFewestOfPlace = 48, kMostOfPlace = 192;
 constexpr std::size_t kPlacesAtOnce = 256;  // each of many rays, and the threads share them
-constexpr int kAcross = 64;                 // places along the picture's longer side
+constexpr int kAcross = 64;                 // places along the picture's longer side, of the first lattice
 constexpr int kAround = 2;                  // beyond each border
+constexpr std::size_t kLattices = 3;
+// The mean of one over the distance of what a place's rays meet, over one over the places' spacing, from which on there are
+// closer ones: a wall upright beside a floor has .21 at the distance of a spacing.
+constexpr float kNear = 0.07f;
+// And of four places' light: over the most of them, what the most and the least differ by.
+constexpr float kVaried = 0.2f;
 // Distance from a place's plane, over the places' spacing, at which it stands for a hit half as well.
 constexpr float kOffPlane = 0.2f;
 constexpr float kLeastWeight = 0.05f;  // of all places around a hit, where a place at the hit has 1
@@ -52,43 +59,143 @@ HeldView::Gathering& gathering_of(std::vector<HeldView::Gathering>& by_field, st
 BouncedPlaces::BouncedPlaces(const RenderInput& input, const Shader& shader)
     : camera_(input.scene.camera, input.scene.film, input.world) {
   const Film& film = input.scene.film;
-  step_ = std::max(1, std::max(film.resolution[0], film.resolution[1]) / kAcross);
-  // Of the whole picture, so that a crop is a piece of it; and a little around it.
-  columns_ = film.resolution[0] / step_ + 1 + 2 * kAround;
-  rows_ = film.resolution[1] / step_ + 1 + 2 * kAround;
-  std::vector<TracedRay> rays;
-  for (int row = 0; row < rows_; ++row)
-    for (int column = 0; column < columns_; ++column)
-      rays.push_back({camera_.ray((column - kAround) * step_, (row - kAround) * step_, 0), {}});
-  input.rays.intersect(rays);
-  places_.resize(rays.size());
-  irradiance_.resize(rays.size());
-  gather(input, shader, rays);
+  int step = std::max(1, std::max(film.resolution[0], film.resolution[1]) / kAcross);
+  Lattice& first = lattices_.emplace_back(film, step);
+  std::vector<std::uint32_t> places(first.irradiance.size());
+  std::iota(places.begin(), places.end(), 0);
+  gather(input, shader, first, places);
+  while (lattices_.size() < kLattices && step > 1) {
+    step /= 2;
+    Lattice fine(film, step);
+    places = places_beside_near(lattices_.back(), fine);
+    if (places.empty()) return;
+    gather(input, shader, fine, places);
+    lattices_.push_back(std::move(fine));
+  }
 }
 
-void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, std::span<const TracedRay> rays) {
-  const double apart = step_ * pixel_width(input.scene.camera, input.scene.film);  // at depth 1
-  const int rays_each = std::clamp(kOfPixel * step_ * step_, kFewestOfPlace, kMostOfPlace);
-  std::vector<std::uint64_t> keys(rays.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = i;
+void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
+                           std::span<const std::uint32_t> places) {
+  std::vector<TracedRay> rays;
+  std::vector<std::uint64_t> keys;
+  for (const std::uint32_t place : places) {
+    const int row = int(place) / lattice.columns, column = int(place) % lattice.columns;
+    rays.push_back({camera_.ray((column - kAround) * lattice.step, (row - kAround) * lattice.step, 0), {}});
+    keys.push_back(gathered_++);
+  }
+  input.rays.intersect(rays);
+  // At depth 1.
+  const double apart = lattice.step * pixel_width(input.scene.camera, input.scene.film);
+  const bool is_first = &lattice == &lattices_.front();
+  const int rays_each = is_first
+                            ? std::clamp(kOfPixel * lattice.step * lattice.step, kFewestOfPlace, kMostOfPlace)
+                            : kMostOfPlace;
   HeldView* const view = input.view;
-  if (view != nullptr) view->at_places.resize(chunk_count(rays.size(), kPlacesAtOnce));
+  const std::size_t first_chunk = chunks_;
+  chunks_ += chunk_count(rays.size(), kPlacesAtOnce);
+  if (view != nullptr) view->at_places.resize(std::max(chunks_, view->at_places.size()));
+  std::vector<char> is_near(rays.size());
   parallel_chunks(rays.size(), kPlacesAtOnce, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-    const std::vector<Shader::SeenSurfaces> seen =
-        shader.surfaces_along(rays.subspan(begin, end - begin), std::span(keys).subspan(begin, end - begin));
+    const std::vector<Shader::SeenSurfaces> seen = shader.surfaces_along(
+        std::span(rays).subspan(begin, end - begin), std::span(keys).subspan(begin, end - begin));
     for (const auto& [field, hits, eta] : seen) {
       HeldView::Gathering* const held =
-          view != nullptr ? &gathering_of(view->at_places[chunk], field, hits.rays) : nullptr;
-      const std::vector<RgbF> irradiance =
-          gathered_irradiance({input.rays, shader, hits.points, hits.keys, eta, rays_each,
-                               hash_bits(input.scene.settings.seed, kSeed), held, view});
+          view != nullptr ? &gathering_of(view->at_places[first_chunk + chunk], field, hits.rays) : nullptr;
+      std::vector<RgbF> irradiance(hits.points.size());
+      std::vector<float> nearness(hits.points.size());  // mean of one over the distance of what the rays meet
+      for_each_gathered({input.rays, shader, hits.points, hits.keys, eta, rays_each,
+                         hash_bits(input.scene.settings.seed, kSeed), held, view},
+                        [&](const SurfaceLight& light) {
+                          irradiance[light.point] += light.irradiance;
+                          nearness[light.point] += 1 / (float(rays_each) * light.distance);
+                        });
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
-        const std::size_t place = begin + hits.rays[i];
-        places_.set(place, hits.points[i], eta, float(apart * double(rays[place].ray.far)));
-        irradiance_[place] = irradiance[i];
+        const std::size_t k = begin + hits.rays[i], place = places[k];
+        const float spacing = float(apart * double(rays[k].ray.far));
+        lattice.places.set(place, hits.points[i], eta, spacing);
+        lattice.irradiance[place] = irradiance[i];
+        is_near[k] = spacing * nearness[i] > kNear;
       }
     }
   });
+  for (std::size_t k = 0; k < places.size(); ++k) lattice.is_near[places[k]] = is_near[k] != 0;
+}
+
+// Those that may stand for hits between places of which one is near.
+std::vector<std::uint32_t> BouncedPlaces::places_beside_near(const Lattice& coarse,
+                                                             const Lattice& fine) const {
+  std::vector<std::uint32_t> places;
+  for (int row = 0; row < fine.rows; ++row)
+    for (int column = 0; column < fine.columns; ++column) {
+      const double x = (column - kAround) * fine.step + .5, y = (row - kAround) * fine.step + .5;
+      const double reach = 2 * fine.step;
+      bool is_beside = false;
+      for (const double dy : {-reach, 0., reach})
+        for (const double dx : {-reach, 0., reach})
+          is_beside = is_beside || coarse.needs_closer_places({x + dx, y + dy, 1});
+      if (is_beside) places.push_back(std::uint32_t(row * fine.columns + column));
+    }
+  return places;
+}
+
+BouncedPlaces::Lattice::Lattice(const Film& film, int pixels)
+    : step(pixels),
+      columns(film.resolution[0] / step + 1 + 2 * kAround),
+      rows(film.resolution[1] / step + 1 + 2 * kAround),
+      irradiance(std::size_t(columns) * std::size_t(rows)),
+      is_near(irradiance.size()) {
+  places.resize(irradiance.size());
+}
+
+std::array<double, 2> BouncedPlaces::Lattice::in_places(const CameraRays::FilmPlace& seen) const {
+  return {(seen.x - .5) / step + kAround, (seen.y - .5) / step + kAround};
+}
+
+float BouncedPlaces::Lattice::brightness(std::size_t place) const {
+  const RgbF& e = irradiance[place];
+  return e.x + e.y + e.z;
+}
+
+bool BouncedPlaces::Lattice::needs_closer_places(const CameraRays::FilmPlace& seen) const {
+  const auto [x, y] = in_places(seen);
+  if (!(x >= 0 && y >= 0 && x < columns - 1 && y < rows - 1)) return false;
+  const std::size_t above = std::size_t(y) * std::size_t(columns) + std::size_t(x),
+                    below = above + std::size_t(columns);
+  if (!(is_near[above] || is_near[above + 1] || is_near[below] || is_near[below + 1])) return false;
+  const auto [least, most] =
+      std::minmax({brightness(above), brightness(above + 1), brightness(below), brightness(below + 1)});
+  return most - least > kVaried * most;
+}
+
+std::optional<RgbF> BouncedPlaces::at(const SurfacePoint& point, float eta) const {
+  const CameraRays::FilmPlace seen = camera_.film_place(Vec3d(point.position));
+  if (!(seen.depth > 0)) return {};
+  for (std::size_t l = lattices_.size(); l-- > 0;) {
+    if (l > 0 && !lattices_[l - 1].needs_closer_places(seen)) continue;
+    if (const std::optional<RgbF> known = lattices_[l].at(seen, point, eta)) return known;
+  }
+  return {};
+}
+
+std::optional<RgbF> BouncedPlaces::Lattice::at(const CameraRays::FilmPlace& seen, const SurfacePoint& point,
+                                               float eta) const {
+  const auto [x, y] = in_places(seen);
+  if (!(x >= 0 && y >= 0 && x < columns && y < rows)) return {};
+  RgbF sum;
+  float weights = 0;
+  const int left = std::clamp(int(x) - 1, 0, columns - int(kBeside));
+  for (int row = std::max(0, int(y) - 1); row <= std::min(rows - 1, int(y) + 2); ++row) {
+    const std::size_t first = std::size_t(row) * std::size_t(columns) + std::size_t(left);
+    const std::array<float, kBeside> of_row =
+        places.weights({point.position, point.normal, eta, float(x - left), float(y - row)}, first);
+    for (std::size_t k = 0; k < kBeside; ++k) {
+      if (!(of_row[k] > 0)) continue;
+      sum += irradiance[first + k] * of_row[k];
+      weights += of_row[k];
+    }
+  }
+  if (!(weights > kLeastWeight)) return {};
+  return sum * (1 / weights);
 }
 
 BouncedLight::BouncedLight(const RenderInput& input, const Shader& shader)
@@ -152,29 +259,6 @@ std::array<float, BouncedPlaces::kBeside> BouncedPlaces::Places::weights(const A
   std::array<float, kBeside> each;
   std::memcpy(each.data(), &weights, sizeof weights);
   return each;
-}
-
-std::optional<RgbF> BouncedPlaces::at(const SurfacePoint& point, float eta) const {
-  const CameraRays::FilmPlace seen = camera_.film_place(Vec3d(point.position));
-  if (!(seen.depth > 0)) return {};
-  // In places, from the first one.
-  const double x = (seen.x - .5) / step_ + kAround, y = (seen.y - .5) / step_ + kAround;
-  if (!(x >= 0 && y >= 0 && x < columns_ && y < rows_)) return {};
-  RgbF sum;
-  float weights = 0;
-  const int left = std::clamp(int(x) - 1, 0, columns_ - int(kBeside));
-  for (int row = std::max(0, int(y) - 1); row <= std::min(rows_ - 1, int(y) + 2); ++row) {
-    const std::size_t first = std::size_t(row) * std::size_t(columns_) + std::size_t(left);
-    const std::array<float, kBeside> of_row =
-        places_.weights({point.position, point.normal, eta, float(x - left), float(y - row)}, first);
-    for (std::size_t k = 0; k < kBeside; ++k) {
-      if (!(of_row[k] > 0)) continue;
-      sum += irradiance_[first + k] * of_row[k];
-      weights += of_row[k];
-    }
-  }
-  if (!(weights > kLeastWeight)) return {};
-  return sum * (1 / weights);
 }
 
 std::shared_ptr<const BouncedPlaces> bounced_places(const RenderInput& input) {

@@ -14,8 +14,9 @@
 
 namespace opaline {
 
-/// Gathered at what a camera sees at 64 places along its picture's longer side. Where bodies' trees hold what bounced to
-/// them, so does what they send here, a second bounce: a Session's do not while it gathers.
+/// Gathered at what a camera sees at 64 places along its picture's longer side, and at closer ones where surfaces are near
+/// to each other and their light varies. Where bodies' trees hold what bounced to them, so does what they send here, a
+/// second bounce: a Session's do not while it gathers.
 /// from  Ward, Rubinstein & Clear 1988
 class BouncedPlaces {
  public:
@@ -44,13 +45,29 @@ class BouncedPlaces {
     /// How well places first, first + 1, ... of a row stand for a point.
     std::array<float, kBeside> weights(const Asked& asked, std::size_t first) const;
   };
-  void gather(const RenderInput& input, const Shader& shader, std::span<const TracedRay> rays);
+  /// Places over the picture and a little around it, so that a crop is a piece of it; row after row.
+  struct Lattice {
+    int step;  ///< pixels from one place to the next
+    int columns, rows;
+    Places places;
+    std::vector<RgbF> irradiance;
+    std::vector<bool> is_near;  ///< to what they gather from, for so few of them
+
+    Lattice(const Film& film, int pixels);
+    float brightness(std::size_t place) const;
+    std::array<double, 2> in_places(const CameraRays::FilmPlace& seen) const;
+    /// Whether a place around this one is near, and their light varies.
+    bool needs_closer_places(const CameraRays::FilmPlace& seen) const;
+    std::optional<RgbF> at(const CameraRays::FilmPlace& seen, const SurfacePoint& point, float eta) const;
+  };
+  void gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
+              std::span<const std::uint32_t> places);
+  std::vector<std::uint32_t> places_beside_near(const Lattice& coarse, const Lattice& fine) const;
 
   CameraRays camera_;
-  int step_;  // pixels from one place to the next
-  int columns_, rows_;
-  Places places_;  // row after row
-  std::vector<RgbF> irradiance_;
+  std::vector<Lattice> lattices_;  // each of places half as far apart as the last, where that needs them
+  std::size_t gathered_ = 0;       // places, and
+  std::size_t chunks_ = 0;         // chunks of them
 };
 
 /// At the hits of a picture: by RenderInput::bounced, or places of its own. Hits that no place stands for gather for

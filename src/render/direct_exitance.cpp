@@ -63,9 +63,11 @@ void add_bounced_light(const DirectExitanceInput& input, const PointIrradianceIn
   constexpr std::uint64_t kSeed = 5;
   for_each_gathered(
       {at.rays, *input.gathers, at.points, at.keys, float(at.eta), 1, hash_bits(at.seed, kSeed)},
-      [&](std::size_t e, const Vec3f& towards, const RgbF& irradiance) {
-        const RgbF weight = weight_of(input.sampler, input.exits.points[exits[e]], entries[e], towards);
-        exitance[exits[e]] += weight * irradiance * entries[e].tint;
+      [&](const SurfaceLight& light) {
+        const Entry& entry = entries[light.point];
+        const std::size_t exit = exits[light.point];
+        const RgbF weight = weight_of(input.sampler, input.exits.points[exit], entry, light.towards);
+        exitance[exit] += weight * light.irradiance * entry.tint;
       });
 }
 

@@ -90,7 +90,8 @@ void use_all(const GatherInput& input, std::size_t begin, std::span<const Traced
   const float each = float(std::numbers::pi) / float(input.rays_each);
   for (std::size_t r = 0; r < radiance.size(); ++r) {
     const float transmitted = input.eta > 0 ? fresnel_transmittance(met[r].cosine, input.eta) : 1.0f;
-    use(begin + met[r].point, rays[r].ray.direction, radiance[r] * (each * transmitted));
+    const Ray& ray = rays[r].ray;
+    use({begin + met[r].point, ray.direction, ray.far, radiance[r] * (each * transmitted)});
   }
 }
 
@@ -120,7 +121,7 @@ void for_each_gathered(const GatherInput& input, const UseOfGathered& use) {
 
 std::vector<RgbF> gathered_irradiance(const GatherInput& input) {
   std::vector<RgbF> irradiance(input.points.size());
-  for_each_gathered(input, [&](std::size_t p, const Vec3f&, const RgbF& light) { irradiance[p] += light; });
+  for_each_gathered(input, [&](const SurfaceLight& light) { irradiance[light.point] += light.irradiance; });
   return irradiance;
 }
 

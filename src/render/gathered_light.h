@@ -29,9 +29,15 @@ struct GatherInput {
   HeldView* view = nullptr;  ///< that has it
 };
 
-/// Light that reaches a point from a surface: index of the point, unit direction towards the surface, irradiance of what
-/// comes through the boundary where there is one.
-using UseOfGathered = std::function<void(std::size_t point, const Vec3f& towards, const RgbF& irradiance)>;
+/// Light that reaches a point from a surface.
+struct SurfaceLight {
+  std::size_t point;  ///< its index
+  Vec3f towards;      ///< the surface; unit
+  float distance;     ///< to it, mm
+  RgbF irradiance;    ///< of what comes through the boundary where there is one, W/mm^2
+};
+
+using UseOfGathered = std::function<void(const SurfaceLight&)>;
 
 void for_each_gathered(const GatherInput& input, const UseOfGathered& use);
 

@@ -190,7 +190,7 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
         method == Method::direct
             ? "bounces: light between things, once, by a ray from each place where light enters"
             : "bounces: light between things, once, gathered at the samples and at 64 x 64 places of the "
-              "picture");
+              "picture, more in corners");
   plan.stages.push_back(shading_stage(scene.settings, has_tree));
 }
 
