@@ -76,17 +76,18 @@ BouncedPlaces::BouncedPlaces(const RenderInput& input, const Shader& shader)
 
 void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
                            std::span<const std::uint32_t> places) {
+  const bool is_first = &lattice == &lattices_.front();
+  const std::size_t lattice_index = is_first ? 0 : lattices_.size();
   std::vector<TracedRay> rays;
   std::vector<std::uint64_t> keys;
   for (const std::uint32_t place : places) {
     const int row = int(place) / lattice.columns, column = int(place) % lattice.columns;
     rays.push_back({camera_.ray((column - kAround) * lattice.step, (row - kAround) * lattice.step, 0), {}});
-    keys.push_back(gathered_++);
+    keys.push_back(place * kLattices + lattice_index);
   }
   input.rays.intersect(rays);
   // At depth 1.
   const double apart = lattice.step * pixel_width(input.scene.camera, input.scene.film);
-  const bool is_first = &lattice == &lattices_.front();
   const int rays_each = is_first
                             ? std::clamp(kOfPixel * lattice.step * lattice.step, kFewestOfPlace, kMostOfPlace)
                             : kMostOfPlace;
@@ -99,8 +100,10 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
     const std::vector<Shader::SeenSurfaces> seen = shader.surfaces_along(
         std::span(rays).subspan(begin, end - begin), std::span(keys).subspan(begin, end - begin));
     for (const auto& [field, hits, eta] : seen) {
+      std::vector<std::uint32_t> held_places;  // which of a closer lattice gather hangs on the light
+      for (const std::uint32_t ray : hits.rays) held_places.push_back(std::uint32_t(keys[begin + ray]));
       HeldView::Gathering* const held =
-          view != nullptr ? &gathering_of(view->at_places[first_chunk + chunk], field, hits.rays) : nullptr;
+          view != nullptr ? &gathering_of(view->at_places[first_chunk + chunk], field, held_places) : nullptr;
       std::vector<RgbF> irradiance(hits.points.size());
       std::vector<float> nearness(hits.points.size());  // mean of one over the distance of what the rays meet
       for_each_gathered({input.rays, shader, hits.points, hits.keys, eta, rays_each,
@@ -151,20 +154,19 @@ std::array<double, 2> BouncedPlaces::Lattice::in_places(const CameraRays::FilmPl
   return {(seen.x - .5) / step + kAround, (seen.y - .5) / step + kAround};
 }
 
-float BouncedPlaces::Lattice::brightness(std::size_t place) const {
-  const RgbF& e = irradiance[place];
-  return e.x + e.y + e.z;
-}
-
 bool BouncedPlaces::Lattice::needs_closer_places(const CameraRays::FilmPlace& seen) const {
   const auto [x, y] = in_places(seen);
   if (!(x >= 0 && y >= 0 && x < columns - 1 && y < rows - 1)) return false;
   const std::size_t above = std::size_t(y) * std::size_t(columns) + std::size_t(x),
                     below = above + std::size_t(columns);
   if (!(is_near[above] || is_near[above + 1] || is_near[below] || is_near[below + 1])) return false;
-  const auto [least, most] =
-      std::minmax({brightness(above), brightness(above + 1), brightness(below), brightness(below + 1)});
-  return most - least > kVaried * most;
+  RgbF least = irradiance[above], most = least;
+  for (const std::size_t place : {above + 1, below, below + 1}) {
+    least = component_min(least, irradiance[place]);
+    most = component_max(most, irradiance[place]);
+  }
+  const RgbF apart = most - least;  // channel by channel: a light of another colour changes nothing
+  return apart.x > kVaried * most.x || apart.y > kVaried * most.y || apart.z > kVaried * most.z;
 }
 
 std::optional<RgbF> BouncedPlaces::at(const SurfacePoint& point, float eta) const {

@@ -54,7 +54,6 @@ class BouncedPlaces {
     std::vector<bool> is_near;  ///< to what they gather from, for so few of them
 
     Lattice(const Film& film, int pixels);
-    float brightness(std::size_t place) const;
     std::array<double, 2> in_places(const CameraRays::FilmPlace& seen) const;
     /// Whether a place around this one is near, and their light varies.
     bool needs_closer_places(const CameraRays::FilmPlace& seen) const;
@@ -66,8 +65,7 @@ class BouncedPlaces {
 
   CameraRays camera_;
   std::vector<Lattice> lattices_;  // each of places half as far apart as the last, where that needs them
-  std::size_t gathered_ = 0;       // places, and
-  std::size_t chunks_ = 0;         // chunks of them
+  std::size_t chunks_ = 0;         // of places that gathered
 };
 
 /// At the hits of a picture: by RenderInput::bounced, or places of its own. Hits that no place stands for gather for

@@ -127,6 +127,24 @@ TEST(HeldGathering, OtherHitsGather) {
   edit("with places", [](Scene& s) { s.settings.near_field = true; });
 }
 
+// Claim: closer places are chosen by the light there is, and what those of other light gathered is not theirs. Source:
+// bounced_light.h. Fails if: what is kept is known by a place's number among those that gather at once.
+TEST(HeldGathering, CloserPlacesOfOtherLight) {
+  Scene scene = balls_and_light();
+  scene.film.resolution = {192, 144};
+  scene.lights[0] = {"low", PointLight{{-40, 6, 30}, Rgb(2e4)}};
+  Held held(scene);
+  const auto edit = [&](const char* what, const Rgb& point, const Rgb& panel) {
+    SCOPED_TRACE(what);
+    std::get<PointLight>(held.scene.lights[0].source).intensity = point;
+    std::get<QuadLight>(held.scene.lights[1].source).radiance = panel;
+    held.rays();
+  };
+  edit("the panel alone", {}, Rgb(3));
+  edit("the point alone", {1e4, 3e4, 2e4}, {});
+  edit("both", Rgb(2e4), Rgb(9));
+}
+
 // Claim: no more is held of gathered rays than kMostGatheredBytes; the picture is the same. Source: held_view.h. Fails if:
 // what rays met is held without a look at what there is.
 TEST(HeldGathering, HasABound) {
