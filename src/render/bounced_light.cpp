@@ -68,10 +68,11 @@ BouncedPlaces::BouncedPlaces(const RenderInput& input, const Shader& shader)
     step /= 2;
     Lattice fine(film, step);
     places = places_beside_near(lattices_.back(), fine);
-    if (places.empty()) return;
+    if (places.empty()) break;
     gather(input, shader, fine, places);
     lattices_.push_back(std::move(fine));
   }
+  if (input.view != nullptr) input.view->at_places.resize(chunks_);  // less what other light had needed
 }
 
 void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Lattice& lattice,

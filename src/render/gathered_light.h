@@ -33,7 +33,7 @@ struct GatherInput {
 struct SurfaceLight {
   std::size_t point;  ///< its index
   Vec3f towards;      ///< the surface; unit
-  float distance;     ///< to it, mm
+  float distance;     ///< to it, world units
   RgbF irradiance;    ///< of what comes through the boundary where there is one, W/mm^2
 };
 
