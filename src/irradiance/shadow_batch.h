@@ -189,14 +189,15 @@ class ShadowBatch {
                     std::uint64_t first, const Lobe& lobe) {
     constexpr float kEven = .1f;  // of the choice: the lobe of a grazing view is another
     constexpr std::size_t draws = kLobeDraws;
+    std::array<std::array<double, 2>, draws> squares;
     std::array<EnvironmentSample, draws> drawn;
     std::array<float, draws> chances{};
     for (int s = 0; s < samples_; ++s) {
       const std::uint64_t number = first + std::uint64_t(s);
+      for (std::size_t d = 0; d < draws; ++d) squares[d] = r2_point(number * draws + d, shift);
+      sample_environment(*room_, point.normal, squares, samples_ * kLobeDraws, drawn);
       float sum = 0;
       for (std::size_t d = 0; d < draws; ++d) {
-        drawn[d] = sample_environment(*room_, point.normal, r2_point(number * draws + d, shift),
-                                      samples_ * kLobeDraws);
         const RgbF& w = drawn[d].weights;
         const float cosine = std::max(0.0f, dot(point.normal, drawn[d].direction));
         chances[d] = (w.x + w.y + w.z) * cosine * mirrored(lobe, dot(lobe.mirrored, drawn[d].direction));
@@ -220,13 +221,18 @@ class ShadowBatch {
     if (pools_.empty() || index != pooled_) pools_.push_back(means_.size());
     pooled_ = index;
     means_.push_back(unshadowed(*room_, point.normal));
-    for (int s = 0; s < samples_; ++s) {
-      const EnvironmentSample drawn =
-          sample_environment(*room_, point.normal, r2_point(first + std::uint64_t(s), shift), samples_);
-      std::array<float, 3> weights{};
-      for (std::size_t l = 0; l < lights_.size(); ++l) weights[l] = drawn.weights[channel(l)];
-      carry(point, {drawn.direction, std::numeric_limits<float>::infinity(), weights[0]}, weights);
-      controls_.push_back({drawn.unshadowed, {}, 0, false});
+    std::array<std::array<double, 2>, kMostAtOnce> squares;
+    std::array<EnvironmentSample, kMostAtOnce> drawn;
+    for (std::size_t s = 0, count = 0; s < std::size_t(samples_); s += count) {
+      count = std::min(kMostAtOnce, std::size_t(samples_) - s);
+      for (std::size_t d = 0; d < count; ++d) squares[d] = r2_point(first + s + d, shift);
+      sample_environment(*room_, point.normal, std::span(squares).first(count), samples_, drawn);
+      for (std::size_t d = 0; d < count; ++d) {
+        std::array<float, 3> weights{};
+        for (std::size_t l = 0; l < lights_.size(); ++l) weights[l] = drawn[d].weights[channel(l)];
+        carry(point, {drawn[d].direction, std::numeric_limits<float>::infinity(), weights[0]}, weights);
+        controls_.push_back({drawn[d].unshadowed, {}, 0, false});
+      }
     }
   }
 

@@ -48,14 +48,18 @@ float channel_of(const EnvironmentLight& light, const RgbF& colour) {
 
 }  // namespace
 
-EnvironmentSample sample_environment(const EnvironmentLight& light, const Vec3f& normal,
-                                     std::array<double, 2> unit_square, int samples) {
-  const EnvironmentPicture::Sample drawn =
-      light.picture->sample(unit_square, turned(Vec3d(normal), -light.rotation), light.rotation);
-  const Vec3f direction(drawn.direction);
-  const RgbF weights = drawn.weight * (1 / float(samples));
-  const float cosine = drawn.assumed_cosine > 0 ? drawn.assumed_cosine : dot(normal, direction);
-  return {direction, weights, weights * cosine};
+void sample_environment(const EnvironmentLight& light, const Vec3f& normal,
+                        std::span<const std::array<double, 2>> unit_squares, int samples,
+                        std::span<EnvironmentSample> drawn) {
+  std::array<EnvironmentPicture::Sample, kMostAtOnce> of_picture;
+  light.picture->sample(unit_squares, turned(Vec3d(normal), -light.rotation), light.rotation,
+                        std::span(of_picture).first(unit_squares.size()));
+  for (std::size_t i = 0; i < unit_squares.size(); ++i) {
+    const Vec3f direction(of_picture[i].direction);
+    const RgbF weights = of_picture[i].weight * (1 / float(samples));
+    const float assumed = of_picture[i].assumed_cosine;
+    drawn[i] = {direction, weights, weights * (assumed > 0 ? assumed : dot(normal, direction))};
+  }
 }
 
 RgbF unshadowed(const EnvironmentLight& light, const Vec3f& normal) {
@@ -121,7 +125,8 @@ template <>
 LightSample LightOf<EnvironmentLight>::sample_channels(const EnvironmentLight& light, const Vec3f&,
                                                        const Vec3f& normal, std::array<double, 2> unit_square,
                                                        int samples, RgbF& weights) {
-  const EnvironmentSample drawn = sample_environment(light, normal, unit_square, samples);
+  EnvironmentSample drawn;
+  sample_environment(light, normal, std::span(&unit_square, 1), samples, std::span(&drawn, 1));
   weights = drawn.weights;
   return {drawn.direction, std::numeric_limits<float>::infinity(), channel_of(light, weights)};
 }

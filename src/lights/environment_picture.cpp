@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "opaline/core/error.h"
@@ -30,7 +31,7 @@ Vec3d unfolded_normal(double x, double y) {
   return normalized(Vec3d{x + (x < 0 ? over : -over), y + (y < 0 ? over : -over), z});
 }
 
-std::size_t table_of(const Vec3d& normal) {
+std::size_t nearest_table(const Vec3d& normal) {
   const double sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
   double x = normal.x / sum, y = normal.y / sum;
   if (normal.z < 0) {
@@ -138,7 +139,7 @@ void EnvironmentPicture::make_means() {
   step_ = (width_ + kMostColumns - 1) / kMostColumns;
   columns_ = (width_ + step_ - 1) / step_;
   rows_ = (height_ + step_ - 1) / step_;
-  means_.resize(columns_ * rows_);
+  cells_.resize(columns_ * rows_);
   for (std::size_t r = 0; r <= rows_; ++r)
     row_cosines_.push_back(std::cos(kPi * double(std::min(height_, r * step_)) / double(height_)));
   for (std::size_t r = 0; r < rows_; ++r) {
@@ -153,7 +154,7 @@ void EnvironmentPicture::make_means() {
         sums[x / step_] += Rgb(pixels_[y * width_ + x]) * band;
       }
     }
-    for (std::size_t c = 0; c < columns_; ++c) means_[r * columns_ + c] = RgbF(sums[c] / weights[c]);
+    for (std::size_t c = 0; c < columns_; ++c) cells_[r * columns_ + c].mean = RgbF(sums[c] / weights[c]);
   }
 }
 
@@ -161,16 +162,15 @@ void EnvironmentPicture::make_means() {
 // worth as much as the lamp if no light sample went there.
 void EnvironmentPicture::make_importance() {
   constexpr float kOfNeighbours = .04f;
-  importance_.resize(means_.size());
   for (std::size_t r = 0; r < rows_; ++r)
     for (std::size_t c = 0; c < columns_; ++c) {
       float around = 0;
       for (const std::size_t row : {r > 0 ? r - 1 : 0, r, std::min(r + 1, rows_ - 1)})
         for (const std::size_t column : {c > 0 ? c - 1 : columns_ - 1, c, c + 1 < columns_ ? c + 1 : 0})
-          around += mean_of(means_[row * columns_ + column]) *
+          around += mean_of(cells_[row * columns_ + column].mean) *
                     ((row == r ? 2.0f : 1.0f) * (column == c ? 2.0f : 1.0f) / 16);
-      importance_[r * columns_ + c] =
-          mean_of(means_[r * columns_ + c]) * (1 - kOfNeighbours) + around * kOfNeighbours;
+      Cell& cell = cells_[r * columns_ + c];
+      cell.importance = mean_of(cell.mean) * (1 - kOfNeighbours) + around * kOfNeighbours;
     }
 }
 
@@ -179,7 +179,7 @@ double EnvironmentPicture::flux_of(std::size_t row, std::size_t column) const {
   const auto share = [this](std::size_t cell) {
     return double(std::min(cell * step_, width_)) / double(width_);
   };
-  return double(importance_[row * columns_ + column]) * (row_cosines_[row] - row_cosines_[row + 1]) * 2 *
+  return double(cells_[row * columns_ + column].importance) * (row_cosines_[row] - row_cosines_[row + 1]) * 2 *
          kPi * (share(column + 1) - share(column));
 }
 
@@ -227,7 +227,7 @@ std::vector<EnvironmentPicture::BlockIntegral> EnvironmentPicture::block_integra
       const Vec3d direction{(std::cos(left) - std::cos(right)) * sines,
                             (right - left) * (top * top - bottom * bottom) / 2,
                             (std::sin(right) - std::sin(left)) * sines};
-      const Rgb colour(means_[r * columns_ + c]);
+      const Rgb colour(cells_[r * columns_ + c].mean);
       BlockIntegral& block = blocks[r / block_ * block_columns_ + c / block_];
       block.radiance += colour * ((right - left) * (top - bottom));
       for (std::size_t k = 0; k < 3; ++k) block.vectors[k] += direction * colour[k];
@@ -288,10 +288,10 @@ std::array<double, 2> EnvironmentPicture::place_of(const Vec3d& direction) const
 }
 
 std::size_t EnvironmentPicture::memory() const {
-  const std::size_t floats = 4 * pixels_.size() + importance_.size() + cell_rows_.size() +
+  const std::size_t floats = 4 * pixels_.size() + 4 * cells_.size() + cell_rows_.size() +
                              cell_columns_.size() + block_row_ends_.size() + block_column_ends_.size() +
                              assumed_cosines_.size();
-  return floats * sizeof(float) + (pixels_.size() + means_.size()) * sizeof(RgbF) +
+  return floats * sizeof(float) + pixels_.size() * sizeof(RgbF) +
          (row_cosines_.size() + block_flux_.size()) * sizeof(double) +
          unshadowed_.size() * sizeof(Unshadowed) + block_flux_.size() * sizeof(BlockIntegral);
 }
@@ -324,30 +324,65 @@ double EnvironmentPicture::block_share(std::size_t normal, std::size_t block_row
 
 EnvironmentPicture::Sample EnvironmentPicture::sample(std::array<double, 2> unit_square, const Vec3d& normal,
                                                       double turn) const {
-  auto [u, v] = unit_square;
-  const std::size_t n = table_of(normal);
-  const std::size_t block_row = draw(&block_row_ends_[n * block_rows_], block_rows_, v);
-  const std::size_t block_column =
-      draw(&block_column_ends_[(n * block_rows_ + block_row) * block_columns_], block_columns_, u);
-  const std::size_t first_row = block_row * block_, first = block_column * block_;
-  const std::size_t r =
-      first_row + draw(&cell_rows_[block_column * rows_ + first_row], std::min(block_, rows_ - first_row), v);
-  const std::size_t c =
-      first + draw(&cell_columns_[r * columns_ + first], std::min(block_, columns_ - first), u);
-  const RgbF mean = means_[r * columns_ + c];
-  const double density = block_share(n, block_row, block_column) * double(importance_[r * columns_ + c]);
-  if (!(density > 0)) return {{0, 1, 0}, {}, 0};
-  const double cosine = row_cosines_[r] + (row_cosines_[r + 1] - row_cosines_[r]) * v,
-               sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  const double left = double(c * step_), right = std::min(double(width_), left + double(step_));
-  const double longitude = (.5 - (left + (right - left) * u) / double(width_)) * 2 * kPi + turn * kPi / 180;
-  return {{sine * std::sin(longitude), cosine, sine * std::cos(longitude)},
-          mean * float(block_flux_[block_row * block_columns_ + block_column] / density),
-          assumed_cosines_[(n * block_rows_ + block_row) * block_columns_ + block_column]};
+  Sample drawn;
+  sample(std::span(&unit_square, 1), normal, turn, std::span(&drawn, 1));
+  return drawn;
+}
+
+void EnvironmentPicture::sample(std::span<const std::array<double, 2>> unit_squares, const Vec3d& normal,
+                                double turn, std::span<Sample> samples) const {
+  constexpr std::size_t kAtOnce = 8;
+  struct Place {
+    double u, v;
+    std::size_t block, row, column;
+  };
+  std::array<Place, kAtOnce> places;
+  const std::size_t n = nearest_table(normal);
+  for (std::size_t begin = 0; begin < unit_squares.size(); begin += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, unit_squares.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      Place& place = places[i];
+      std::tie(place.u, place.v) = std::tie(unit_squares[begin + i][0], unit_squares[begin + i][1]);
+      const std::size_t block_row = draw(&block_row_ends_[n * block_rows_], block_rows_, place.v);
+      const std::size_t block_column =
+          draw(&block_column_ends_[(n * block_rows_ + block_row) * block_columns_], block_columns_, place.u);
+      const std::size_t first_row = block_row * block_;
+      place.block = block_row * block_columns_ + block_column;
+      place.row = first_row + draw(&cell_rows_[block_column * rows_ + first_row],
+                                   std::min(block_, rows_ - first_row), place.v);
+      place.column = block_column * block_;
+      __builtin_prefetch(&cell_columns_[place.row * columns_ + place.column]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      Place& place = places[i];
+      place.column += draw(&cell_columns_[place.row * columns_ + place.column],
+                           std::min(block_, columns_ - place.column), place.u);
+      __builtin_prefetch(&cells_[place.row * columns_ + place.column]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& [u, v, block, r, c] = places[i];
+      const Cell& cell = cells_[r * columns_ + c];
+      Sample& drawn = samples[begin + i];
+      const double density =
+          block_share(n, block / block_columns_, block % block_columns_) * double(cell.importance);
+      if (!(density > 0)) {
+        drawn = {{0, 1, 0}, {}, 0};
+        continue;
+      }
+      const double cosine = row_cosines_[r] + (row_cosines_[r + 1] - row_cosines_[r]) * v,
+                   sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+      const double left = double(c * step_), right = std::min(double(width_), left + double(step_));
+      const double longitude =
+          (.5 - (left + (right - left) * u) / double(width_)) * 2 * kPi + turn * kPi / 180;
+      drawn = {{sine * std::sin(longitude), cosine, sine * std::cos(longitude)},
+               cell.mean * float(block_flux_[block] / density),
+               assumed_cosines_[n * block_flux_.size() + block]};
+    }
+  }
 }
 
 RgbF EnvironmentPicture::unshadowed(const Vec3d& normal) const {
-  const Unshadowed& of = unshadowed_[table_of(normal)];
+  const Unshadowed& of = unshadowed_[nearest_table(normal)];
   return RgbF(of.others + Rgb{dot(normal, of.above[0]), dot(normal, of.above[1]), dot(normal, of.above[2])});
 }
 
@@ -357,8 +392,7 @@ float EnvironmentPicture::density(const Vec3d& direction, const Vec3d& normal) c
                     r = std::min(rows_ - 1, std::size_t(y) / step_);
   const double flux = block_flux_[r / block_ * block_columns_ + c / block_];
   if (!(flux > 0)) return 0;
-  return float(block_share(table_of(normal), r / block_, c / block_) * double(importance_[r * columns_ + c]) /
-               flux);
+  return float(block_share(nearest_table(normal), r / block_, c / block_) * double(cells_[r * columns_ + c].importance) / flux);
 }
 
 }  // namespace opaline

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ class EnvironmentPicture {
   /// in    normal: unit, of the surface, where some directions below it are drawn, too
   ///       turn: about +y, degrees, from the picture to where the direction is wanted
   Sample sample(std::array<double, 2> unit_square, const Vec3d& normal, double turn = 0) const;
+  /// Of several places: the tables are larger than caches, and are asked for all at once.
+  void sample(std::span<const std::array<double, 2>> unit_squares, const Vec3d& normal, double turn,
+              std::span<Sample> samples) const;
   /// The mean over the unit square of a sample's weight times its assumed cosine: the irradiance of a surface that
   /// nothing shadows, but for what comes from near its horizon.
   RgbF unshadowed(const Vec3d& normal) const;
@@ -74,8 +78,11 @@ class EnvironmentPicture {
   // Cells: means over pixels, where there are many.
   std::size_t step_ = 1, columns_ = 0, rows_ = 0;
   std::vector<double> row_cosines_;  ///< of the angles from +y at the rows' borders
-  std::vector<RgbF> means_;
-  std::vector<float> importance_;  ///< of a cell: its brightness and a little of its neighbours'
+  struct Cell {
+    RgbF mean;
+    float importance = 0;  ///< its brightness and a little of its neighbours'
+  };
+  std::vector<Cell> cells_;
   // Blocks of cells.
   std::size_t block_ = 1, block_columns_ = 0, block_rows_ = 0;
   std::vector<double> block_flux_;  ///< integral of the importance over a block's directions
