@@ -153,6 +153,7 @@ std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std:
   }
   ShadowBatch batch(input.rays, lights, input.eta, shadow_rays(lights[0], input.light_samples),
                     light_seed(input.seed, lights[0]));
+  if (input.is_together) batch.share_shadows();
   const Halves halves(batch.samples());
   std::vector<std::array<double, 2>> sums;  // over the halves of a point's rays, light by light
   batch.reserve(std::min(batch_size, n));

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "irradiance/room_shadows.h"
 #include "lights/environment_sample.h"
 #include "opaline/core/morton.h"
 #include "opaline/core/random.h"
@@ -52,6 +53,9 @@ class ShadowBatch {
 
   /// To be called where points that follow each other do not lie together: their rays are sorted before they are traced.
   void sort_rays() { scattered_ = samples_ == 1; }
+
+  /// To be told where points lie together: what hides a room from some tells of others.
+  void share_shadows() { shares_shadows_ = true; }
 
   /// To be told where `trace` is to be asked for directions.
   void keep_directions() { keeps_directions_ = true; }
@@ -104,11 +108,14 @@ class ShadowBatch {
       controls_[sample].lit = lit;
       if (many_ != nullptr && s + 1 == samples) use_controlled(point, use);
     }
-    for (std::size_t p = 0; p < pools_.size(); ++p)
-      use_pool(pools_[p], p + 1 < pools_.size() ? pools_[p + 1] : means_.size(), use);
+    if (shares_shadows_ && pools_.size() >= kFewestPools && controls_.size() >= kFewestOfTogether)
+      use_together(use);
+    else
+      for (std::size_t p = 0; p < pools_.size(); ++p) use_pool(pools_[p], end_of_pool(p), use);
     carried_.clear();
     controls_.clear();
     means_.clear();
+    normals_.clear();
     pools_.clear();
     shadow_.clear();
     directions_.clear();
@@ -129,7 +136,9 @@ class ShadowBatch {
   static constexpr std::size_t kSorted = 256;       // rays that Embree takes at once
   static constexpr float kMeanCosine = 2.0f / 3;    // of even light
   static constexpr std::size_t kFewestOfRoom = 32;  // rays: a ratio of sums over fewer is biased
-  static constexpr float kRounding = 1e-4f;         // of a sum of a few floats, less one of them
+  // Of points that lie together, and rays of theirs, that tell what the others may expect.
+  static constexpr std::size_t kFewestPools = 4, kFewestOfTogether = 256;
+  static constexpr float kRounding = 1e-4f;  // of a sum of a few floats, less one of them
 
   void carry(const SurfacePoint& point, const LightSample& sample, const std::array<float, 3>& weights) {
     const float cosine = dot(point.normal, sample.direction);
@@ -195,7 +204,7 @@ class ShadowBatch {
     for (int s = 0; s < samples_; ++s) {
       const std::uint64_t number = first + std::uint64_t(s);
       for (std::size_t d = 0; d < draws; ++d) squares[d] = r2_point(number * draws + d, shift);
-      sample_environment(*room_, point.normal, squares, samples_ * kLobeDraws, drawn);
+      sample_environment(*room_, point.normal, squares, samples_ * kLobeDraws, drawn, &lobe);
       float sum = 0;
       for (std::size_t d = 0; d < draws; ++d) {
         const RgbF& w = drawn[d].weights;
@@ -221,6 +230,7 @@ class ShadowBatch {
     if (pools_.empty() || index != pooled_) pools_.push_back(means_.size());
     pooled_ = index;
     means_.push_back(unshadowed(*room_, point.normal));
+    if (shares_shadows_) normals_.push_back(in_picture(*room_, point.normal));
     std::array<std::array<double, 2>, kMostAtOnce> squares;
     std::array<EnvironmentSample, kMostAtOnce> drawn;
     for (std::size_t s = 0, count = 0; s < std::size_t(samples_); s += count) {
@@ -231,14 +241,14 @@ class ShadowBatch {
         std::array<float, 3> weights{};
         for (std::size_t l = 0; l < lights_.size(); ++l) weights[l] = drawn[d].weights[channel(l)];
         carry(point, {drawn[d].direction, std::numeric_limits<float>::infinity(), weights[0]}, weights);
-        controls_.push_back({drawn[d].unshadowed, {}, 0, false});
+        controls_.push_back({drawn[d].unshadowed, {}, 0, drawn[d].block, false});
       }
     }
   }
 
   void control(const LightTree::Drawn& draw) {
     controls_.push_back({draw.unshadowed * mean_transmitted_, draw.mean_unshadowed * mean_transmitted_,
-                         draw.expected, false});
+                         draw.expected, 0, false});
   }
 
   // What nothing shadows is known of all lights together: as far as light reaches the point from the others that are
@@ -295,6 +305,54 @@ class ShadowBatch {
     }
   }
 
+  std::size_t end_of_pool(std::size_t p) const {
+    return p + 1 < pools_.size() ? pools_[p + 1] : means_.size();
+  }
+
+  // Every other pixel is one half. What reaches a pixel is what it may expect by the other half's rays, block by block of
+  // the room, and as much as its own rays find more: without bias, for what is expected does not depend on them. Where
+  // that is below 0, others give as much.
+  template <class Use>
+  void use_together(const Use& use) const {
+    const std::size_t samples = std::size_t(samples_), lights = lights_.size();
+    RoomShadows shadows(*room_->picture);
+    std::array<bool, 2> has_dark{};
+    for (std::size_t p = 0; p < pools_.size(); ++p)
+      for (std::size_t i = pools_[p] * samples; i < end_of_pool(p) * samples; ++i) {
+        const std::span<const float> carried(&carried_[i * lights], lights);
+        const bool is_traced = std::ranges::any_of(carried, [](float c) { return c > 0; });
+        shadows.add(p % 2, controls_[i].block, controls_[i].lit);
+        has_dark[p % 2] |= is_traced && !controls_[i].lit;
+      }
+    shadows.estimate(has_dark);
+    std::vector<float> found(carried_.size()), of_pools(pools_.size() * lights), all(lights),
+        positive(lights);
+    for (std::size_t p = 0; p < pools_.size(); ++p)
+      for (std::size_t point = pools_[p]; point < end_of_pool(p); ++point) {
+        const RgbF expected = shadows.irradiance(p % 2, normals_[point]) * (1 / float(samples));
+        for (std::size_t i = point * samples; i < (point + 1) * samples; ++i) {
+          const float open = shadows.open(p % 2, controls_[i].block);
+          for (std::size_t l = 0; l < lights; ++l) {
+            const std::size_t k = channel(l), ray = i * lights + l;
+            found[ray] = (controls_[i].lit ? carried_[ray] : 0) - open * controls_[i].here[k] + expected[k];
+            of_pools[p * lights + l] += found[ray];
+          }
+        }
+      }
+    for (std::size_t i = 0; i < of_pools.size(); ++i) {
+      all[i % lights] += of_pools[i];
+      positive[i % lights] += std::max(0.0f, of_pools[i]);
+    }
+    for (std::size_t p = 0; p < pools_.size(); ++p)
+      for (std::size_t i = pools_[p] * samples; i < end_of_pool(p) * samples; ++i)
+        for (std::size_t l = 0; l < lights; ++l) {
+          const std::size_t k = channel(l), ray = i * lights + l;
+          const float scale = of_pools[p * lights + l] > 0 ? std::max(0.0f, all[l]) / positive[l] : 0;
+          use(l, i / samples, int(i % samples), found[ray] * scale,
+              carried_[ray] - controls_[i].here[k] + means_[i / samples][k] / float(samples));
+        }
+  }
+
   // Points that follow each other need not lie together, and rays that do are traced in half the time.
   void trace_sorted() {
     constexpr float kCells = 1023;
@@ -325,17 +383,19 @@ class ShadowBatch {
   const EnvironmentLight* room_;  // null: another light
   float mean_transmitted_;        // about as much as the boundary lets in
   std::vector<LightTree::Drawn> drawn_;
-  bool scattered_ = false, keeps_directions_ = false;
+  bool scattered_ = false, keeps_directions_ = false, shares_shadows_ = false;
   std::vector<float> carried_;
   /// Of one sample of many lights: what its light would bring were nothing in the way, over how often it is drawn; the mean
   /// of that over all draws of the sample.
   struct Control {
     RgbF here, mean;
     float expected;
+    std::uint32_t block;  // of a room
     bool lit;
   };
   std::vector<Control> controls_;   // empty: none
   std::vector<RgbF> means_;         // of points that a room lights
+  std::vector<Vec3d> normals_;      // of these, in the room's picture
   std::vector<std::size_t> pools_;  // the first point of each
   std::uint64_t pooled_ = 0;        // the last point's sequence
   std::vector<Vec3f> directions_;

@@ -27,6 +27,14 @@ Vec3d turned(const Vec3d& direction, double degrees) {
           direction.z * turn.cosine - direction.x * turn.sine};
 }
 
+}  // namespace
+
+Vec3d in_picture(const EnvironmentLight& light, const Vec3f& direction) {
+  return turned(Vec3d(direction), -light.rotation);
+}
+
+namespace {
+
 /// What the light's picture has in a direction. Its channels, lights of their own, are asked one after the other.
 RgbF radiance_towards(const EnvironmentLight& light, const Vec3f& direction) {
   struct Asked {
@@ -38,7 +46,7 @@ RgbF radiance_towards(const EnvironmentLight& light, const Vec3f& direction) {
   thread_local Asked last;
   if (last.picture != light.picture->hash() || last.rotation != light.rotation || last.direction != direction)
     last = {light.picture->hash(), light.rotation, direction,
-            light.picture->radiance(turned(Vec3d(direction), -light.rotation))};
+            light.picture->radiance(in_picture(light, direction))};
   return last.radiance;
 }
 
@@ -50,20 +58,31 @@ float channel_of(const EnvironmentLight& light, const RgbF& colour) {
 
 void sample_environment(const EnvironmentLight& light, const Vec3f& normal,
                         std::span<const std::array<double, 2>> unit_squares, int samples,
-                        std::span<EnvironmentSample> drawn) {
+                        std::span<EnvironmentSample> drawn, const Lobe* lobe) {
   std::array<EnvironmentPicture::Sample, kMostAtOnce> of_picture;
-  light.picture->sample(unit_squares, turned(Vec3d(normal), -light.rotation), light.rotation,
-                        std::span(of_picture).first(unit_squares.size()));
+  const auto samples_of_picture = std::span(of_picture).first(unit_squares.size());
+  const Vec3d turned_normal = in_picture(light, normal);
+  if (const EnvironmentPicture::InLobe* const blocks = lobe != nullptr ? known_blocks(light, *lobe) : nullptr)
+    light.picture->sample(unit_squares, turned_normal, *blocks, light.rotation, samples_of_picture);
+  else
+    light.picture->sample(unit_squares, turned_normal, light.rotation, samples_of_picture);
   for (std::size_t i = 0; i < unit_squares.size(); ++i) {
     const Vec3f direction(of_picture[i].direction);
     const RgbF weights = of_picture[i].weight * (1 / float(samples));
     const float assumed = of_picture[i].assumed_cosine;
-    drawn[i] = {direction, weights, weights * (assumed > 0 ? assumed : dot(normal, direction))};
+    drawn[i] = {direction, weights, weights * (assumed > 0 ? assumed : dot(normal, direction)),
+                of_picture[i].block};
   }
 }
 
+RoomLobe room_lobe(const EnvironmentLight& light, const Vec3f& normal, const Lobe& lobe) {
+  return {
+      light.picture.get(), light.rotation,
+      light.picture->blocks_in_lobe(in_picture(light, lobe.mirrored), lobe.alpha, in_picture(light, normal))};
+}
+
 RgbF unshadowed(const EnvironmentLight& light, const Vec3f& normal) {
-  return light.picture->unshadowed(turned(Vec3d(normal), -light.rotation));
+  return light.picture->unshadowed(in_picture(light, normal));
 }
 
 template <>
@@ -142,8 +161,7 @@ LightSample LightOf<EnvironmentLight>::sample(const EnvironmentLight& light, con
 template <>
 float LightOf<EnvironmentLight>::density(const EnvironmentLight& light, const Vec3f&, const Vec3f& normal,
                                          const Vec3f& direction) {
-  return light.picture->density(turned(Vec3d(direction), -light.rotation),
-                                turned(Vec3d(normal), -light.rotation));
+  return light.picture->density(in_picture(light, direction), in_picture(light, normal));
 }
 
 template <>

@@ -8,9 +8,9 @@
 #include <map>
 #include <mutex>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
+#include "lights/cumulative_shares.h"
 #include "opaline/core/error.h"
 #include "opaline/core/random.h"
 #include "opaline/image/image.h"
@@ -20,7 +20,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kMostColumns = 1024, kBlockColumns = 64;
-constexpr std::size_t kNormals = 17;  // along each side of the unfolded octahedron
 // How far a normal is from its table's, at most, and what directions weigh that such a normal alone sees: radians, and
 // as a cosine.
 constexpr double kBetweenNormals = .15, kLeastCosine = .05;
@@ -29,20 +28,6 @@ constexpr double kBetweenNormals = .15, kLeastCosine = .05;
 Vec3d unfolded_normal(double x, double y) {
   const double z = 1 - std::abs(x) - std::abs(y), over = std::max(-z, 0.0);
   return normalized(Vec3d{x + (x < 0 ? over : -over), y + (y < 0 ? over : -over), z});
-}
-
-std::size_t nearest_table(const Vec3d& normal) {
-  const double sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
-  double x = normal.x / sum, y = normal.y / sum;
-  if (normal.z < 0) {
-    const double unfolded = (1 - std::abs(y)) * (x < 0 ? -1 : 1);
-    y = (1 - std::abs(x)) * (y < 0 ? -1 : 1);
-    x = unfolded;
-  }
-  const auto step = [](double v) {
-    return std::size_t(std::clamp(std::round((v * .5 + .5) * (kNormals - 1)), 0.0, double(kNormals - 1)));
-  };
-  return step(y) * kNormals + step(x);
 }
 
 float mean_of(const RgbF& colour) {
@@ -78,25 +63,6 @@ struct KnownPicture {
   std::uintmax_t bytes = 0;
   std::weak_ptr<const EnvironmentPicture> picture;
 };
-
-// The share of [0, 1) that `u` lies in, by its end; u becomes its place within.
-std::size_t draw(const float* ends, std::size_t count, double& u) {
-  // As upper_bound, which would wait for each comparison before the next; the last end is 1.
-  const float wanted = float(u);
-  int before = 0;
-  for (std::size_t k = 0; k < count; ++k) before += ends[k] <= wanted ? 1 : 0;
-  const std::size_t i = std::min(std::size_t(before), count - 1);
-  const double begin = i > 0 ? double(ends[i - 1]) : 0, width = double(ends[i]) - begin;
-  u = width > 0 ? std::clamp((u - begin) / width, 0.0, 1.0) : .5;
-  return i;
-}
-
-// Running sums to shares of the last.
-void normalize(float* ends, std::size_t count, double sum) {
-  for (std::size_t i = 0; i < count; ++i)
-    ends[i] = sum > 0 ? float(double(ends[i]) / sum) : float(i + 1) / float(count);
-  ends[count - 1] = 1;
-}
 
 }  // namespace
 
@@ -179,8 +145,8 @@ double EnvironmentPicture::flux_of(std::size_t row, std::size_t column) const {
   const auto share = [this](std::size_t cell) {
     return double(std::min(cell * step_, width_)) / double(width_);
   };
-  return double(cells_[row * columns_ + column].importance) * (row_cosines_[row] - row_cosines_[row + 1]) * 2 *
-         kPi * (share(column + 1) - share(column));
+  return double(cells_[row * columns_ + column].importance) * (row_cosines_[row] - row_cosines_[row + 1]) *
+         2 * kPi * (share(column + 1) - share(column));
 }
 
 void EnvironmentPicture::make_blocks() {
@@ -244,11 +210,12 @@ void EnvironmentPicture::make_cosine_tables() {
     for (std::size_t c = 0; c < block_columns_; ++c)
       middles.push_back(direction_of(
           {(double(c) + .5) * double(block_ * step_), (double(r) + .5) * double(block_ * step_)}));
+  for (const Vec3d& middle : middles) middles_.emplace_back(middle);
   block_row_ends_.resize(kNormals * kNormals * block_rows_);
   block_column_ends_.resize(kNormals * kNormals * middles.size());
   assumed_cosines_.resize(kNormals * kNormals * middles.size());
   unshadowed_.resize(kNormals * kNormals);
-  const std::vector<BlockIntegral> integrals = block_integrals();
+  integrals_ = block_integrals();
   for (std::size_t n = 0; n < kNormals * kNormals; ++n) {
     const auto side = [](std::size_t i) { return 2 * double(i) / (kNormals - 1) - 1; };
     const Vec3d normal = unfolded_normal(side(n % kNormals), side(n / kNormals));
@@ -263,11 +230,11 @@ void EnvironmentPicture::make_cosine_tables() {
         const double assumed = cosine > lowest ? std::max(cosine, kLeastCosine) : 0;
         column_ends[c] = float(row += block_flux_[b] * assumed);
         if (cosine > -lowest) {
-          for (std::size_t k = 0; k < 3; ++k) unshadowed_[n].above[k] += integrals[b].vectors[k];
+          for (std::size_t k = 0; k < 3; ++k) unshadowed_[n].above[k] += integrals_[b].vectors[k];
           continue;
         }
-        assumed_cosines_[n * middles.size() + b] = float(assumed);
-        unshadowed_[n].others += integrals[b].radiance * assumed;
+        assumed_cosines_[n * middles.size() + b] = assumed > 0 ? float(assumed) : -1;
+        unshadowed_[n].others += integrals_[b].radiance * assumed;
       }
       normalize(column_ends, block_columns_, row);
       row_ends[r] = float(whole += row);
@@ -293,7 +260,8 @@ std::size_t EnvironmentPicture::memory() const {
                              assumed_cosines_.size();
   return floats * sizeof(float) + pixels_.size() * sizeof(RgbF) +
          (row_cosines_.size() + block_flux_.size()) * sizeof(double) +
-         unshadowed_.size() * sizeof(Unshadowed) + block_flux_.size() * sizeof(BlockIntegral);
+         unshadowed_.size() * sizeof(Unshadowed) +
+         block_flux_.size() * (sizeof(BlockIntegral) + sizeof(Vec3f));
 }
 
 RgbF EnvironmentPicture::radiance(const Vec3d& direction) const {
@@ -310,89 +278,6 @@ RgbF EnvironmentPicture::radiance(const Vec3d& direction) const {
   };
   return (at(left, top) * (1 - right_share) + at(left + 1, top) * right_share) * (1 - bottom_share) +
          (at(left, top + 1) * (1 - right_share) + at(left + 1, top + 1) * right_share) * bottom_share;
-}
-
-// That a direction in the block is drawn.
-double EnvironmentPicture::block_share(std::size_t normal, std::size_t block_row,
-                                       std::size_t block_column) const {
-  const auto share = [](const float* ends, std::size_t i) {
-    return double(ends[i]) - (i > 0 ? double(ends[i - 1]) : 0);
-  };
-  return share(&block_row_ends_[normal * block_rows_], block_row) *
-         share(&block_column_ends_[(normal * block_rows_ + block_row) * block_columns_], block_column);
-}
-
-EnvironmentPicture::Sample EnvironmentPicture::sample(std::array<double, 2> unit_square, const Vec3d& normal,
-                                                      double turn) const {
-  Sample drawn;
-  sample(std::span(&unit_square, 1), normal, turn, std::span(&drawn, 1));
-  return drawn;
-}
-
-void EnvironmentPicture::sample(std::span<const std::array<double, 2>> unit_squares, const Vec3d& normal,
-                                double turn, std::span<Sample> samples) const {
-  constexpr std::size_t kAtOnce = 8;
-  struct Place {
-    double u, v;
-    std::size_t block, row, column;
-  };
-  std::array<Place, kAtOnce> places;
-  const std::size_t n = nearest_table(normal);
-  for (std::size_t begin = 0; begin < unit_squares.size(); begin += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, unit_squares.size() - begin);
-    for (std::size_t i = 0; i < count; ++i) {
-      Place& place = places[i];
-      std::tie(place.u, place.v) = std::tie(unit_squares[begin + i][0], unit_squares[begin + i][1]);
-      const std::size_t block_row = draw(&block_row_ends_[n * block_rows_], block_rows_, place.v);
-      const std::size_t block_column =
-          draw(&block_column_ends_[(n * block_rows_ + block_row) * block_columns_], block_columns_, place.u);
-      const std::size_t first_row = block_row * block_;
-      place.block = block_row * block_columns_ + block_column;
-      place.row = first_row + draw(&cell_rows_[block_column * rows_ + first_row],
-                                   std::min(block_, rows_ - first_row), place.v);
-      place.column = block_column * block_;
-      __builtin_prefetch(&cell_columns_[place.row * columns_ + place.column]);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      Place& place = places[i];
-      place.column += draw(&cell_columns_[place.row * columns_ + place.column],
-                           std::min(block_, columns_ - place.column), place.u);
-      __builtin_prefetch(&cells_[place.row * columns_ + place.column]);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto& [u, v, block, r, c] = places[i];
-      const Cell& cell = cells_[r * columns_ + c];
-      Sample& drawn = samples[begin + i];
-      const double density =
-          block_share(n, block / block_columns_, block % block_columns_) * double(cell.importance);
-      if (!(density > 0)) {
-        drawn = {{0, 1, 0}, {}, 0};
-        continue;
-      }
-      const double cosine = row_cosines_[r] + (row_cosines_[r + 1] - row_cosines_[r]) * v,
-                   sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-      const double left = double(c * step_), right = std::min(double(width_), left + double(step_));
-      const double longitude =
-          (.5 - (left + (right - left) * u) / double(width_)) * 2 * kPi + turn * kPi / 180;
-      drawn = {{sine * std::sin(longitude), cosine, sine * std::cos(longitude)},
-               cell.mean * float(block_flux_[block] / density),
-               assumed_cosines_[n * block_flux_.size() + block]};
-    }
-  }
-}
-
-RgbF EnvironmentPicture::unshadowed(const Vec3d& normal) const {
-  const Unshadowed& of = unshadowed_[nearest_table(normal)];
-  return RgbF(of.others + Rgb{dot(normal, of.above[0]), dot(normal, of.above[1]), dot(normal, of.above[2])});
-}
-
-float EnvironmentPicture::density(const Vec3d& direction, const Vec3d& normal) const {
-  const auto [x, y] = place_of(direction);
-  const std::size_t c = std::min(columns_ - 1, std::size_t(x) / step_),
-                    r = std::min(rows_ - 1, std::size_t(y) / step_);
-  const double flux = block_flux_[r / block_ * block_columns_ + c / block_];
-  if (!(flux > 0)) return 0;
-  return float(block_share(nearest_table(normal), r / block_, c / block_) * double(cells_[r * columns_ + c].importance) / flux);
 }
 
 }  // namespace opaline

@@ -113,7 +113,12 @@ LightSample sample_lights(std::span<const Light> lights, const Vec3f& point, con
       lights[0].source);
 }
 
-float sampling_density(const Light& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction) {
+float sampling_density(const Light& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction,
+                       const Lobe* lobe) {
+  if (const auto* room = std::get_if<EnvironmentLight>(&light.source);
+      room != nullptr && lobe != nullptr && known_blocks(*room, *lobe) != nullptr)
+    return room->picture->density(in_picture(*room, direction), in_picture(*room, normal),
+                                  *known_blocks(*room, *lobe));
   return by_kind(light,
                  [&](const auto& kind, auto of) { return of.density(kind, point, normal, direction); });
 }

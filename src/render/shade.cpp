@@ -155,7 +155,8 @@ std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_
                                         light_samples,
                                         point_irradiance_seed(input_.scene.settings),
                                         {},
-                                        bounced};
+                                        bounced,
+                                        pass.is_seen && batch.mirrors == 0};
     write(hits, field.at(hits, lighting, pass, known), batch.rays, batch.out);
   }
   return all_hits;

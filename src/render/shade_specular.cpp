@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lights/environment_sample.h"
 #include "opaline/core/random.h"
 #include "opaline/irradiance/sample_key.h"
 #include "render/shade.h"
@@ -65,6 +66,16 @@ RgbF seen_radiance(const Light& light, const Ray& ray, bool is_free) {
 
 float balance(float own, float other) {
   return own > 0 ? own / (own + other) : 0;
+}
+
+// Lobes that so many before one may be like.
+constexpr std::size_t kRecentLobes = 8;
+
+bool are_alike(const Lobe& a, const Lobe& b) {
+  constexpr float kApart = 1, kWiden = 1.25f;
+  const float apart = kApart * std::min(a.alpha, b.alpha);
+  return dot(a.mirrored, b.mirrored) > 1 - apart * apart / 2 && a.alpha < kWiden * b.alpha &&
+         b.alpha < kWiden * a.alpha;
 }
 
 }  // namespace
@@ -155,6 +166,7 @@ struct Shader::GlossyHits {
   std::uint64_t seed;
   std::vector<std::uint64_t> keys;  // of directions, in the sequence of the pixel
   std::vector<Lobe> lobes;
+  std::vector<RoomLobe> rooms;  // what the lobes mirror of a room, where there is one
 
   GlossyHits(const Shader& shader, const SurfaceHits& all, const RayBatch& rays)
       : hits(all),
@@ -177,6 +189,23 @@ struct Shader::GlossyHits {
       const Vec3f& view = frames.back().view;
       lobes.push_back({frames.back().world({-view.x, -view.y, view.z}), boundary(i).alpha()});
     }
+    const auto room = std::ranges::find_if(
+        shader.lights_, [](const Light& l) { return std::holds_alternative<EnvironmentLight>(l.source); });
+    if (room == shader.lights_.end()) return;
+    rooms.reserve(lobes.size());
+    // Those of neighbouring rays are alike: one tells for others.
+    std::vector<Lobe> known;
+    for (std::size_t i = 0; i < lobes.size(); ++i) {
+      const auto recent = known.end() - std::ptrdiff_t(std::min(known.size(), kRecentLobes));
+      auto alike = std::find_if(recent, known.end(), [&](const Lobe& k) { return are_alike(k, lobes[i]); });
+      if (alike == known.end()) {
+        rooms.push_back(room_lobe(std::get<EnvironmentLight>(room->source), hits.points[i].normal, lobes[i]));
+        lobes[i].in_room = &rooms.back();
+        known.push_back(lobes[i]);
+      } else {
+        lobes[i].in_room = alike->in_room;
+      }
+    }
   }
   const RoughBoundary& boundary(std::size_t i) const { return *appearances[i]->rough; }
   // Of what is mirrored from a direction, local.
@@ -193,7 +222,7 @@ struct Shader::GlossyHits {
   float of_light(std::size_t i, const Light& light, const Vec3f& towards) const {
     const SurfacePoint& point = hits.points[i];
     return float(to_lights * lobe_draws(light)) *
-           sampling_density(light, point.position, point.normal, towards);
+           sampling_density(light, point.position, point.normal, towards, &lobes[i]);
   }
 
   struct LobeRay {

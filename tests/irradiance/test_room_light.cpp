@@ -46,7 +46,7 @@ SurfacePoint floor_at(const LitWorld& scene, double x, double z) {
 
 // Mean irradiance of each place's rays, which share a sequence as those of a pixel do.
 std::vector<Rgb> irradiance_of(const LitWorld& scene, std::span<const SurfacePoint> places, int light_samples,
-                               std::uint64_t seed, bool as_pixels = true) {
+                               std::uint64_t seed, bool as_pixels = true, bool is_together = false) {
   std::vector<SurfacePoint> points;
   std::vector<std::uint64_t> keys;
   for (std::size_t p = 0; p < places.size(); ++p)
@@ -57,7 +57,7 @@ std::vector<Rgb> irradiance_of(const LitWorld& scene, std::span<const SurfacePoi
     }
   const std::vector<Light> lights = channels_of_room();
   const std::vector<RgbF> each =
-      irradiance_at({scene.rays, points, keys, lights, 0, light_samples, seed, {}, {}});
+      irradiance_at({scene.rays, points, keys, lights, 0, light_samples, seed, {}, {}, is_together});
   std::vector<Rgb> means(places.size());
   for (std::size_t i = 0; i < each.size(); ++i)
     means[i / kRaysOfPixel] += Rgb(each[i]) * (1. / double(kRaysOfPixel));
@@ -96,6 +96,35 @@ TEST(RoomLight, BesideABodyHasNoBias) {
         for (std::size_t c = 0; c < 3; ++c) means[c].add(e[c]);
       for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(means[c].mean(), truth[c], 4 * means[c].error() + .004 * truth[c]) << c;
+    }
+  }
+}
+
+// Claim: where pixels lie together, what hides the room from some tells of others: beside bodies 64 rays of each know its
+// light better than by themselves, and the mean over many has no bias. Source: what is expected is told by other pixels'
+// rays; measured, .5 to .84 of the error by themselves, for lamps are many. Tolerance of the mean: 4 standard errors and
+// .3 %. Fails when:
+// a pixel's own rays tell what it expects, or the picture is not asked for what its hidden blocks take.
+TEST(RoomLight, PixelsTellEachOtherOfShadows) {
+  const LitWorld scene(world_of({SphereShape{{0, 6, 0}, 6}, BoxShape{{8, 0, -20}, {9, 14, 20}}}));
+  for (const auto& [x, z] : {std::array{2., 0.}, std::array{5., 3.}, std::array{7., 0.}}) {
+    SCOPED_TRACE(testing::Message() << x << ' ' << z);
+    std::vector<SurfacePoint> places;
+    for (int p = 0; p < 1024; ++p)
+      places.push_back(floor_at(scene, x + .02 * (p % 4), z + .02 * (p / 4 % 4)));
+    const std::vector<Rgb> truths = irradiance_of(scene, std::span(places).first(16), 1 << 12, 2, false);
+    std::array<std::array<Mean, 3>, 2> off;
+    for (const bool is_together : {false, true}) {
+      const std::vector<Rgb> few = irradiance_of(scene, places, 4, 1, true, is_together);
+      for (std::size_t p = 0; p < few.size(); ++p)
+        for (std::size_t c = 0; c < 3; ++c) {
+          EXPECT_GE(few[p][c], 0);
+          off[is_together][c].add(few[p][c] / truths[p % 16][c] - 1);
+        }
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(off[1][c].mean(), 0, 4 * off[1][c].error() + .003) << c;
+      EXPECT_LT(std::sqrt(off[1][c].variance() / off[0][c].variance()), .9) << c;
     }
   }
 }

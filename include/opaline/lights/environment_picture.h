@@ -35,6 +35,7 @@ class EnvironmentPicture {
     Vec3d direction;
     RgbF weight;
     float assumed_cosine = 0;  ///< in the means of `unshadowed`, in place of its own; 0: its own
+    std::uint32_t block = 0;   ///< that it is drawn from: row by row from the top
   };
   /// in    normal: unit, of the surface, where some directions below it are drawn, too
   ///       turn: about +y, degrees, from the picture to where the direction is wanted
@@ -44,9 +45,37 @@ class EnvironmentPicture {
               std::span<Sample> samples) const;
   /// The mean over the unit square of a sample's weight times its assumed cosine: the irradiance of a surface that
   /// nothing shadows, but for what comes from near its horizon.
-  RgbF unshadowed(const Vec3d& normal) const;
+  RgbF unshadowed(const Vec3d& normal) const { return unshadowed_[nearest_normal(normal)].at(normal); }
+  /// That mean, for all normals near one of the tables'.
+  struct Unshadowed {
+    std::array<Vec3d, 3> above{};  ///< of blocks wholly above: radiance times direction, channel by channel
+    Rgb others;                    ///< radiance times the assumed cosine
+    RgbF at(const Vec3d& normal) const {
+      return RgbF(others + Rgb{dot(normal, above[0]), dot(normal, above[1]), dot(normal, above[2])});
+    }
+  };
+  /// The same, but of each block a part.
+  /// in    parts: one a block, in [0, 1]
+  Unshadowed unshadowed(std::size_t nearest_normal, std::span<const float> parts) const;
+  /// Which of the tables' normals is nearest.
+  static std::size_t nearest_normal(const Vec3d& normal);
+  std::size_t block_count() const { return block_flux_.size(); }
+  std::size_t block_columns() const { return block_columns_; }
   /// Of sample(), 1/sr.
   float density(const Vec3d& direction, const Vec3d& normal) const;
+
+  /// The blocks that a lobe mirrors, by brightness and lobe: cumulative shares. None: the lobe is so wide that
+  /// directions drawn by the cosine meet it, or all that it mirrors is dark.
+  struct InLobe {
+    std::vector<std::uint16_t> blocks;  ///< in order
+    std::vector<float> ends;
+  };
+  /// in    mirrored, alpha: as in Lobe; normal: unit, of the surface
+  InLobe blocks_in_lobe(const Vec3d& mirrored, float alpha, const Vec3d& normal) const;
+  /// As sample() and its density, but seven of eight directions go to blocks in the lobe.
+  void sample(std::span<const std::array<double, 2>> unit_squares, const Vec3d& normal, const InLobe& lobe,
+              double turn, std::span<Sample> samples) const;
+  float density(const Vec3d& direction, const Vec3d& normal, const InLobe& lobe) const;
 
   bool is_grey() const { return is_grey_; }
   /// At most, while it is read: four channels of the file beside the pixels and their tables; bytes.
@@ -55,6 +84,8 @@ class EnvironmentPicture {
   std::uint64_t hash() const { return hash_; }
 
  private:
+  static constexpr std::size_t kNormals = 17;  ///< along each side of the unfolded octahedron
+
   /// Column and row, in pixels, from the picture's corner.
   std::array<double, 2> place_of(const Vec3d& direction) const;
   Vec3d direction_of(std::array<double, 2> place) const;
@@ -69,7 +100,21 @@ class EnvironmentPicture {
   };
   std::vector<BlockIntegral> block_integrals() const;
   double flux_of(std::size_t row, std::size_t column) const;
-  double block_share(std::size_t normal, std::size_t block_row, std::size_t block_column) const;
+  std::size_t cell_of(const Vec3d& direction) const;
+  double block_share(std::size_t normal, std::size_t block) const;
+  double block_share(std::size_t normal, std::size_t block, const InLobe& lobe) const;
+  /// A place in the unit square on its way through the tables.
+  struct Place {
+    double u, v;
+    std::size_t block, row, column;
+  };
+  std::size_t draw_block(std::size_t normal, double& u, double& v) const;
+  std::size_t draw_block(std::size_t normal, const InLobe& lobe, double& u, double& v) const;
+  template <class... Lobe>
+  float density_in_block(const Vec3d& direction, const Vec3d& normal, const Lobe&... lobe) const;
+  template <class... Lobe>
+  void sample_blocks(std::span<const std::array<double, 2>> unit_squares, std::size_t normal, double turn,
+                     std::span<Sample> samples, const Lobe&... lobe) const;
 
   std::size_t width_, height_;
   std::vector<RgbF> pixels_;
@@ -89,13 +134,10 @@ class EnvironmentPicture {
   std::vector<float> cell_rows_;    ///< cumulative shares of a block's rows, one block column after the other
   std::vector<float> cell_columns_;  ///< cumulative shares of a row's cells within each block
   std::vector<float> block_row_ends_, block_column_ends_;  ///< cumulative shares of blocks, for each normal
-  std::vector<float> assumed_cosines_;  ///< of blocks, for each normal; 0: the sample's own
-  /// Of a normal: of blocks that are wholly above it the integral of radiance times direction, channel by channel, and
-  /// of others radiance times the assumed cosine.
-  struct Unshadowed {
-    std::array<Vec3d, 3> above{};
-    Rgb others;
-  };
+  std::vector<float>
+      assumed_cosines_;  ///< of blocks, for each normal; 0: the sample's own; < 0: none is drawn
+  std::vector<BlockIntegral> integrals_;
+  std::vector<Vec3f> middles_;  ///< of blocks
   std::vector<Unshadowed> unshadowed_;
 };
 

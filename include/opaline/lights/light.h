@@ -37,10 +37,13 @@ int shadow_rays(const Light& light, int light_samples);
 /// Whether the light has an area or is all around: rays see it.
 bool is_visible(const Light& light);
 
+struct RoomLobe;
+
 /// Where a surface mirrors a light towards the eye: facets (GGX) about the direction of a smooth mirror.
 struct Lobe {
-  Vec3f mirrored;  ///< unit
-  float alpha;     ///< > 0
+  Vec3f mirrored;                     ///< unit
+  float alpha;                        ///< > 0
+  const RoomLobe* in_room = nullptr;  ///< what it mirrors of a room, if that is known
 };
 
 /// Of a lobe's light how much comes from an angle off its middle: as many facets as face half of it, over the most.
@@ -68,7 +71,9 @@ LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& no
                          std::array<double, 2> unit_square, int samples);
 
 /// With which sample_light draws a direction from the point, 1/sr; 0 for delta lights.
-float sampling_density(const Light& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction);
+/// in    lobe: if not null, for which directions are drawn
+float sampling_density(const Light& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction,
+                       const Lobe* lobe = nullptr);
 
 /// Radiance of area lights that a ray meets before `far` (nearest one), and whether there is any.
 struct EmitterHit {

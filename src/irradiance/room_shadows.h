@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What hides a room from points that lie together, as their shadow rays tell.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "opaline/lights/environment_picture.h"
+
+namespace opaline {
+
+/// Of each block of a room's picture, how much of its light reaches points that lie together. The points are two halves:
+/// what one may expect is told by the rays of the other, so that it does not depend on its own.
+class RoomShadows {
+ public:
+  explicit RoomShadows(const EnvironmentPicture& room);
+
+  /// A ray of a half towards a block.
+  void add(std::size_t half, std::size_t block, bool is_lit) {
+    Half& of = halves_[half];
+    of.tried[block] += 1;
+    of.lit[block] += is_lit ? 1 : 0;
+  }
+  /// To be called when all rays are added; has_dark: of each half, whether anything was in the way of its rays.
+  void estimate(const std::array<bool, 2>& has_dark);
+
+  /// The part of a block's light that reaches points of a half, in [0, 1].
+  float open(std::size_t half, std::size_t block) const { return halves_[1 - half].open[block]; }
+  /// The irradiance of a surface of that half, were this so; as EnvironmentPicture::unshadowed.
+  /// in    normal: unit, in the picture's space
+  RgbF irradiance(std::size_t half, const Vec3d& normal);
+
+ private:
+  struct Half {
+    std::vector<float> tried, lit, open;  // block by block
+    std::vector<std::pair<std::size_t, EnvironmentPicture::Unshadowed>>
+        known;  // by the nearest normal of the room's
+  };
+  void spread(std::vector<float>& counts);
+
+  const EnvironmentPicture& room_;
+  std::array<Half, 2> halves_;
+  std::vector<float> spread_;
+};
+
+}  // namespace opaline

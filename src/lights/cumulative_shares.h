@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables of cumulative shares, from which one is drawn.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+namespace opaline {
+
+// The share of [0, 1) that `u` lies in, by its end; u becomes its place within.
+inline std::size_t draw(const float* ends, std::size_t count, double& u) {
+  // As upper_bound, which would wait for each comparison before the next; the last end is 1.
+  const float wanted = float(u);
+  int before = 0;
+  for (std::size_t k = 0; k < count; ++k) before += ends[k] <= wanted ? 1 : 0;
+  const std::size_t i = std::min(std::size_t(before), count - 1);
+  const double begin = i > 0 ? double(ends[i - 1]) : 0, width = double(ends[i]) - begin;
+  u = width > 0 ? std::clamp((u - begin) / width, 0.0, 1.0) : .5;
+  return i;
+}
+
+// Running sums to shares of the last.
+inline void normalize(float* ends, std::size_t count, double sum) {
+  for (std::size_t i = 0; i < count; ++i)
+    ends[i] = sum > 0 ? float(double(ends[i]) / sum) : float(i + 1) / float(count);
+  ends[count - 1] = 1;
+}
+
+inline double share_of(const float* ends, std::size_t i) {
+  return double(ends[i]) - (i > 0 ? double(ends[i - 1]) : 0);
+}
+
+}  // namespace opaline
