@@ -118,7 +118,7 @@ void EnvironmentPicture::sample(std::span<const std::array<double, 2>> unit_squa
 EnvironmentPicture::InLobe EnvironmentPicture::blocks_in_lobe(const Vec3d& mirrored, float alpha,
                                                               const Vec3d& normal) const {
   // Facets turn by half of what they mirror; beyond three times alpha a hundredth of them is left.
-  constexpr float kReach = 6, kWidest = .6f;  // radians
+  constexpr float kReach = 6, kWidest = 1;  // radians
   const float half_block = float(std::hypot(kPi / double(block_rows_), 2 * kPi / double(block_columns_)) / 2);
   const float reach = kReach * alpha + half_block;
   if (reach > kWidest) return {};

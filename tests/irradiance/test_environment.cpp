@@ -139,7 +139,10 @@ TEST(EnvironmentLight, SamplesForALobeAddUp) {
       ASSERT_NEAR(drawn.weight.y * density / room(std::min(x, width - 1), y, width).y, 1, 1e-3) << i;
       const auto by_cosine = picture->sample(square, normal);
       all += Rgb(by_cosine.weight) * (std::max(0.0, dot(by_cosine.direction, normal)) / kSamples);
-      in_lobe += dot(by_cosine.direction, mirrored) > near;
+      if (!(dot(by_cosine.direction, mirrored) > near)) continue;
+      ++in_lobe;
+      ASSERT_GT(picture->density(by_cosine.direction, normal, lobe),
+                picture->density(by_cosine.direction, normal));
     }
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(for_lobe[c] / all[c], 1, .05) << c;
     EXPECT_GT(for_lobe_in_lobe, 5 * in_lobe);

@@ -2,6 +2,7 @@
 // How well few shadow rays know the light of a room with lamps of many colours.
 #include <gtest/gtest.h>
 
+#include "lights/environment_sample.h"
 #include "opaline/core/random.h"
 #include "opaline/irradiance/sample_key.h"
 #include "opaline/lights/environment_picture.h"
@@ -172,6 +173,12 @@ TEST(RoomLight, LampsInALobe) {
     for (const double sum : mirrored_by(16, lobes, kPoints)) part.add(sum / truth);
     EXPECT_NEAR(part.mean(), 1, 4 * part.error() + .01);
     EXPECT_LT(std::sqrt(part.variance()), .25);
+    const RoomLobe in_room = room_lobe(std::get<EnvironmentLight>(lights[1].source), {0, 1, 0}, lobes[0]);
+    const std::vector<Lobe> known(kPoints, Lobe{towards, kAlpha, &in_room});
+    Mean by_lobe;
+    for (const double sum : mirrored_by(4, known, kPoints)) by_lobe.add(sum / truth);
+    EXPECT_NEAR(by_lobe.mean(), 1, 4 * by_lobe.error() + .01);
+    EXPECT_LT(std::sqrt(by_lobe.variance()), .2);
   }
   EXPECT_EQ(lamps, 4);
 }
