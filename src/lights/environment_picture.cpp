@@ -5,9 +5,11 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "lights/cumulative_shares.h"
@@ -19,7 +21,7 @@ namespace opaline {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::size_t kMostColumns = 1024, kBlockColumns = 64;
+constexpr std::size_t kMostColumns = 1024, kBlockColumns = 64, kBrightest = 32;
 // How far a normal is from its table's, at most, and what directions weigh that such a normal alone sees: radians, and
 // as a cosine.
 constexpr double kBetweenNormals = .15, kLeastCosine = .05;
@@ -173,6 +175,12 @@ void EnvironmentPicture::make_blocks() {
       normalize(row_ends + first_row, end_row - first_row, whole);
       block_flux_[block_row * block_columns_ + block_column] = whole;
     }
+  brightest_.resize(block_flux_.size());
+  std::iota(brightest_.begin(), brightest_.end(), std::uint16_t(0));
+  const auto count = std::min(kBrightest, brightest_.size());
+  std::ranges::partial_sort(brightest_, brightest_.begin() + std::ptrdiff_t(count), std::greater<>(),
+                            [&](std::uint16_t b) { return block_flux_[b]; });
+  brightest_.resize(count);
 }
 
 // In closed form, for the draws of a cell are uniform over its directions.

@@ -49,8 +49,11 @@ int shadow_rays(const Light& light, int light_samples) {
   return many == nullptr || many->tree->has_area() ? light_samples : (light_samples + kFewer - 1) / kFewer;
 }
 
-int lobe_draws(const Light& light) {
-  return std::holds_alternative<EnvironmentLight>(light.source) ? kLobeDraws : 1;
+int lobe_draws(const Light& light, const Lobe& lobe) {
+  const auto* const room = std::get_if<EnvironmentLight>(&light.source);
+  if (room == nullptr) return 1;
+  const EnvironmentPicture::InLobe* const blocks = known_blocks(*room, lobe);
+  return blocks == nullptr || blocks->blocks.empty() ? kLobeDraws : 1;
 }
 
 float mirrored(const Lobe& lobe, float cosine) {

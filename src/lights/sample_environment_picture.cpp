@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "lights/cumulative_shares.h"
 #include "opaline/lights/environment_picture.h"
@@ -143,22 +144,27 @@ EnvironmentPicture::InLobe EnvironmentPicture::blocks_in_lobe(const Vec3d& mirro
   const float* const assumed = &assumed_cosines_[nearest_normal(normal) * block_flux_.size()];
   const float least = std::cos(reach);
   InLobe in_lobe;
-  double sum = 0;
-  const auto take = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      const float cosine = dot(middles_[b], lobe.mirrored);
-      if (cosine < least || assumed[b] < 0 || !(block_flux_[b] > 0)) continue;
-      sum += block_flux_[b] * double(opaline::mirrored(lobe, cosine));
-      in_lobe.blocks.push_back(std::uint16_t(b));
-      in_lobe.ends.push_back(float(sum));
-    }
+  const auto look_at = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b)
+      if (dot(middles_[b], lobe.mirrored) > least) in_lobe.blocks.push_back(std::uint16_t(b));
   };
   const std::size_t end_column = first_column + columns,
                     over_border = end_column - std::min(end_column, block_columns_);
   for (std::size_t r = row_at(angle - double(reach)); r <= row_at(angle + double(reach)); ++r) {
     const std::size_t row = r * block_columns_;
-    take(row, row + over_border);
-    take(row + first_column, row + std::min(end_column, block_columns_));
+    look_at(row, row + over_border);
+    look_at(row + first_column, row + std::min(end_column, block_columns_));
+  }
+  // A sun in the lobe's tail may bring more than all that is in its middle.
+  in_lobe.blocks.insert(in_lobe.blocks.end(), brightest_.begin(), brightest_.end());
+  std::ranges::sort(in_lobe.blocks);
+  std::erase_if(in_lobe.blocks, [&, last = -1](std::uint16_t b) mutable {
+    return std::exchange(last, int(b)) == int(b) || assumed[b] < 0 || !(block_flux_[b] > 0);
+  });
+  double sum = 0;
+  for (const std::uint16_t b : in_lobe.blocks) {
+    sum += block_flux_[b] * double(opaline::mirrored(lobe, dot(middles_[b], lobe.mirrored)));
+    in_lobe.ends.push_back(float(sum));
   }
   if (!(sum > 0)) return {};
   normalize(in_lobe.ends.data(), in_lobe.ends.size(), sum);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the boundaries of translucent things mirror: lights, what is all around, and surfaces as they are lit. A smooth
-// boundary is one ray. A rough one draws directions from its lobe and from the lights, weighted by the balance
+// boundary is one ray. A rough one draws directions from its lobe and from the lights, weighted by the power
 // heuristic (Veach & Guibas 1995).
 #include <algorithm>
 #include <cmath>
@@ -64,8 +64,10 @@ RgbF seen_radiance(const Light& light, const Ray& ray, bool is_free) {
   return emitter.hit ? emitter.radiance : is_free ? background(light, ray.direction) : RgbF{};
 }
 
-float balance(float own, float other) {
-  return own > 0 ? own / (own + other) : 0;
+// Rather than the balance: where either way of drawing is much the better one, the other's noise is left out.
+float power(float own, float other) {
+  const float ratio = other / own;
+  return own > 0 ? 1 / (1 + ratio * ratio) : 0;
 }
 
 // Lobes that so many before one may be like.
@@ -221,7 +223,7 @@ struct Shader::GlossyHits {
   }
   float of_light(std::size_t i, const Light& light, const Vec3f& towards) const {
     const SurfacePoint& point = hits.points[i];
-    return float(to_lights * lobe_draws(light)) *
+    return float(to_lights * lobe_draws(light, lobes[i])) *
            sampling_density(light, point.position, point.normal, towards, &lobes[i]);
   }
 
@@ -301,7 +303,7 @@ void Shader::add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) cons
         const Light& light = lights_[l];
         const Vec3f local = glossy.frames[i].local(towards);
         const float share =
-            is_delta(light) ? 1 : balance(glossy.of_light(i, light, towards), glossy.of_lobe(i, towards));
+            is_delta(light) ? 1 : power(glossy.of_light(i, light, towards), glossy.of_lobe(i, towards));
         const float value = glossy.boundary(i).value(glossy.frames[i].view, local) / local.z;
         const float weight = irradiance * value * share;
         glossy.specular(i) += emitted_[l] * glossy.color(i, local) * weight;
@@ -336,8 +338,8 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldVie
       RgbF radiance = seen_radiance(coat != nullptr ? unit_lights_[l] : light, ray, is_free);
       if (radiance == RgbF{}) continue;
       const float balanced = is_again ? weight
-                                      : weight * balance(glossy.of_lobe(i, ray.direction),
-                                                         glossy.of_light(i, light, ray.direction));
+                                      : weight * power(glossy.of_lobe(i, ray.direction),
+                                                       glossy.of_light(i, light, ray.direction));
       if (coat != nullptr) {
         const float unit = max_component(radiance);
         coat->lights.push_back({glossy.hits.rays[i], std::uint32_t(l), unit, balanced});

@@ -64,7 +64,7 @@ class EnvironmentPicture {
   /// Of sample(), 1/sr.
   float density(const Vec3d& direction, const Vec3d& normal) const;
 
-  /// The blocks that a lobe mirrors, by brightness and lobe: cumulative shares. None: the lobe is so wide that
+  /// The blocks that a lobe mirrors, and the brightest of all, by brightness and lobe: cumulative shares. None: the lobe is so wide that
   /// directions drawn by the cosine meet it, or all that it mirrors is dark.
   struct InLobe {
     std::vector<std::uint16_t> blocks;  ///< in order
@@ -137,7 +137,8 @@ class EnvironmentPicture {
   std::vector<float>
       assumed_cosines_;  ///< of blocks, for each normal; 0: the sample's own; < 0: none is drawn
   std::vector<BlockIntegral> integrals_;
-  std::vector<Vec3f> middles_;  ///< of blocks
+  std::vector<Vec3f> middles_;            ///< of blocks
+  std::vector<std::uint16_t> brightest_;  ///< of blocks, some
   std::vector<Unshadowed> unshadowed_;
 };
 

@@ -50,8 +50,8 @@ struct Lobe {
 float mirrored(const Lobe& lobe, float cosine);
 
 /// Directions that are drawn for each shadow ray that is to show what a lobe mirrors: of a room, whose lamps are many and
-/// small, some, of which the ray takes one.
-int lobe_draws(const Light& light);
+/// small, some, of which the ray takes one. Where what the lobe mirrors of the room is known they are alike, and count as one.
+int lobe_draws(const Light& light, const Lobe& lobe);
 
 /// True for the channels of one picture, or of one tree of lights: their samples have the same directions.
 bool share_rays(const Light& a, const Light& b);
