@@ -19,11 +19,12 @@ inline std::size_t draw(const float* ends, std::size_t count, double& u) {
   return i;
 }
 
-// Running sums to shares of the last.
+// Running sums to shares of the last. Where the sums do not grow the shares are none, also behind the last that does:
+// rounding would else draw from there, once in millions, what counts for as many.
 inline void normalize(float* ends, std::size_t count, double sum) {
+  const float whole = ends[count - 1];
   for (std::size_t i = 0; i < count; ++i)
-    ends[i] = sum > 0 ? float(double(ends[i]) / sum) : float(i + 1) / float(count);
-  ends[count - 1] = 1;
+    ends[i] = !(sum > 0) ? float(i + 1) / float(count) : ends[i] >= whole ? 1 : float(double(ends[i]) / sum);
 }
 
 inline double share_of(const float* ends, std::size_t i) {
