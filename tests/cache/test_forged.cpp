@@ -15,32 +15,32 @@ using namespace test;
 
 constexpr std::size_t kCount = 600;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-const StageKey kKey{1, 2};
+const StageKey kForgedKey{1, 2};
 
 /// Whether it is found after it was kept.
 bool is_believed(const SurfaceSamples& samples) {
   const ScratchFolder folder;
   StageCache cache(folder.path.string());
-  cache.keep_samples(kKey, samples, kMeshes);
-  return cache.find_samples(kKey, surface_of(kCount)).has_value();
+  cache.keep_samples(kForgedKey, samples, kMeshes);
+  return cache.find_samples(kForgedKey, surface_of(kCount)).has_value();
 }
 bool is_believed(const LightTransfer& light) {
   const ScratchFolder folder;
   StageCache cache(folder.path.string());
-  cache.keep_light(kKey, light);
-  return cache.find_light(kKey, kCount).has_value();
+  cache.keep_light(kForgedKey, light);
+  return cache.find_light(kForgedKey, kCount).has_value();
 }
 bool is_believed(const Octree& tree) {
   const ScratchFolder folder;
   StageCache cache(folder.path.string());
-  cache.keep_octree(kKey, tree);
-  return cache.find_octree(kKey, some_samples(kCount)).has_value();
+  cache.keep_octree(kForgedKey, tree);
+  return cache.find_octree(kForgedKey, some_samples(kCount)).has_value();
 }
 bool is_believed(const SurfaceCache& exitance) {
   const ScratchFolder folder;
   StageCache cache(folder.path.string());
-  cache.keep_exitance(kKey, exitance, kMeshes);
-  return cache.find_exitance(kKey, some_world(), kMeshes).has_value();
+  cache.keep_exitance(kForgedKey, exitance, kMeshes);
+  return cache.find_exitance(kForgedKey, some_world(), kMeshes).has_value();
 }
 
 /// None of the changes to a result that is believed is.
@@ -175,14 +175,14 @@ std::string entry_of(const EntryName& name, const std::string& listing, const st
 // no memory taken. Fails if: an offset or a product of count and size is not compared with the file's length,
 // or wraps.
 TEST(CacheForged, Listing) {
-  const EntryName name{"light", kKey};
+  const EntryName name{"light", kForgedKey};
   const std::string bytes(4 * kCount + 16, '\0'),
       error = "relative_error 1 x 8 at 3424\nedge_shift 1 x 8 at 3432\n";
   const ScratchFolder folder;
   const auto is_found = [&](const std::string& listing) {
     put_bytes(folder.file(file_name(name)), entry_of(name, listing, bytes));
     StageCache cache(folder.path.string());
-    return cache.find_light(kKey, kCount).has_value();
+    return cache.find_light(kForgedKey, kCount).has_value();
   };
   EXPECT_TRUE(is_found("weights 600 x 4 at 1024\n" + error));
   for (const char* weights : {
@@ -213,7 +213,7 @@ TEST(CacheForged, SparseEntry) {
   const ScratchFolder folder;
   constexpr std::uint64_t bytes = std::uint64_t(30) << 30;
   for (const char* stage : {"samples", "light", "octree", "exitance"}) {
-    const EntryName name{stage, kKey};
+    const EntryName name{stage, kForgedKey};
     std::string header = header_text(name, "weights 600 x 4 at 1024\n", bytes - kUserBlock, {});
     header.resize(kUserBlock);
     put_bytes(folder.file(file_name(name)), header);
@@ -221,9 +221,9 @@ TEST(CacheForged, SparseEntry) {
   }
   StageCache cache(folder.path.string());
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_FALSE(cache.find_samples(kKey, surface_of(kCount)));
-  EXPECT_FALSE(cache.find_light(kKey, kCount));
-  EXPECT_FALSE(cache.find_octree(kKey, some_samples(kCount)));
+  EXPECT_FALSE(cache.find_samples(kForgedKey, surface_of(kCount)));
+  EXPECT_FALSE(cache.find_light(kForgedKey, kCount));
+  EXPECT_FALSE(cache.find_octree(kForgedKey, some_samples(kCount)));
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), .5);
   EXPECT_NE(cache.warning().find("is larger than its result can be"), std::string::npos) << cache.warning();
 }

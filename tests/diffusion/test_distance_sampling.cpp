@@ -71,31 +71,31 @@ TEST(DistanceSampling, ChordRadiiFollowTheProfile) {
 /// The share that leaves beyond r, by which sample_diffusion_distance found it: of a dipole the virtual
 /// source has the last part of all shares.
 long double share_beyond(const ChannelProfile& profile, double beyond, double r) {
-  using Real = long double;
+  using Exact = long double;
   if (const auto* burley = std::get_if<NormalizedDiffusion>(&profile)) {
-    const Real x = Real(r) / Real(burley->d);
+    const Exact x = Exact(r) / Exact(burley->d);
     return (std::exp(-x) + 3 * std::exp(-x / 3)) / 4;
   }
   if (const auto* better = std::get_if<BetterDipole>(&profile)) {
-    const Real s = better->decay, h = better->height;
-    const auto beyond_radius = [&](Real x) {
-      const Real real = std::sqrt(x * x + 1), high = std::sqrt(x * x + h * h),
-                 apart = (h * h - 1) / (real + high);
+    const Exact s = better->decay, h = better->height;
+    const auto beyond_radius = [&](Exact x) {
+      const Exact real = std::sqrt(x * x + 1), high = std::sqrt(x * x + h * h),
+                  apart = (h * h - 1) / (real + high);
       return std::exp(-s * real) * (better->from_flux * (1 / real + h / high * std::exp(-s * apart)) +
                                     better->from_fluence * (s > 0 ? -std::expm1(-s * apart) / s : apart));
     };
-    return beyond_radius(Real(r) / Real(better->mean_free_path)) / beyond_radius(0);
+    return beyond_radius(Exact(r) / Exact(better->mean_free_path)) / beyond_radius(0);
   }
   if (const auto* tabulated = std::get_if<TabulatedProfile>(&profile))
     return tabulated->shape->table().beyond(r / tabulated->mean_free_path);
   const Dipole& dipole = std::get<Dipole>(profile);
-  const Real ratio = std::exp(Real(dipole.s_real) - Real(dipole.s_virtual));
-  const Real of_virtual = ratio / (1 + ratio), of_real = 1 / (1 + ratio);
-  const auto source = [&](Real z, Real s) {
-    const Real y = std::sqrt(1 + Real(r) * Real(r) / (z * z));
+  const Exact ratio = std::exp(Exact(dipole.s_real) - Exact(dipole.s_virtual));
+  const Exact of_virtual = ratio / (1 + ratio), of_real = 1 / (1 + ratio);
+  const auto source = [&](Exact z, Exact s) {
+    const Exact y = std::sqrt(1 + Exact(r) * Exact(r) / (z * z));
     return std::exp(-s * (y - 1)) / y;
   };
-  if (Real(beyond) <= of_virtual) return of_virtual * source(dipole.z_virtual, dipole.s_virtual);
+  if (Exact(beyond) <= of_virtual) return of_virtual * source(dipole.z_virtual, dipole.s_virtual);
   return of_virtual + of_real * source(dipole.z_real, dipole.s_real);
 }
 

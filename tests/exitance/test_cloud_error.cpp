@@ -19,7 +19,7 @@ const std::vector<Query>& places() {
   return queries;
 }
 
-struct Lit {
+struct LitCloud {
   const Cloud& cloud;
   Octree octree;
   DiffuseProfile profile;
@@ -60,8 +60,8 @@ TEST(CloudError, OfASphereInEvenLight) {
   const Cloud cloud(SphereShape{{}, kRadius}, 2400);
   double least = 1e9, most = 0;
   for (const double ratio : {.25, .5, 1., 2.}) {
-    const Lit lit{cloud, cloud.tree(RgbF(1)),
-                  make_diffuse_profile(grey_medium(ratio * cloud.surface.spacing(), .01, 1.3))};
+    const LitCloud lit{cloud, cloud.tree(RgbF(1)),
+                       make_diffuse_profile(grey_medium(ratio * cloud.surface.spacing(), .01, 1.3))};
     const double exact = diffuse_reflectance_within(lit.profile.channels[0], 2 * kRadius);
     const std::vector<Exitance> sums = lit.sums(lit.told());
     const double measured = difference(sums, [&](std::size_t) { return exact; }).mean,
@@ -84,7 +84,7 @@ TEST(CloudError, OfASphereInEvenLight) {
 TEST(CloudError, OfAShadowsEdgeInPointLight) {
   const Cloud cloud(SphereShape{{}, kRadius}, 4000), fine(SphereShape{{}, kRadius}, 100000, 3);
   const DiffuseProfile profile = make_diffuse_profile(grey_medium(kRadius, .01, 1.3));
-  const Lit lit{cloud, cloud.tree(half_lit), profile}, truth{fine, fine.tree(half_lit), profile};
+  const LitCloud lit{cloud, cloud.tree(half_lit), profile}, truth{fine, fine.tree(half_lit), profile};
   const CloudError soft = lit.told(0), sharp = lit.told(1);
   const std::vector<Exitance> sums = lit.sums(sharp), exact = truth.sums(sharp);
   const double measured = difference(sums, [&](std::size_t i) { return double(exact[i].exitance.x); }).mean;
@@ -101,7 +101,7 @@ TEST(CloudError, OfAShadowsEdgeInPointLight) {
 // as beyond a crease (scale 1.6).
 TEST(CloudError, SeesNoCreasesOnCurvedSurfaces) {
   const Cloud cloud(SphereShape{{}, kRadius}, 40);
-  const Lit lit{cloud, cloud.tree(RgbF(1)), make_diffuse_profile(grey_medium(kRadius, .01, 1.3))};
+  const LitCloud lit{cloud, cloud.tree(RgbF(1)), make_diffuse_profile(grey_medium(kRadius, .01, 1.3))};
   EXPECT_LT(lit.told().scale[0], 1.5f);
 }
 

@@ -18,7 +18,7 @@ struct BadFile {
   const char* says;  // part of the message
 };
 
-const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string three_vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const std::string ply =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
     "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
@@ -52,30 +52,31 @@ TEST(BadMesh, Obj) {
       {"zeros.obj", std::string(1000, '\0'), "not an OBJ file"},
       {"garbage.obj", garbage(5000), "not an OBJ file"},
       {"words.obj", "once upon a time\n", "no vertices"},
-      {"faceless.obj", triangle, "no faces"},
-      {"cut.obj", triangle + "f 1 2", ":4: bad face (expected at least three corners, got 2)"},
+      {"faceless.obj", three_vertices, "no faces"},
+      {"cut.obj", three_vertices + "f 1 2", ":4: bad face (expected at least three corners, got 2)"},
       {"cut2.obj", "v 0 0 0\nv 1", ":2: bad vertex (expected three numbers, got end of line)"},
-      {"nan.obj", triangle + "v 0 nan 0\nf 1 2 3\n", ":4: 1 vertex has a coordinate that is not finite"},
-      {"inf.obj", triangle + "v 0 0 -inf\nv inf 0 0\nf 1 2 3\n", ":4: 2 vertices have"},
-      {"huge.obj", triangle + "v 0 1e300 0\nf 1 2 3\n",
+      {"nan.obj", three_vertices + "v 0 nan 0\nf 1 2 3\n",
+       ":4: 1 vertex has a coordinate that is not finite"},
+      {"inf.obj", three_vertices + "v 0 0 -inf\nv inf 0 0\nf 1 2 3\n", ":4: 2 vertices have"},
+      {"huge.obj", three_vertices + "v 0 1e300 0\nf 1 2 3\n",
        "expected finite coordinates below 1e18, got (0, 1e+300, 0)"},
-      {"limit.obj", triangle + "v 1e18 0 0\nf 1 2 3\n", ":4: 1 vertex has"},
-      {"over.obj", triangle + "v 1e999 0 0\nf 1 2 3\n", ":4: 1 vertex has"},
-      {"text.obj", triangle + "v one two three\nf 1 2 3\n",
+      {"limit.obj", three_vertices + "v 1e18 0 0\nf 1 2 3\n", ":4: 1 vertex has"},
+      {"over.obj", three_vertices + "v 1e999 0 0\nf 1 2 3\n", ":4: 1 vertex has"},
+      {"text.obj", three_vertices + "v one two three\nf 1 2 3\n",
        ":4: bad vertex (expected three numbers, got 'one')"},
       {"comma.obj", "v 0,5 0 0\n", ":1: bad vertex (expected three numbers, got '0,5')"},
-      {"zero.obj", triangle + "f 0 1 2\n", ":4: bad vertex index in a face"},
-      {"far.obj", triangle + "f 1 2 3\nf 1 2 4\nv 0 0 1 1\nf 1 2 9\n",
+      {"zero.obj", three_vertices + "f 0 1 2\n", ":4: bad vertex index in a face"},
+      {"far.obj", three_vertices + "f 1 2 3\nf 1 2 4\nv 0 0 1 1\nf 1 2 9\n",
        ":7: vertex index out of range in a face"},
-      {"back.obj", triangle + "f -1 -2 -4\n", ":4: bad vertex index in a face"},
-      {"normal.obj", triangle + "vn 0 0 1\nf 1//1 2//1 3//2\n", ":5: normal index out of range"},
-      {"slash.obj", triangle + "f /1 2 3\n", ":4: bad vertex index in a face"},
-      {"continued.obj", triangle + "f 1 2 \\\n 3\nf 1 2 \\\n 7\n", ":7: vertex index out of range"},
+      {"back.obj", three_vertices + "f -1 -2 -4\n", ":4: bad vertex index in a face"},
+      {"normal.obj", three_vertices + "vn 0 0 1\nf 1//1 2//1 3//2\n", ":5: normal index out of range"},
+      {"slash.obj", three_vertices + "f /1 2 3\n", ":4: bad vertex index in a face"},
+      {"continued.obj", three_vertices + "f 1 2 \\\n 3\nf 1 2 \\\n 7\n", ":7: vertex index out of range"},
       {"noarea.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n", "no area"},
       {"point.obj", "v 0 0 0\nf 1 1 1\n", "no area"},
-      {"mesh.xyz", triangle,
+      {"mesh.xyz", three_vertices,
        "expected a name that ends in .obj, .ply, .stl, .off, .glb or .gltf, got '.xyz'"},
-      {"mesh", triangle, "got no extension"},
+      {"mesh", three_vertices, "got no extension"},
   });
 }
 

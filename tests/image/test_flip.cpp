@@ -15,10 +15,10 @@
 namespace opaline {
 namespace {
 
-constexpr int width = 64, height = 48;
+constexpr int kWidth = 64, kHeight = 48;
 
 Layer waves(double phase) {
-  return make_layer(width, height, [&](int x, int y, int c) {
+  return make_layer(kWidth, kHeight, [&](int x, int y, int c) {
     const double angles[3] = {.31 * x + .17 * y + phase, .23 * x - .41 * y + 1.3 * phase + 1,
                               .11 * x + .53 * y + .7 * phase + 2};
     return .5 + .5 * std::sin(angles[c]);
@@ -26,7 +26,7 @@ Layer waves(double phase) {
 }
 
 Layer blocks(double p) {
-  return make_layer(width, height, [&](int x, int y, int c) {
+  return make_layer(kWidth, kHeight, [&](int x, int y, int c) {
     const double values[3] = {(x / 7 + y / 5) % 2 * (.9 - p) + .05, x / 11 % 2 * .6 + .1 + p,
                               y / 9 % 3 * .3 + .2 * p};
     return values[c];
@@ -34,11 +34,12 @@ Layer blocks(double p) {
 }
 
 Layer edge(int shift) {
-  return make_layer(width, height, [&](int x, int, int c) { return (x >= 31 + shift ? .8 : .1) / (1 << c); });
+  return make_layer(kWidth, kHeight,
+                    [&](int x, int, int c) { return (x >= 31 + shift ? .8 : .1) / (1 << c); });
 }
 
 Layer uniform(double value) {
-  return make_layer(width, height, [&](int, int, int) { return value; });
+  return make_layer(kWidth, kHeight, [&](int, int, int) { return value; });
 }
 
 double mean_of_map(const std::vector<float>& map) {
@@ -72,10 +73,10 @@ TEST(Flip, IsTheAuthors) {
   for (const auto& c : cases) {
     SCOPED_TRACE(c.name + std::string(" at ") + std::to_string(c.pixels_per_degree));
     const std::vector<float> map = flip(c.picture, c.reference, 0, c.pixels_per_degree);
-    ASSERT_EQ(map.size(), std::size_t(width * height));
+    ASSERT_EQ(map.size(), std::size_t(kWidth * kHeight));
     EXPECT_NEAR(mean_of_map(map), c.mean, 5e-5);
     EXPECT_NEAR(map.front(), c.corner, 5e-5);
-    EXPECT_NEAR(map[20 * width + 30], c.middle, 5e-5);
+    EXPECT_NEAR(map[20 * kWidth + 30], c.middle, 5e-5);
     EXPECT_NEAR(map.back(), c.far_corner, 5e-5);
   }
 }
@@ -118,7 +119,7 @@ TEST(Flip, NonFiniteIsBlack) {
 // Claim: the exposure of a reference whose brightest channel has its p99 at 1/8 is 3 stops; fireflies, pixels
 // off the object and a black picture do not count. Source: flip.h. Fails if: the maximum stands for the p99.
 TEST(Flip, DisplayExposure) {
-  Layer layer = make_layer(width, height, [](int, int, int c) { return .125 / (1 << c); });
+  Layer layer = make_layer(kWidth, kHeight, [](int, int, int c) { return .125 / (1 << c); });
   std::vector<std::uint8_t> object = everywhere(layer);
   EXPECT_DOUBLE_EQ(display_exposure(layer, object), 3);
   for (std::size_t i = 0; i < 30; ++i) layer.channels[2][i] = 1000;  // 30 of 3072

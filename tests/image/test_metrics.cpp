@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 const float nan_value = std::nanf("");
 
 Layer grey(int width, int height, double value) {
@@ -122,8 +122,8 @@ TEST(Metrics, Channels) {
 TEST(Metrics, NonFiniteIsApart) {
   Layer a = grey(10, 10, 1.5), b = grey(10, 10, 1);
   a.channels[0][3] = nan_value;
-  a.channels[0][4] = a.channels[1][4] = -infinity;
-  b.channels[2][5] = b.channels[2][3] = infinity;
+  a.channels[0][4] = a.channels[1][4] = -kInfinity;
+  b.channels[2][5] = b.channels[2][3] = kInfinity;
   EXPECT_EQ(count_non_finite(a).nan, 1u);
   EXPECT_EQ(count_non_finite(a).infinite, 2u);
   EXPECT_EQ(count_non_finite(b).nan, 0u);
@@ -266,7 +266,7 @@ TEST(Halves, BelowNoise) {
 TEST(Halves, NonFiniteAndBlack) {
   Layer h = grey(4, 4, 1.1), d1 = grey(4, 4, 1), d2 = d1;
   h.channels[0][0] = nan_value;
-  d1.channels[0][1] = infinity;
+  d1.channels[0][1] = kInfinity;
   d2.channels[0][2] = nan_value;
   const HalvesComparison result = compare_with_halves(h, d1, d2, everywhere(h));
   EXPECT_EQ(result.channels[0].pixels, 13u);

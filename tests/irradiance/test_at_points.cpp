@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-struct Scene {
+struct PointsOfASphere {
   LitWorld lit{world_of({SphereShape{{}, 10}, BoxShape{{3, 12, 0}, {6, 13, 4}}})};
   std::vector<std::uint32_t> sphere_only = {0};
   std::vector<SurfaceSample> samples = sample_surface({lit.world, sphere_only, 500}).samples;
@@ -28,7 +28,7 @@ struct Scene {
                                light_of(QuadLight{{-4, 15, -4}, {8, 0, 0}, {0, 0, 8}, {1, 1, 0}}),
                                light_of(Surroundings{{.1, .2, .3}})};
 
-  Scene() {
+  PointsOfASphere() {
     for (Light& light : lights) light = recentred(light, lit.world.origin);
     for (const SurfaceSample& s : samples) {
       points.push_back(point_of(lit.world, s));
@@ -45,7 +45,7 @@ struct Scene {
 // integral. Tolerance: 1e-5 for delta lights; rms within 3 times the summed stated errors for area lights.
 // Fails if: one of the two forgets Ft, shadows or a light.
 TEST(IrradianceAtPoints, AgreesWithTheSamples) {
-  Scene scene;
+  PointsOfASphere scene;
   const std::vector<Light> all = scene.lights;
   for (const std::size_t kept : {2u, 5u}) {
     scene.lights.assign(all.begin(), all.begin() + std::ptrdiff_t(kept));
@@ -74,7 +74,7 @@ TEST(IrradianceAtPoints, AgreesWithTheSamples) {
 // irradiance.h. Tolerance: 3e-4 relative: at eta 1 Fresnel's formula in floats still reflects a little at
 // grazing angles, where 1 - cos^2 rounds. Fails if: eta 0 goes into Fresnel's formula.
 TEST(IrradianceAtPoints, EtaZeroIsNoBoundary) {
-  const Scene scene;
+  const PointsOfASphere scene;
   const std::vector<RgbF> none = scene.at_points(0), matched = scene.at_points(1);
   for (std::size_t i = 0; i < none.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(none[i][c], matched[i][c], 3e-4f * matched[i][c]);
@@ -84,7 +84,7 @@ TEST(IrradianceAtPoints, EtaZeroIsNoBoundary) {
 // reversed list gives reversed bytes. Source: irradiance.h. Tolerance: none. Fails if: the index in the list
 // is the key.
 TEST(IrradianceAtPoints, OrderAndThreadsDoNotMatter) {
-  Scene scene;
+  PointsOfASphere scene;
   const std::vector<RgbF> forward = with_threads(1, [&] { return scene.at_points(1.5); });
   EXPECT_TRUE(same_bytes(forward, with_threads(2, [&] { return scene.at_points(1.5); })));
   std::reverse(scene.points.begin(), scene.points.end());
@@ -98,7 +98,7 @@ TEST(IrradianceAtPoints, OrderAndThreadsDoNotMatter) {
 // one sequence; and no pixel that of another. Source: parts of a sequence are the whole. Tolerance: rounding. Fails if:
 // each ray of a pixel begins its own sequence, as it did: its mean then has four times the variance and more.
 TEST(IrradianceAtPoints, RaysOfAPixelShareASequence) {
-  const Scene scene;
+  const PointsOfASphere scene;
   const auto at = [&](std::uint64_t key, int rays) {
     return irradiance_at({scene.lit.rays, {&scene.points[7], 1}, {&key, 1}, scene.lights, 1.5, rays})[0];
   };

@@ -14,7 +14,7 @@ std::vector<Light> all_kinds() {
           unit_quad_light({-4, 15, -4}, {8, 0, 0}, {0, 0, 8}), unit_surroundings()};
 }
 
-struct Scene {
+struct SampledSphere {
   LitWorld lit{world_of({SphereShape{{}, 10}, BoxShape{{3, 12, 0}, {6, 13, 4}}})};
   std::vector<std::uint32_t> sphere_only = {0};
   std::vector<SurfaceSample> samples = sample_surface({lit.world, sphere_only, 300}).samples;
@@ -25,7 +25,7 @@ struct Scene {
 // for delta lights and for colours; alone against among others for area lights, the stated errors (another
 // place in the list may draw other points). Fails if: weights are summed over lights, or contain the colour.
 TEST(Linearity, WeightsAreOnePerLight) {
-  const Scene scene;
+  const SampledSphere scene;
   std::vector<Light> lights = all_kinds(), bright;
   for (const Light& light : lights) bright.push_back(with_emission(light, {1e12, 0, 3}));
   const auto together = scene.lit.transfers(scene.samples, lights, 1.5);
@@ -46,7 +46,7 @@ TEST(Linearity, WeightsAreOnePerLight) {
 // the extremes that must hold. Tolerance: 1e-5 relative. Fails if: sums lose the small light's floats,
 // denormals are flushed too early, or one colour serves all.
 TEST(Linearity, HoldsFromFaintToBlinding) {
-  const Scene scene;
+  const SampledSphere scene;
   const std::vector<Light> lights = all_kinds();
   const auto transfers = scene.lit.transfers(scene.samples, lights, 1.5);
   for (const double k : {1., 1e12, 1e-30}) {
@@ -73,7 +73,7 @@ TEST(Linearity, HoldsFromFaintToBlinding) {
 // not lost: 1e12 in red, 1e-30 in blue. Source: channels are apart. Tolerance: 1e-5. Fails if: channels are
 // mixed.
 TEST(Linearity, ChannelsAreApart) {
-  const Scene scene;
+  const SampledSphere scene;
   const std::vector<Light> lights = {with_emission(unit_point({0, 20, 0}), {1e12, 0, 0}),
                                      with_emission(unit_point({0, 20, 0}), {0, 0, 1e-30})};
   const auto transfers = scene.lit.transfers(scene.samples, lights, 1.5);
@@ -89,7 +89,7 @@ TEST(Linearity, ChannelsAreApart) {
 // Claim: pure red light leaves green and blue exactly 0, for every kind of light. Source: the extremes that
 // must hold. Tolerance: none. Fails if: luminance or any matrix touches the colour.
 TEST(Linearity, RedStaysRed) {
-  const Scene scene;
+  const SampledSphere scene;
   for (const Light& light : all_kinds()) {
     const std::vector<Light> red = {with_emission(light, {7, 0, 0})};
     float most = 0;

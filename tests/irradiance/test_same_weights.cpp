@@ -11,12 +11,12 @@ namespace {
 
 using namespace test;
 
-struct Scene {
+struct SampledTorus {
   LitWorld lit;
   std::vector<SurfaceSample> samples;
   std::vector<Light> lights;
 
-  explicit Scene(double k = 1)
+  explicit SampledTorus(double k = 1)
       : lit(scaled(world_of({TorusShape{{}, 10, 4}, BoxShape{{3, 12, 0}, {6, 13, 4}}}), k)) {
     const std::vector<std::uint32_t> torus_only = {0};
     samples = sample_surface({lit.world, torus_only, 3000}).samples;
@@ -42,7 +42,7 @@ void expect_same(const std::vector<LightTransfer>& a, const std::vector<LightTra
 // seed changes area lights' weights and leaves delta lights' alone. Source: the project's promise. Tolerance:
 // none. Fails if: random numbers come from a generator per thread, or errors are summed in any order.
 TEST(WeightBytes, AreTheSameForAnyThreads) {
-  const Scene scene;
+  const SampledTorus scene;
   const auto run = [&] { return scene.transfers(); };
   const auto one = with_threads(1, run);
   expect_same(one, with_threads(2, run));
@@ -58,7 +58,7 @@ TEST(WeightBytes, AreTheSameForAnyThreads) {
 // worker sets its mode deliberately; Embree asks for flushing. Tolerance: none. Fails if: the mode is set
 // once for the first thread, or not restored.
 TEST(WeightBytes, DoNotDependOnTheFloatMode) {
-  const Scene scene;
+  const SampledTorus scene;
   const unsigned before = _mm_getcsr();
   std::vector<std::vector<LightTransfer>> results;
   for (const unsigned mode : {before & ~0x8040u, before | 0x8040u}) {
@@ -74,10 +74,10 @@ TEST(WeightBytes, DoNotDependOnTheFloatMode) {
 // k^2. Source: the extremes that must hold. Tolerance: none. Fails if: an offset or a smallest distance in mm
 // is written down.
 TEST(WeightBytes, ScaleByAPowerOfTwoIsExact) {
-  const auto plain = Scene().transfers();
+  const auto plain = SampledTorus().transfers();
   for (const double k : {16., 1. / 256}) {
     SCOPED_TRACE(k);
-    auto transfers = Scene(k).transfers();
+    auto transfers = SampledTorus(k).transfers();
     for (float& weight : transfers[0].weights) weight *= float(k * k);
     expect_same(plain, transfers);
   }

@@ -11,7 +11,7 @@
 namespace opaline::test {
 namespace {
 
-Scene small(ShapeSource source, const Medium& medium, const Light& light) {
+Scene for_budget(ShapeSource source, const Medium& medium, const Light& light) {
   Scene scene = single_shape(std::move(source), medium, 1);
   scene.lights = {light};
   scene.camera.position = {10, 25, 45};
@@ -20,7 +20,7 @@ Scene small(ShapeSource source, const Medium& medium, const Light& light) {
 }
 
 Scene torus() {
-  return small(TorusShape{{}, 10, 4}, marble(), point_light({30, 40, 10}, {1e4, 1e4, 1e4}));
+  return for_budget(TorusShape{{}, 10, 4}, marble(), point_light({30, 40, 10}, {1e4, 1e4, 1e4}));
 }
 
 /// The torus shadows itself, the box has edges, the balls an opaque floor under an area light.
@@ -28,8 +28,8 @@ std::vector<Scene> budget_scenes() {
   Scene balls = two_balls();
   balls.film.resolution = {96, 64};
   return {torus(),
-          small(BoxShape{{-9, -9, -9}, {9, 9, 9}}, grey_medium(.4, .01, 1.3),
-                {"sun", DirectionalLight{{-.6, -.8, 0}, Rgb(1)}}),
+          for_budget(BoxShape{{-9, -9, -9}, {9, 9, 9}}, grey_medium(.4, .01, 1.3),
+                     {"sun", DirectionalLight{{-.6, -.8, 0}, Rgb(1)}}),
           balls};
 }
 

@@ -20,7 +20,7 @@ Scene torus_scene() {
   return scene;
 }
 
-Image truth_of(Scene scene) {
+Image fine_picture_of(Scene scene) {
   scene.settings.samples = 150000;
   scene.settings.seed = 77;
   scene.settings.tolerance = 5e-4;
@@ -41,7 +41,7 @@ std::vector<TradePoint> trade_of(const Scene& scene) {
 // sixteenth. Fails if: a point's picture is made of another point's samples, or lambert is compared with the first.
 TEST(Trade, ErrorsAreMeasuredOnes) {
   const Scene scene = torus_scene();
-  const Image truth = truth_of(scene);
+  const Image truth = fine_picture_of(scene);
   const std::vector<TradePoint> points = trade_of(scene);
   ASSERT_EQ(points.size(), 7u);  // a sixteenth of 4000 samples is too few
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -14,7 +14,7 @@
 namespace opaline::test {
 namespace {
 
-Image picture_of(const Scene& scene) {
+Image rendered(const Scene& scene) {
   Session session;
   session.edit(scene);
   return session.render().image;
@@ -62,7 +62,7 @@ TEST(Anisotropy, HighlightsLieInTheFrameOfTheUvs) {
   const Vec3d x{1, 0, 0}, z{0, 0, 1};
   EXPECT_GT(std::abs(highlight(x) / highlight(z) - 1), .05);
   EXPECT_GT(std::abs(highlight(x) / highlight(x, 0) - 1), .05);
-  const auto seen = [](const Scene& scene) { return double(channel(picture_of(scene), 0, 0, "specular.G")); };
+  const auto seen = [](const Scene& scene) { return double(channel(rendered(scene), 0, 0, "specular.G")); };
   EXPECT_NEAR(seen(one_highlight(QuadShape{{-50, 0, 50}, {100, 0, 0}, {0, 0, -100}})) / highlight(x), 1,
               1e-3);
   EXPECT_NEAR(seen(one_highlight(QuadShape{{-50, 0, -50}, {0, 0, 100}, {100, 0, 0}})) / highlight(z), 1,
@@ -91,7 +91,7 @@ TEST(Anisotropy, WhiteFurnace) {
       const std::string coat =
           R"("specular_anisotropy": 0.8, "specular_rotation": 30, "specular_roughness": )" + roughness;
       const bool is_body = surface[1] == 'm';
-      const Image image = picture_of(
+      const Image image = rendered(
           parse_scene(R"({"media": {"white": {"sigma_a": 0, "sigma_s": 1, "specular_ior": 1.5, )" + coat +
                           R"(}}, "shapes": [{"sphere": {"radius": 10}, )" + surface + (is_body ? "" : coat) +
                           R"(}], "surroundings": 1, "settings": {"method": "lambert", "light_samples": 1024},
@@ -119,7 +119,7 @@ TEST(Anisotropy, NoneIsNone) {
   plain.shapes[0].gloss->grain = {0, kDegrees};
   Scene none = plain;
   none.shapes[0].gloss->grain = {};
-  EXPECT_EQ(picture_of(plain).pixels, picture_of(none).pixels);
+  EXPECT_EQ(rendered(plain).pixels, rendered(none).pixels);
 }
 
 }  // namespace

@@ -51,8 +51,8 @@ std::string displaced_grid() {
 }
 
 /// The picture of one shape that fills it, seen from the front or from behind.
-Image picture_of(const ScratchFolder& folder, const std::string& shape, bool from_behind = false,
-                 const std::string& unit = "1") {
+Image bumped_picture(const ScratchFolder& folder, const std::string& shape, bool from_behind = false,
+                     const std::string& unit = "1") {
   Session session;
   const double z = from_behind ? -200 : 200;
   session.edit(parse_scene(R"({"mm_per_unit": )" + unit + R"(, "shapes": [{)" + shape +
@@ -99,20 +99,20 @@ TEST(BumpMap, TurnsNormalsAsHeightsDo) {
   put_bytes(folder.file("grid.obj"), displaced_grid());
   const std::string scale = R"(, "scale": 0.05)";
   for (const bool from_behind : {false, true}) {
-    const Image grid = picture_of(folder, R"("file": "grid.obj")", from_behind);
+    const Image grid = bumped_picture(folder, R"("file": "grid.obj")", from_behind);
     const auto expect = [&](const Image& bumped) {
       const auto [mean, largest] = angles(bumped, grid);
       EXPECT_LT(mean, .03) << from_behind;
       EXPECT_LT(largest, .12) << from_behind;
     };
-    EXPECT_GT(angles(picture_of(folder, kQuad, from_behind), grid).first, 3);
-    expect(picture_of(folder, kQuad + bump(scale), from_behind));
-    expect(picture_of(folder, kQuad + bump(scale), from_behind, "40"));
+    EXPECT_GT(angles(bumped_picture(folder, kQuad, from_behind), grid).first, 3);
+    expect(bumped_picture(folder, kQuad + bump(scale), from_behind));
+    expect(bumped_picture(folder, kQuad + bump(scale), from_behind, "40"));
     // The quad's u goes up and its v to the left: the picture is turned back.
-    expect(picture_of(folder,
-                      R"("quad": {"corner": [1, -1, 0], "u": [0, 2, 0], "v": [-2, 0, 0]})" +
-                          bump(scale + R"(, "uv_rotation": 90, "uv_offset": [0, 1])"),
-                      from_behind));
+    expect(bumped_picture(folder,
+                          R"("quad": {"corner": [1, -1, 0], "u": [0, 2, 0], "v": [-2, 0, 0]})" +
+                              bump(scale + R"(, "uv_rotation": 90, "uv_offset": [0, 1])"),
+                          from_behind));
   }
 }
 
@@ -122,14 +122,14 @@ TEST(BumpMap, TurnsNormalsAsHeightsDo) {
 TEST(BumpMap, OfNoHeightIsNone) {
   const ScratchFolder folder;
   put_png(folder.file("h.exr.png"), 4, 4, Bytes{128, 128, 128});
-  const Image flat = picture_of(folder, kQuad);
-  const Image constant = picture_of(folder, kQuad + R"(, "bump_map": {"texture": "h.exr.png"})");
+  const Image flat = bumped_picture(folder, kQuad);
+  const Image constant = bumped_picture(folder, kQuad + R"(, "bump_map": {"texture": "h.exr.png"})");
   EXPECT_EQ(flat.pixels, constant.pixels);
   put_exr(folder.file("h.exr"), 2048, 2048, [](int x, int y) {
     const double h = (x / 4 + y / 4) % 2;
     return std::array<double, 3>{h, h, h};
   });
-  EXPECT_LT(angles(picture_of(folder, kQuad + bump(R"(, "scale": 0.001)")), flat).second, 1);
+  EXPECT_LT(angles(bumped_picture(folder, kQuad + bump(R"(, "scale": 0.001)")), flat).second, 1);
 }
 
 // Claim: what sends back all light is as bright as an even room under bumps that lean by 10 degrees: matte, coated and

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Case {
+struct BrokenFile {
   std::string text;
   int line, column;
   std::vector<std::string> fragments;
@@ -26,7 +26,7 @@ TEST(SceneBrokenFiles, PlaceTheBreak) {
       "\x7f"
       "ELF";
   for (int i = 0; i < 4096; ++i) binary += static_cast<char>(i * 37 % 256);
-  const std::vector<Case> cases{
+  const std::vector<BrokenFile> cases{
       {"", 0, 0, {"empty"}},
       {" \n\t", 0, 0, {"empty"}},
       {"// nothing\n", 2, 1, {"unexpected end of input"}},
@@ -45,7 +45,7 @@ TEST(SceneBrokenFiles, PlaceTheBreak) {
       {"\xff\xfe{", 1, 1, {"broken JSON", "byte 0xFF"}},
       {std::string(1000000, '['), 1, 65, {"nested too deeply", "64 levels"}},
   };
-  for (const Case& c : cases) {
+  for (const BrokenFile& c : cases) {
     SCOPED_TRACE(c.text.substr(0, 60));
     const Error error = error_of(c.text);
     EXPECT_EQ(error.line, c.line) << error.what();

@@ -37,6 +37,10 @@ inline Scene two_balls() {
   return scene;
 }
 
+/// Camera rays of BouncedPlaces in a picture of two_balls: one for each of 24 x 16 pixels, and two more rows and columns
+/// around.
+constexpr std::uint64_t kPlaces = (24 + 1 + 4) * (16 + 1 + 4);
+
 inline Image picture_of(Session& session, const Scene& scene) {
   session.edit(scene);
   return session.render().image;

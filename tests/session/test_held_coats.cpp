@@ -103,9 +103,6 @@ std::vector<Edit> edits_of_a_room() {
   };
 }
 
-// Camera rays of BouncedPlaces: one each pixel, and two more rows and columns around.
-constexpr std::uint64_t kPlaces = (24 + 1 + 4) * (16 + 1 + 4);
-
 // Claim: session.h of what a held view spares. Fails if: what is held lacks something that it depends on, or holds the
 // colours of its time (another picture), or is found again without need (rays; near fields look for shadow edges again).
 void expect_edits(bool near_field, int bounces = 0) {

@@ -9,9 +9,6 @@ namespace {
 
 using namespace test;
 
-// The camera's rays of BouncedPlaces: one for each of 24 x 16 pixels, and two more rows and columns around.
-constexpr std::uint64_t kPlaces = (24 + 1 + 4) * (16 + 1 + 4);
-
 /// The balls shine on the floor and it on them, also where the camera sees only its mirror image.
 Scene balls_and_light() {
   Scene scene = two_balls();
