@@ -39,19 +39,21 @@ std::string plot_row(double hierarchical, double direct, double brightest) {
 
 void print_edge(bool wide, ProfileKind profile, std::size_t entries) {
   const Stopwatch watch;
-  const EdgeLine line = shadow_edge_line(shadow_edge_scene(wide, profile), entries);
-  const double brightest = std::ranges::max(line.direct);
+  const Scene scene = shadow_edge_scene(wide, profile);
+  const EdgeLine line = shadow_edge_line(scene);
+  const auto [direct, noise] = direct_edge_line(scene, line, entries);
+  const double brightest = std::ranges::max(direct);
   fmt::print("\n{} edge, {}; {:.1f} s CPU\n", wide ? "wide (4.2 mm)" : "narrow (0 mm)",
              profile == ProfileKind::dipole ? "dipole" : "normalized diffusion", watch.cost({}).cpu_seconds);
   fmt::print("{:>6} {:>12} {:>10} {:>7} {:>8} {:>10}  |0{:>39}\n", "mm", "hierarchical", "direct", "noise",
              "error", "of local", "brightest");
   double mean = 0, largest = 0;
   for (std::size_t i = 0; i < line.x.size(); ++i) {
-    const double h = line.hierarchical[i], d = line.direct[i], error = (h - d) / brightest;
+    const double h = line.hierarchical[i], d = direct[i], error = (h - d) / brightest;
     mean += std::abs(error) / double(line.x.size());
     largest = std::max(largest, std::abs(error));
     fmt::print("{:6.2f} {:12.5f} {:10.5f} {:6.2f}% {:+7.2f}% {:+9.2f}%  |{}\n", line.x[i], h, d,
-               100 * line.noise[i] / brightest, 100 * error, d > 0 ? 100 * (h - d) / d : 0.0,
+               100 * noise[i] / brightest, 100 * error, d > 0 ? 100 * (h - d) / d : 0.0,
                plot_row(h, d, brightest));
   }
   fmt::print("error over the brightest: mean {:.2f} %, largest {:.2f} %\n", 100 * mean, 100 * largest);

@@ -19,8 +19,8 @@ inline std::size_t draw(const float* ends, std::size_t count, double& u) {
   return i;
 }
 
-// Running sums to shares of the last. Where the sums do not grow the shares are none, also behind the last that does:
-// rounding would else draw from there, once in millions, what counts for as many.
+// Running sums to shares of the last. Where the sum does not grow there is no share, not even at the end of the table: what
+// rounding left there would be drawn once in millions and then count for as many.
 inline void normalize(float* ends, std::size_t count, double sum) {
   const float whole = ends[count - 1];
   for (std::size_t i = 0; i < count; ++i)

@@ -5,20 +5,14 @@
 #include <algorithm>
 #include <map>
 
-#include "benchmark/csv.h"
+#include "csv_cell.h"
 #include "opaline/image/image.h"
 #include "run_program.h"
 
 namespace opaline {
 namespace {
 
-/// A cell as it is written; a test failure if there is no such column.
-std::string cell(const CsvTable& table, std::size_t row, const std::string& name) {
-  const auto at = std::size_t(std::ranges::find(table.names, name) - table.names.begin());
-  EXPECT_LT(at, table.names.size()) << name;
-  return at < table.names.size() && row < table.rows.size() ? table.rows[row][at] : "";
-}
-
+/// A test failure where the cell is empty.
 double number(const CsvTable& table, std::size_t row, const std::string& name) {
   const std::string text = cell(table, row, name);
   EXPECT_FALSE(text.empty()) << name << " of row " << row;

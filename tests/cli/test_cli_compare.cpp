@@ -12,16 +12,16 @@
 namespace opaline {
 namespace {
 
-constexpr int size = 16;
+constexpr int kSize = 16;
 
-/// size x size pixels: R, G, B are 1, 2, 4 times `value`, diffuse is half of that, and coverage is 1 in the
+/// kSize x kSize pixels: R, G, B are 1, 2, 4 times `value`, diffuse is half of that, and coverage is 1 in the
 /// upper half, where alone the values count.
 Image picture(float value) {
   Image image;
-  image.width = image.height = size;
+  image.width = image.height = kSize;
   image.channels = {"R", "G", "B", "A", "diffuse.R", "diffuse.G", "diffuse.B"};
-  for (int i = 0; i < size * size; ++i) {
-    const bool object = i < size * size / 2;
+  for (int i = 0; i < kSize * kSize; ++i) {
+    const bool object = i < kSize * kSize / 2;
     const float v = object ? value : 50 * value;
     image.pixels.insert(image.pixels.end(), {v, 2 * v, 4 * v, object ? 1.0f : 0.0f, v / 2, v, 2 * v});
   }
@@ -67,7 +67,7 @@ TEST(CliCompare, ItselfIsZero) {
            {"mean_relative_error", "relmse", "p99_relative_error", "max_relative_error", "signed_mean"})
         EXPECT_EQ(result["errors"][row][figure], 0) << row << " " << figure;
     EXPECT_EQ(result["flip"]["max"], 0);
-    EXPECT_EQ(result["object_pixels"], path == exr ? size * size / 2 : size * size);
+    EXPECT_EQ(result["object_pixels"], path == exr ? kSize * kSize / 2 : kSize * kSize);
     EXPECT_TRUE(result["passed"]);
   }
   const Outcome halves = run_program({"compare", exr, "--halves", exr, exr, "--json"});
@@ -83,7 +83,7 @@ TEST(CliCompare, FiguresOfTheObject) {
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
     const std::size_t pixel = i / 7, channel = i % 7;
     if (channel > 3) a.pixels[i] = .8f * b.pixels[i];
-    if (channel < 3 && pixel >= size * size / 2) a.pixels[i] *= 5;
+    if (channel < 3 && pixel >= kSize * kSize / 2) a.pixels[i] *= 5;
   }
   const std::string picture_path = gallery.put("a.exr", a), reference = gallery.put("b.exr", b);
   const nlohmann::json colour = comparison_of(run_program({"compare", picture_path, reference, "--json"}));
@@ -92,7 +92,7 @@ TEST(CliCompare, FiguresOfTheObject) {
     EXPECT_NEAR(colour["errors"][row]["signed_mean"].get<double>(), .1, 1e-6);
     EXPECT_NEAR(colour["errors"][row]["relmse"].get<double>(), .01, 1e-6);
   }
-  EXPECT_EQ(colour["errors"]["all"]["values"], 3 * size * size / 2);
+  EXPECT_EQ(colour["errors"]["all"]["values"], 3 * kSize * kSize / 2);
   EXPECT_NEAR(colour["flip"]["exposure"].get<double>(), std::log2(1 / .4), 1e-6);
   const nlohmann::json diffuse =
       comparison_of(run_program({"compare", picture_path, reference, "--json", "--layer", "diffuse"}));
@@ -152,9 +152,9 @@ TEST(CliCompare, NonFiniteFails) {
   EXPECT_EQ(passed.exit_code, 0);
   const nlohmann::json result = comparison_of(passed);
   EXPECT_EQ(result["not_finite"][1]["infinite"], 2);
-  EXPECT_EQ(result["errors"]["R"]["values"], size * size / 2 - 1);
-  EXPECT_EQ(result["errors"]["G"]["values"], size * size / 2 - 1);
-  EXPECT_EQ(result["errors"]["B"]["values"], size * size / 2);
+  EXPECT_EQ(result["errors"]["R"]["values"], kSize * kSize / 2 - 1);
+  EXPECT_EQ(result["errors"]["G"]["values"], kSize * kSize / 2 - 1);
+  EXPECT_EQ(result["errors"]["B"]["values"], kSize * kSize / 2);
 }
 
 // Claim: what cannot be compared is exit 2, one line on stderr that names the file and both sides, nothing on
@@ -164,8 +164,8 @@ TEST(CliCompare, WhatDoesNotFitIsNamed) {
   const std::string a = gallery.put("a.exr", picture(1));
   Image small = picture(1), crop = picture(1), empty = picture(1), colourless = picture(1),
         broken = picture(1);
-  small.width = size / 2;
-  small.height = 2 * size;
+  small.width = kSize / 2;
+  small.height = 2 * kSize;
   crop.crop_x = 3;
   crop.full_width = crop.full_height = 64;
   colourless.channels = {"Y", "U", "V", "A", "1", "2", "3"};
@@ -267,7 +267,7 @@ TEST(CliCompare, ErrorPicture) {
   EXPECT_EQ(errors.full_width, 64);
   EXPECT_NEAR(errors.pixels[0], -.1, 1e-6);
   EXPECT_EQ(errors.pixels.back(), 0);  // no object there
-  EXPECT_EQ(read_image(png).width, size);
+  EXPECT_EQ(read_image(png).width, kSize);
 
   const std::string before = bytes_of(png);
   EXPECT_EQ(run_program({"compare", a, b, "--layer", "none", "--error-picture", png}).exit_code, 2);

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "benchmark/csv.h"
+#include "csv_cell.h"
 #include "run_program.h"
 
 namespace opaline {
@@ -24,11 +24,6 @@ std::vector<std::string> report_line(const SceneFolder& folder, const std::vecto
 
 CsvTable results_of(const SceneFolder& folder) {
   return parse_csv(bytes_of(folder.file("report/results.csv")), "results.csv");
-}
-
-std::string cell(const CsvTable& table, std::size_t row, const std::string& name) {
-  const auto at = std::size_t(std::ranges::find(table.names, name) - table.names.begin());
-  return row < table.rows.size() && at < table.names.size() ? table.rows[row][at] : "no such cell " + name;
 }
 
 std::map<fs::path, fs::file_time_type> times_in(const fs::path& folder) {

@@ -14,7 +14,7 @@ std::vector<std::string> volume(const SceneFolder& folder, const std::string& ou
   return line;
 }
 
-std::size_t passes_in(const std::string& path) {
+std::size_t walked_passes(const std::string& path) {
   std::size_t passes = 0;
   for (const auto& [key, source] : read_walks(path))
     for (const WalkSums& channel : source.channels) passes += channel.passes;
@@ -39,7 +39,7 @@ TEST(CliVolume, InterruptedAndResumedIsTheSameAsInOneGo) {
   EXPECT_TRUE(contains(said, "passes of random walks are in " + sums + "; go on by ")) << said;
   EXPECT_TRUE(said.ends_with("--until-error .01% --resume " + sums + " --log json")) << said;
   EXPECT_EQ(bytes_of(folder.file("a.exr")), "old");
-  const std::size_t passes = passes_in(sums);
+  const std::size_t passes = walked_passes(sums);
   ASSERT_GT(passes, 0u);
 
   const std::string part = folder.file("part.exr");
@@ -49,15 +49,15 @@ TEST(CliVolume, InterruptedAndResumedIsTheSameAsInOneGo) {
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   };
   run("part.png", {"--until-error", "20%", "--resume", part});
-  const std::size_t before = passes_in(part);
+  const std::size_t before = walked_passes(part);
   run("a.exr", {"--until-error", "9%", "--resume", part});
-  EXPECT_GT(passes_in(part), before);
+  EXPECT_GT(walked_passes(part), before);
   run("b.exr", {"--until-error", "9%"});
   EXPECT_TRUE(bytes_of(folder.file("a.exr")) == bytes_of(folder.file("b.exr")));
-  const std::size_t all = passes_in(part);
+  const std::size_t all = walked_passes(part);
   run("c.exr",
       {"--until-error", "9%", "--resume", part, "--resolution", "16x16", "--set", "lights.key.intensity=3"});
-  EXPECT_EQ(passes_in(part), all);
+  EXPECT_EQ(walked_passes(part), all);
 }
 
 // Claim: sums of another scene, and files that are none, are exit 2 naming the file, which stays. Source: the help. Fails

@@ -16,6 +16,7 @@
 namespace opaline::test {
 
 using std::numbers::pi;
+using Real = long double;  // of sums that stand for the truth
 inline constexpr long double kPiLong = std::numbers::pi_v<long double>;
 
 inline constexpr std::array kAllProfiles = [] {

@@ -10,12 +10,12 @@ using namespace test;
 struct Row {
   double reduced_albedo, total;
 };
-constexpr Row kPrinted[] = {{.5, .0745104172}, {.9, .2991878697}, {.99, .6446343308}};
+constexpr Row kPrintedTotals[] = {{.5, .0745104172}, {.9, .2991878697}, {.99, .6446343308}};
 
 // Claim: totals at A = 2.6 exactly (eta about 1.3), whatever the mean free path. Source: independent
 // evaluation of the closed form, 10 digits. Tolerance: 1e-10, the digits. Fails if: 2A/3 stands for 4A/3.
 TEST(DipoleTotals, PrintedValues) {
-  for (const auto& [albedo, total] : kPrinted)
+  for (const auto& [albedo, total] : kPrintedTotals)
     for (const double mean_free_path : {1e-3, 1.0, 1e3})
       EXPECT_NEAR(total_diffuse_reflectance(make_dipole(mean_free_path, 1 - albedo, 2.6)), total, 1e-10)
           << albedo;
@@ -25,7 +25,7 @@ TEST(DipoleTotals, PrintedValues) {
 // difference in A 8e-5. Tolerance: 2e-5. Fails if: A comes from the published polynomial (2.57; off by 1e-3).
 TEST(DipoleTotals, AtEta1Point3) {
   EXPECT_NEAR(boundary_mismatch(1.3), 2.600079, 1e-6);
-  for (const auto& [albedo, total] : kPrinted)
+  for (const auto& [albedo, total] : kPrintedTotals)
     EXPECT_NEAR(total_diffuse_reflectance(make_dipole(1, 1 - albedo, boundary_mismatch(1.3))), total, 2e-5);
 }
 

@@ -19,7 +19,6 @@ Vec3d at_cosine(double cosine, double azimuth = 0) {
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
 
-using Real = long double;
 using Vec = std::array<Real, 3>;
 Real inner(const Vec& a, const Vec& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -10,13 +10,13 @@ namespace {
 
 using namespace test;
 
-struct Named {
+struct NamedProfile {
   const char* name;
   ChannelProfile profile;
 };
 
-const std::vector<Named>& profiles() {
-  static const std::vector<Named> table = {
+const std::vector<NamedProfile>& profiles() {
+  static const std::vector<NamedProfile> table = {
       {"absorbing dipole", make_dipole(.38, .05, 2.6)},
       {"dipole without absorption", make_dipole(.38, 0, 2.6)},
       {"strongly absorbing dipole", make_dipole(.38, .95, 2.6)},
@@ -71,31 +71,30 @@ TEST(DistanceSampling, ChordRadiiFollowTheProfile) {
 /// The share that leaves beyond r, by which sample_diffusion_distance found it: of a dipole the virtual
 /// source has the last part of all shares.
 long double share_beyond(const ChannelProfile& profile, double beyond, double r) {
-  using Exact = long double;
   if (const auto* burley = std::get_if<NormalizedDiffusion>(&profile)) {
-    const Exact x = Exact(r) / Exact(burley->d);
+    const Real x = Real(r) / Real(burley->d);
     return (std::exp(-x) + 3 * std::exp(-x / 3)) / 4;
   }
   if (const auto* better = std::get_if<BetterDipole>(&profile)) {
-    const Exact s = better->decay, h = better->height;
-    const auto beyond_radius = [&](Exact x) {
-      const Exact real = std::sqrt(x * x + 1), high = std::sqrt(x * x + h * h),
-                  apart = (h * h - 1) / (real + high);
+    const Real s = better->decay, h = better->height;
+    const auto beyond_radius = [&](Real x) {
+      const Real real = std::sqrt(x * x + 1), high = std::sqrt(x * x + h * h),
+                 apart = (h * h - 1) / (real + high);
       return std::exp(-s * real) * (better->from_flux * (1 / real + h / high * std::exp(-s * apart)) +
                                     better->from_fluence * (s > 0 ? -std::expm1(-s * apart) / s : apart));
     };
-    return beyond_radius(Exact(r) / Exact(better->mean_free_path)) / beyond_radius(0);
+    return beyond_radius(Real(r) / Real(better->mean_free_path)) / beyond_radius(0);
   }
   if (const auto* tabulated = std::get_if<TabulatedProfile>(&profile))
     return tabulated->shape->table().beyond(r / tabulated->mean_free_path);
   const Dipole& dipole = std::get<Dipole>(profile);
-  const Exact ratio = std::exp(Exact(dipole.s_real) - Exact(dipole.s_virtual));
-  const Exact of_virtual = ratio / (1 + ratio), of_real = 1 / (1 + ratio);
-  const auto source = [&](Exact z, Exact s) {
-    const Exact y = std::sqrt(1 + Exact(r) * Exact(r) / (z * z));
+  const Real ratio = std::exp(Real(dipole.s_real) - Real(dipole.s_virtual));
+  const Real of_virtual = ratio / (1 + ratio), of_real = 1 / (1 + ratio);
+  const auto source = [&](Real z, Real s) {
+    const Real y = std::sqrt(1 + Real(r) * Real(r) / (z * z));
     return std::exp(-s * (y - 1)) / y;
   };
-  if (Exact(beyond) <= of_virtual) return of_virtual * source(dipole.z_virtual, dipole.s_virtual);
+  if (Real(beyond) <= of_virtual) return of_virtual * source(dipole.z_virtual, dipole.s_virtual);
   return of_virtual + of_real * source(dipole.z_real, dipole.s_real);
 }
 
@@ -104,7 +103,7 @@ long double share_beyond(const ChannelProfile& profile, double beyond, double r)
 // Tolerance: 1e-12 relative from 1 to 1e-15, as the header states. Fails if: the dipole goes through
 // 1 - beyond, which has lost all but one digit of 1e-15, or a source absorbs nothing below some sigma_tr z.
 TEST(DistanceSampling, InvertsTheShareBeyond) {
-  std::vector<Named> table = profiles();
+  std::vector<NamedProfile> table = profiles();
   for (const double absorbed : {1e-9, 1e-15, 1e-17, 1e-20})
     table.push_back({"hardly absorbing dipole", make_dipole(.38, absorbed, 2.6)});
   table.push_back({"dipole, eta 3.9", make_dipole(.38, .5, boundary_mismatch(3.9))});
@@ -131,7 +130,7 @@ TEST(DistanceSampling, WithinAndBeyondAreTheTotal) {
 // Source: the header. Fails if: (y - 1)(y + 1) may be rounded below 0, or its root is taken of a square that
 // overflows.
 TEST(DistanceSampling, ExtremesAreFinite) {
-  std::vector<Named> table = profiles();
+  std::vector<NamedProfile> table = profiles();
   for (const double absorbed : {1e-300, 1e-18, .5, 1 - 1e-9, 1 - 0x1p-53})
     for (const double A : {1., 2.6, 1e3, 1e6}) table.push_back({"dipole", make_dipole(.38, absorbed, A)});
   for (const double l : {0., 1e-300, 1e-12, 1e12}) {

@@ -13,14 +13,14 @@ namespace {
 
 using namespace test;
 
-struct Named {
+struct NamedMedium {
   std::string name;
   DiffuseProfile profile;
 };
 
-std::vector<Named> table_of_media() {
+std::vector<NamedMedium> table_of_media() {
   const Rgb a{.0021, .0041, .0071}, s{2.19, 2.62, 3.00};
-  std::vector<Named> all;
+  std::vector<NamedMedium> all;
   for (const ProfileKind kind : kAllProfiles) {
     const std::string name(kProfileNames[std::size_t(kind)]);
     all.push_back({"marble, " + name, make_diffuse_profile(medium_of(a, s, 1.5, kind))});

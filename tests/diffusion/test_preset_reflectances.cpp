@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-const std::map<std::string, Rgb> kPrinted = {
+const std::map<std::string, Rgb> kPrintedReflectances = {
     {"apple", {.85, .84, .53}},    {"potato", {.77, .62, .21}},   {"chicken1", {.31, .15, .10}},
     {"skimmilk", {.81, .81, .69}}, {"chicken2", {.32, .16, .10}}, {"skin1", {.44, .22, .13}},
     {"cream", {.98, .90, .73}},    {"skin2", {.63, .44, .34}},    {"ketchup", {.16, .01, .00}},
@@ -23,12 +23,12 @@ const std::map<std::string, Rgb> kPrinted = {
 // agree. Source: Jensen et al. 2001, figure 5. Tolerance: .01 plus half the printed digit. Fails if: one
 // preset's digit is wrong (potato blue .12 -> .012), or eta is 1.3 for marble.
 TEST(PresetReflectances, Printed) {
-  ASSERT_EQ(presets().size(), kPrinted.size());
+  ASSERT_EQ(presets().size(), kPrintedReflectances.size());
   int close = 0, close_at_normal = 0, close_at_diffuse = 0;
   double sum = 0;
   for (const Preset& preset : presets()) {
-    ASSERT_TRUE(kPrinted.count(std::string(preset.name))) << preset.name;
-    const Rgb printed = kPrinted.at(std::string(preset.name));
+    ASSERT_TRUE(kPrintedReflectances.count(std::string(preset.name))) << preset.name;
+    const Rgb printed = kPrintedReflectances.at(std::string(preset.name));
     const DiffuseProfile profile =
         make_diffuse_profile({"preset", preset.coefficients, preset.eta, ProfileKind::dipole});
     EXPECT_EQ(profile.eta, preset.name == "marble" ? 1.5 : 1.3);

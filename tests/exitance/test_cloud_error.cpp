@@ -13,12 +13,6 @@ using namespace test;
 constexpr double kRadius = 25;
 constexpr double kMeanOfDeviation = .7979;  // of a normal distribution
 
-/// 2,000 places on a sphere that are not the samples'.
-const std::vector<Query>& places() {
-  static const std::vector<Query> queries = Cloud(SphereShape{{}, kRadius}, 2000, 7).queries();
-  return queries;
-}
-
 struct LitCloud {
   const Cloud& cloud;
   Octree octree;
@@ -34,7 +28,7 @@ struct LitCloud {
   }
   std::vector<Exitance> sums(const CloudError& error) const {
     const SplitKernel kernel = cloud.kernel(profile);
-    EvaluateInput input{octree, kernel, places()};
+    EvaluateInput input{octree, kernel, places_on_sphere()};
     input.cloud = error;
     return evaluate(input);
   }

@@ -12,7 +12,7 @@ using namespace test;
 constexpr double kSide = 20;
 
 /// The exact sum over the six faces of a cube around the origin under E = 1, on the face z = 10 at (x, y).
-double expected_at(const ChannelProfile& profile, double x, double y) {
+double expected_on_cube(const ChannelProfile& profile, double x, double y) {
   const auto within = [&](double r) { return diffuse_reflectance_within(profile, r); };
   const double h = kSide / 2;
   const std::array<double, 4> own = {h - x, h - y, h + x, h + y};
@@ -63,7 +63,7 @@ TEST(Crease, AgainstTheExactSum) {
       int n = 0;
       for (std::size_t i = 0; i < values.size(); ++i) {
         const double d = std::abs(places.distance[i]);
-        const double expected = expected_at(profile.channels[0], 10 - d, .3);
+        const double expected = expected_on_cube(profile.channels[0], 10 - d, .3);
         const double error = double(values[i].exitance.x) / expected - 1;
         over = std::max(over, double(values[i].exitance.x) / profile.total.x);
         exact_over = std::max(exact_over, expected / profile.total.x);
@@ -106,7 +106,7 @@ TEST(Crease, IsToldByTheEstimate) {
     double off = 0;
     for (std::size_t i = 0; i < values.size(); ++i)
       off += std::abs(double(values[i].exitance.x) /
-                          expected_at(profile.channels[0], 10 - std::abs(places.distance[i]), .3) -
+                          expected_on_cube(profile.channels[0], 10 - std::abs(places.distance[i]), .3) -
                       1);
     const double measured = off / double(values.size()) * 4 * h / kSide,
                  told = double(crease_error({octree, kernel, profile, Vec3f(1e3f, 1e3f, 1e3f)})[0]);

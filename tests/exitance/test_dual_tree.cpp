@@ -49,7 +49,7 @@ constexpr std::array kLights = {NamedLight{"sun", sun}, NamedLight{"three suns",
 
 constexpr std::array kProfiles = {ProfileKind::dipole, ProfileKind::normalized_diffusion};
 
-std::string name_of(ProfileKind kind) {
+std::string profile_name(ProfileKind kind) {
   return kind == ProfileKind::dipole ? "dipole" : "normalized diffusion";
 }
 
@@ -99,7 +99,7 @@ TEST(DualTree, KeepsItsPromise) {
             const double tolerance = kTolerances[t],
                          bar = n == 2000 ? std::max(tolerance, kTableError) : tolerance;
             const std::vector<Exitance> values = dual_tree(octree, kernel, queries, tolerance);
-            const std::string name = std::string(shape.name) + ", " + light.name + ", " + name_of(kind) +
+            const std::string name = std::string(shape.name) + ", " + light.name + ", " + profile_name(kind) +
                                      ", " + std::to_string(n) + " samples, tolerance " +
                                      std::to_string(tolerance);
             for (std::size_t c = 0; c < 3; ++c) {
@@ -113,7 +113,7 @@ TEST(DualTree, KeepsItsPromise) {
     }
     for (std::size_t k = 0; k < 2; ++k)
       for (std::size_t t = 0; t < kTolerances.size(); ++t)
-        tallies[k][t].print(name_of(kProfiles[k]) + ", " + std::to_string(n) + " samples, tolerance " +
+        tallies[k][t].print(profile_name(kProfiles[k]) + ", " + std::to_string(n) + " samples, tolerance " +
                             std::to_string(kTolerances[t]).substr(0, 5));
   }
 }
@@ -137,8 +137,8 @@ TEST(DualTree, KeepsItsPromiseInACrowd) {
       std::vector<Exitance> values;
       for (std::size_t i = 0; i < all.size(); i += 100) values.push_back(all[i]);
       const Accuracy worst = worst_accuracy(values, exact);
-      EXPECT_LE(worst.p99, tolerance) << name_of(kind);
-      Tally{worst}.print(name_of(kind) + ", tolerance " + std::to_string(tolerance).substr(0, 5));
+      EXPECT_LE(worst.p99, tolerance) << profile_name(kind);
+      Tally{worst}.print(profile_name(kind) + ", tolerance " + std::to_string(tolerance).substr(0, 5));
     }
   }
 }
@@ -158,8 +158,8 @@ TEST(DualTree, KeepsItsPromiseOnTheDarkSide) {
       const std::vector<Exitance> exact = brute_force(octree, kernel, queries);
       for (const double tolerance : {.05, .01, .002}) {
         const Accuracy worst = worst_accuracy(dual_tree(octree, kernel, queries, tolerance), exact);
-        EXPECT_LE(worst.p99, tolerance) << shape.name << " " << name_of(kind);
-        Tally{worst}.print(std::string(shape.name) + ", " + name_of(kind) + ", tolerance " +
+        EXPECT_LE(worst.p99, tolerance) << shape.name << " " << profile_name(kind);
+        Tally{worst}.print(std::string(shape.name) + ", " + profile_name(kind) + ", tolerance " +
                            std::to_string(tolerance).substr(0, 5));
       }
     }
@@ -180,7 +180,7 @@ TEST(DualTree, ErrorFallsWithTheTolerance) {
       const std::vector<Exitance> values = dual_tree(octree, kernel, queries, tolerance);
       for (std::size_t c = 0; c < 3; ++c) {
         const double mean = accuracy(values, exact, c).mean;
-        EXPECT_LT(mean, before[c]) << name_of(kind) << ", tolerance " << tolerance << ", channel " << c;
+        EXPECT_LT(mean, before[c]) << profile_name(kind) << ", tolerance " << tolerance << ", channel " << c;
         before[c] = mean;
       }
     }
@@ -202,7 +202,7 @@ TEST(DualTree, TinyToleranceLeavesTheTablesError) {
         const std::vector<Exitance> exact = brute_force(octree, kernel, queries),
                                     values = dual_tree(octree, kernel, queries, 1e-7);
         const Accuracy worst = worst_accuracy(values, exact);
-        Tally{worst}.print(std::string(shape.name) + ", " + name_of(kind) + ", " + std::to_string(n) +
+        Tally{worst}.print(std::string(shape.name) + ", " + profile_name(kind) + ", " + std::to_string(n) +
                            " samples");
         EXPECT_LE(worst.mean, n == 2000 ? 3e-4 : 1e-4) << shape.name;
         EXPECT_LE(worst.p99, n == 2000 ? kTableError : 1.25e-3) << shape.name;
@@ -231,8 +231,8 @@ TEST(DualTree, SheetsNearerThanTheNearField) {
       for (const double tolerance : {.01, .003}) {
         const std::vector<Exitance> values = dual_tree(octree, kernel, front, tolerance);
         const Accuracy worst = worst_accuracy(values, exact);
-        Tally{worst}.print(name_of(kind) + ", " + std::to_string(thickness).substr(0, 4) + " mm, tolerance " +
-                           std::to_string(tolerance).substr(0, 5));
+        Tally{worst}.print(profile_name(kind) + ", " + std::to_string(thickness).substr(0, 4) +
+                           " mm, tolerance " + std::to_string(tolerance).substr(0, 5));
         EXPECT_LE(worst.p99, tolerance) << thickness;
         EXPECT_LE(worst.largest, 4 * tolerance) << thickness;
         for (const Exitance& e : values) ASSERT_GT(e.exitance.x, 0);

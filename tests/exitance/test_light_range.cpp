@@ -7,7 +7,7 @@ namespace {
 
 using namespace test;
 
-struct LitSphere {
+struct SphereInAnyLight {
   Cloud cloud{SphereShape{{}, 5}, 5000};
   std::vector<Query> queries = Cloud(SphereShape{{}, 5}, 300, 3).queries();
   SplitKernel kernel = cloud.kernel(make_diffuse_profile(marble()));
@@ -21,7 +21,7 @@ struct LitSphere {
 // Claim: irradiance times 1e12 or 1e-30 gives exitance times that. Source: the sum is linear. Tolerance:
 // 1e-5, float. Fails if: a flux below float's smallest number is flushed, or a threshold stands in W.
 TEST(LightRange, IsLinear) {
-  const LitSphere setup;
+  const SphereInAnyLight setup;
   for (const EvaluatorKind evaluator : kEvaluators) {
     const std::vector<Exitance> reference = setup.lit(RgbF(1), evaluator);
     for (const float k : {1e12f, 1e-12f, 1e-30f}) {
@@ -42,7 +42,7 @@ TEST(LightRange, IsLinear) {
 // for red through the trees, which open a node for all channels when one asks. Fails if: one weight serves
 // all channels.
 TEST(LightRange, RedStaysRed) {
-  const LitSphere setup;
+  const SphereInAnyLight setup;
   for (const EvaluatorKind evaluator : kEvaluators) {
     const std::vector<Exitance> white = setup.lit(RgbF(1), evaluator), red = setup.lit({1, 0, 0}, evaluator);
     for (std::size_t i = 0; i < red.size(); ++i) {
@@ -58,7 +58,7 @@ TEST(LightRange, RedStaysRed) {
 // Claim: no light gives exactly 0 everywhere. Source: linearity. Tolerance: none. Fails if: 0/0 in E's
 // interpolation.
 TEST(LightRange, NoLight) {
-  const LitSphere setup;
+  const SphereInAnyLight setup;
   for (const EvaluatorKind evaluator : kEvaluators)
     for (const Exitance& e : setup.lit(RgbF(0), evaluator)) {
       EXPECT_EQ(e.exitance, RgbF(0));
@@ -70,7 +70,7 @@ TEST(LightRange, NoLight) {
 // picture. Tolerance: none but for the dual tree, .5 %: it opens a node for all channels when one asks. Fails
 // if: a 0 mean free path spreads through a shared radius.
 TEST(LightRange, EmptyChannel) {
-  const LitSphere setup;
+  const SphereInAnyLight setup;
   const Octree octree = setup.cloud.tree(coloured_light);
   const SplitKernel part = setup.cloud.kernel(make_diffuse_profile(
       {"m", PhysicalMedium{{.0021, 0, .0071}, {2.19, 0, 3.00}}, 1.5, ProfileKind::dipole}));

@@ -15,13 +15,13 @@ const Cloud& square() {
   return cloud;
 }
 
-double expected_at(const ChannelProfile& profile, double x, double z) {
+double expected_on_patch(const ChannelProfile& profile, double x, double z) {
   return rectangle_integral([&](double r) { return diffuse_reflectance_within(profile, r); },
                             {kHalf - x, kHalf - z, kHalf + x, kHalf + z});
 }
 
 /// 400 places: x within [x0, x1], z within [z0, z1], by a low-discrepancy sequence.
-std::vector<Query> places(double x0, double x1, double z0, double z1) {
+std::vector<Query> places_within(double x0, double x1, double z0, double z1) {
   std::vector<Query> queries;
   for (std::uint64_t i = 0; i < 400; ++i) {
     const auto [u, v] = r2_point(i, {.5, .5});
@@ -53,12 +53,12 @@ TEST(Patch, IsItsQuadrature) {
   ASSERT_NEAR(square().surface.spacing(), .1, 1e-3);
   const double h = .25;
   const std::vector<Region> regions = {
-      {"middle", places(-5, 5, -5, 5), .01, .04},
-      {"h to 2h from an edge", places(kHalf - 2 * h, kHalf - h, -5, 5), .01, .04},
-      {"up to h from an edge", places(kHalf - h, kHalf - .05, -5, 5), .01, .06},
-      {"on an edge", places(kHalf, kHalf, -5, 5), .13, .5, true},
-      {"half a spacing from a corner", places(kHalf - .05, kHalf, kHalf - .05, kHalf), .5, .55, true},
-      {"on a corner", places(kHalf, kHalf, kHalf, kHalf), .12, .12, true}};
+      {"middle", places_within(-5, 5, -5, 5), .01, .04},
+      {"h to 2h from an edge", places_within(kHalf - 2 * h, kHalf - h, -5, 5), .01, .04},
+      {"up to h from an edge", places_within(kHalf - h, kHalf - .05, -5, 5), .01, .06},
+      {"on an edge", places_within(kHalf, kHalf, -5, 5), .13, .5, true},
+      {"half a spacing from a corner", places_within(kHalf - .05, kHalf, kHalf - .05, kHalf), .5, .55, true},
+      {"on a corner", places_within(kHalf, kHalf, kHalf, kHalf), .12, .12, true}};
   for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion})
     for (const double ratio : {.25, 1., 2., 8.}) {
       const DiffuseProfile profile =
@@ -68,7 +68,7 @@ TEST(Patch, IsItsQuadrature) {
       for (const Region& region : regions) {
         const Difference d = difference(brute_force(octree, kernel, region.queries), [&](std::size_t i) {
           const Vec3f& p = region.queries[i].position;
-          return expected_at(profile.channels[0], double(p.x), double(p.z));
+          return expected_on_patch(profile.channels[0], double(p.x), double(p.z));
         });
         std::printf(
             "             %s, mean free path %4.2f spacings, %s: bias %+.3f %%, mean %.3f %%, largest %.3f "
@@ -85,7 +85,7 @@ TEST(Patch, IsItsQuadrature) {
 // Claim: as the mean free path goes to 0, M = total x E: Lambert. Source: limit. Tolerance: .5 % (interior).
 // Fails if: point values of a kernel steeper than the spacing are summed.
 TEST(Patch, SmallMeanFreePathIsLambert) {
-  const std::vector<Query> queries = places(-9, 9, -9, 9);
+  const std::vector<Query> queries = places_within(-9, 9, -9, 9);
   for (const ProfileKind kind : {ProfileKind::dipole, ProfileKind::normalized_diffusion})
     for (const double mean_free_path : {1e-3, 1e-6, 1e-12, 0.}) {
       const Medium medium{"m", ArtistMedium{{.2, .8, .999}, Rgb(mean_free_path), 0}, 1.5, kind};
@@ -122,7 +122,7 @@ TEST(Patch, GivenIrradianceIsUsed) {
   for (std::size_t c = 0; c < 3; ++c)
     EXPECT_NEAR(double(kernel.near[c]), near_field_reflectance(profile.channels[c], double(kernel.radius)),
                 1e-6);
-  const std::vector<Query> queries = places(-5, 5, -5, 5);
+  const std::vector<Query> queries = places_within(-5, 5, -5, 5);
   const std::vector<RgbF> given(queries.size(), RgbF(2));
   const Octree octree = square().tree(RgbF(1));
   EvaluateInput input{octree, kernel, queries, given};

@@ -7,12 +7,6 @@ namespace {
 
 using namespace test;
 
-/// 2,000 places on the sphere that are not the samples'.
-const std::vector<Query>& places() {
-  static const std::vector<Query> queries = Cloud(SphereShape{{}, 25}, 2000, 7).queries();
-  return queries;
-}
-
 const Cloud& samples() {
   static const Cloud cloud(SphereShape{{}, 25}, 40000);
   return cloud;
@@ -45,10 +39,10 @@ TEST(Sphere, IsExact) {
       EXPECT_LT(std::abs(d.bias), mean);
       EXPECT_LT(d.largest, any);
     };
-    check("brute force", brute_force(octree, kernel, places()), .005, .02);
-    check("classic .01", classic(octree, kernel, places(), .01), .005, .02);
-    check("classic .1", classic(octree, kernel, places(), .1), .01, .03);
-    check("dual tree .005", dual_tree(octree, kernel, places(), .005), .005, .02);
+    check("brute force", brute_force(octree, kernel, places_on_sphere()), .005, .02);
+    check("classic .01", classic(octree, kernel, places_on_sphere(), .01), .005, .02);
+    check("classic .1", classic(octree, kernel, places_on_sphere(), .1), .01, .03);
+    check("dual tree .005", dual_tree(octree, kernel, places_on_sphere(), .005), .005, .02);
   }
 }
 
@@ -57,7 +51,7 @@ TEST(Sphere, IsExact) {
 TEST(Sphere, InterpolatesConstantIrradianceExactly) {
   const DiffuseProfile profile = make_diffuse_profile(grey_medium(.38, 0, 1.5));
   for (const Exitance& e :
-       brute_force(samples().tree(RgbF{1, .3f, 7}), samples().kernel(profile), places())) {
+       brute_force(samples().tree(RgbF{1, .3f, 7}), samples().kernel(profile), places_on_sphere())) {
     EXPECT_NEAR(e.irradiance.x, 1, 1e-6);
     EXPECT_NEAR(e.irradiance.y, .3, 3e-7);
     EXPECT_NEAR(e.irradiance.z, 7, 7e-6);

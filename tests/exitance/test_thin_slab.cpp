@@ -10,7 +10,7 @@ using namespace test;
 
 /// Both faces of a 40 x 40 x 1 plate under E = 1 at the places; the rim, 15 mm or more away, gives below
 /// 1e-5.
-double expected_at(const ChannelProfile& profile, const Vec3f& p) {
+double expected_on_slab(const ChannelProfile& profile, const Vec3f& p) {
   const auto within = [&](double r) { return diffuse_reflectance_within(profile, r); };
   const double x = double(p.x), z = double(p.z);
   const std::array<double, 4> reach = {20 - x, 20 - z, 20 + x, 20 + z};
@@ -28,9 +28,10 @@ TEST(ThinSlab, FarFaceAdds) {
     const DiffuseProfile profile = make_diffuse_profile(grey_medium(mean_free_path, .05, 1.3));
     const SplitKernel kernel = cloud.kernel(profile);
     for (const EvaluatorKind evaluator : {EvaluatorKind::brute_force, EvaluatorKind::dual_tree}) {
-      const Difference d = difference(
-          evaluated_by(evaluator, octree, kernel, places_on_plate(), .01),
-          [&](std::size_t i) { return expected_at(profile.channels[0], places_on_plate()[i].position); });
+      const Difference d =
+          difference(evaluated_by(evaluator, octree, kernel, places_on_plate(), .01), [&](std::size_t i) {
+            return expected_on_slab(profile.channels[0], places_on_plate()[i].position);
+          });
       const std::string name =
           name_of(evaluator) + std::string(", mean free path ") + std::to_string(mean_free_path);
       report(name + ", bias %", 100 * d.bias);

@@ -19,7 +19,7 @@ struct BadFile {
 };
 
 const std::string three_vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-const std::string ply =
+const std::string ply_of_three =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
     "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
 const std::string loop = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n";
@@ -84,16 +84,17 @@ TEST(BadMesh, Ply) {
   expect_errors({
       {"empty.ply", "", "is empty"},
       {"garbage.ply", garbage(5000), "not a PLY file"},
-      {"header.ply", ply.substr(0, ply.find("element face")), "truncated PLY header"},
-      {"cut.ply", ply + "0 0 0\n1 0 0\n0 1", ""},
-      {"list.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1\n",
+      {"header.ply", ply_of_three.substr(0, ply_of_three.find("element face")), "truncated PLY header"},
+      {"cut.ply", ply_of_three + "0 0 0\n1 0 0\n0 1", ""},
+      {"list.ply", ply_of_three + "0 0 0\n1 0 0\n0 1 0\n3 0 1\n",
        ":14: bad value in a PLY file (expected an integer, got end of"},
-      {"nan.ply", ply + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", ":11: 1 vertex has a coordinate"},
-      {"text.ply", ply + "0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n",
+      {"nan.ply", ply_of_three + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", ":11: 1 vertex has a coordinate"},
+      {"text.ply", ply_of_three + "0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n",
        ":11: bad value in a PLY file (expected a number, got 'x')"},
-      {"index.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ":13: vertex index out of range in face 1"},
-      {"minus.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", "expected 0 to 2, got -1"},
-      {"long.ply", ply + "0 0 0\n1 0 0\n0 1 0\n200 0 1 2\n", "longer than the file"},
+      {"index.ply", ply_of_three + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+       ":13: vertex index out of range in face 1"},
+      {"minus.ply", ply_of_three + "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", "expected 0 to 2, got -1"},
+      {"long.ply", ply_of_three + "0 0 0\n1 0 0\n0 1 0\n200 0 1 2\n", "longer than the file"},
       {"strip.ply",
        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0 1 0 0 0 1 0 3 0 1 2\n",
@@ -196,7 +197,7 @@ TEST(BadMesh, ClaimOfFourBillionIsCheap) {
 TEST(BadMesh, CutAndDamagedFilesAreErrorsOrMeshes) {
   const std::vector<std::pair<std::string, std::string>> files{
       {"a.obj", obj(cube()) + "vn 0 0 1\nf 1//1 2//1 3//1\n"},
-      {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+      {"a.ply", ply_of_three + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
       {"a.stl", binary_stl(cube())},
       {"b.stl", "solid a\n" + loop + "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n"},
       {"a.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n"}};

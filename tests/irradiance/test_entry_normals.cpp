@@ -10,8 +10,8 @@ namespace {
 
 using namespace test;
 
-/// W that enter from a distant light, on average over a mesh's samples.
-double entering(const LitWorld& lit, const std::vector<SurfaceSample>& samples, bool geometric_normals) {
+/// That enters a mesh from a distant light, W: the sum over its samples.
+double entered_flux(const LitWorld& lit, const std::vector<SurfaceSample>& samples, bool geometric_normals) {
   const std::vector<Light> lights{
       recentred(light_of(DirectionalLight{{0, -1, 0}, Rgb(1)}), lit.world.origin)};
   IrradianceInput input{lit.rays, samples, lights};
@@ -36,8 +36,8 @@ TEST(EntryNormals, OfTrianglesLetInWhatArrives) {
   for (const Vec3d& p : mesh.positions) mesh.normals.push_back(Vec3f(normalized(p)));
   const LitWorld lit(world_of_mesh(mesh));
   const std::vector<SurfaceSample> samples = sample_surface({lit.world, {{0}}, 4000}).samples;
-  EXPECT_NEAR(entering(lit, samples, true), 4, .02);
-  EXPECT_LT(entering(lit, samples, false), 3.5);
+  EXPECT_NEAR(entered_flux(lit, samples, true), 4, .02);
+  EXPECT_LT(entered_flux(lit, samples, false), 3.5);
 }
 
 }  // namespace

@@ -34,9 +34,9 @@ RgbF room(std::size_t x, std::size_t y, std::size_t width) {
   return column == 5 && row == 2 ? RgbF{40, 60, 20} : RgbF{.2f, .1f, .4f} * float(1 + row);
 }
 
-// Claim: what has no share is never drawn, also behind all that has one. Source: rounding of sums to shares once left the
-// last of a table a share of 1e-7, and a floor's pixel a ray to below the floor that counted ten thousand times. Tolerance:
-// none. Fails when: the last end is 1 and those before it that bring nothing are not.
+// Claim: what has no share is never drawn, not even at the end of a table. Source: rounding once left the last entry a share
+// of 1e-7; it was drawn for one pixel of a floor, was below the floor, and counted ten thousand times. Tolerance: none. Fails
+// when: the last end is set to 1, and the ends before it that bring nothing either are not.
 TEST(CumulativeShares, OfNothingIsNothing) {
   for (std::uint64_t table = 0; table < 1000; ++table) {
     std::array<float, 8> ends;

@@ -6,19 +6,11 @@
 #include "opaline/core/random.h"
 #include "opaline/quality/measured_error.h"
 #include "opaline/quality/target_error.h"
+#include "quality/one_body.h"
 #include "quality/probe.h"
-#include "session/session_test.h"
 
 namespace opaline::test {
 namespace {
-
-Scene small(ShapeSource source, const Medium& medium, const Light& light) {
-  Scene scene = single_shape(std::move(source), medium, 1);
-  scene.lights = {light};
-  scene.camera.position = {10, 25, 45};
-  scene.film.resolution = {96, 96};
-  return scene;
-}
 
 /// A torus that shadows itself, a box with edges, and two groups beside an opaque floor under an area light.
 std::vector<Scene> small_scenes() {
@@ -27,10 +19,10 @@ std::vector<Scene> small_scenes() {
   Scene balls = two_balls();
   balls.film.resolution = {96, 64};
   for (Shape& shape : balls.shapes) shape.reflectance = {};  // as the promise leaves it out
-  return {
-      small(TorusShape{{}, 10, 4}, skin, point_light({30, 40, 10}, {1e4, 1e4, 1e4})),
-      small(BoxShape{{-9, -9, -9}, {9, 9, 9}}, marble(), {"sun", DirectionalLight{{-.6, -.8, 0}, Rgb(1)}}),
-      balls};
+  return {one_body(TorusShape{{}, 10, 4}, skin, point_light({30, 40, 10}, {1e4, 1e4, 1e4}), 96),
+          one_body(BoxShape{{-9, -9, -9}, {9, 9, 9}}, marble(),
+                   {"sun", DirectionalLight{{-.6, -.8, 0}, Rgb(1)}}, 96),
+          balls};
 }
 
 Image truth_of(Scene scene) {

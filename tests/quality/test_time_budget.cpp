@@ -5,31 +5,21 @@
 #include "core/scratch_folder.h"
 #include "opaline/core/stopwatch.h"
 #include "opaline/quality/time_budget.h"
+#include "quality/one_body.h"
 #include "quality/probe.h"
-#include "session/session_test.h"
 
 namespace opaline::test {
 namespace {
 
-Scene for_budget(ShapeSource source, const Medium& medium, const Light& light) {
-  Scene scene = single_shape(std::move(source), medium, 1);
-  scene.lights = {light};
-  scene.camera.position = {10, 25, 45};
-  scene.film.resolution = {160, 160};
-  return scene;
-}
-
-Scene torus() {
-  return for_budget(TorusShape{{}, 10, 4}, marble(), point_light({30, 40, 10}, {1e4, 1e4, 1e4}));
-}
+constexpr int kPictureSide = 160;
 
 /// The torus shadows itself, the box has edges, the balls an opaque floor under an area light.
 std::vector<Scene> budget_scenes() {
   Scene balls = two_balls();
   balls.film.resolution = {96, 64};
-  return {torus(),
-          for_budget(BoxShape{{-9, -9, -9}, {9, 9, 9}}, grey_medium(.4, .01, 1.3),
-                     {"sun", DirectionalLight{{-.6, -.8, 0}, Rgb(1)}}),
+  return {marble_torus(kPictureSide),
+          one_body(BoxShape{{-9, -9, -9}, {9, 9, 9}}, grey_medium(.4, .01, 1.3),
+                   {"sun", DirectionalLight{{-.6, -.8, 0}, Rgb(1)}}, kPictureSide),
           balls};
 }
 
@@ -86,8 +76,8 @@ TEST(TimeBudget, IsKeptAndUsed) {
 // Claim: what is done with the picture afterwards is planned for, as large as it is: here half of the time.
 // Tolerance: as above. Fails if: it is left out of the plan, or taken for that of a small picture.
 TEST(TimeBudget, PlansForWhatFollows) {
-  const Scene scene = torus();
-  const double half = 5 * least(scene), pixels = 160 * 160;
+  const Scene scene = marble_torus(kPictureSide);
+  const double half = 5 * least(scene), pixels = kPictureSide * kPictureSide;
   const auto finish = [&](const Image& picture) {
     const Stopwatch watch;
     while (watch.cost({}).cpu_seconds < half * double(picture.width) * double(picture.height) / pixels)
@@ -109,7 +99,7 @@ TEST(TimeBudget, PlansForWhatFollows) {
 // Claim: of budgets each three times the one before, none chooses fewer samples or a coarser tolerance.
 // Fails if: samples are those of the first small picture, or the tolerance is.
 TEST(TimeBudget, MoreTimeIsNoCoarser) {
-  const Scene scene = torus();
+  const Scene scene = marble_torus(kPictureSide);
   const double unit = least(scene);
   double samples = 0, tolerance = 1;
   for (const double leasts : {2., 6., 18., 54.}) {
@@ -127,7 +117,7 @@ TEST(TimeBudget, MoreTimeIsNoCoarser) {
 // Claim: too little time is said, with what the cheapest takes, within a factor of two; that has few samples,
 // and makes a picture. Fails if: `fits` is always true, or what was spent on choosing is left out.
 TEST(TimeBudget, SaysWhatTheLeastIs) {
-  Scene scene = torus();
+  Scene scene = marble_torus(kPictureSide);
   scene.film.samples_per_pixel = 16;
   const Spent spent = spend(scene, .01);
   EXPECT_FALSE(spent.chosen.fits);
@@ -140,7 +130,7 @@ TEST(TimeBudget, SaysWhatTheLeastIs) {
 // truth has 400k samples of another seed. Fails if: the prediction is that of the last small picture, which
 // has an eighth of the samples.
 TEST(TimeBudget, PredictsTheError) {
-  Scene scene = torus(), truth = scene;
+  Scene scene = marble_torus(kPictureSide), truth = scene;
   truth.settings.samples = 400000;
   truth.settings.seed = 77;
   truth.settings.tolerance = 5e-4;
@@ -155,7 +145,7 @@ TEST(TimeBudget, PredictsTheError) {
 
 // Claim: samples end at settings.max_samples, which is said. Fails if: the cap is ignored.
 TEST(TimeBudget, EndsAtTheMostSamples) {
-  Scene scene = torus();
+  Scene scene = marble_torus(kPictureSide);
   scene.settings.max_samples = 6000;
   Session session;
   const double seconds = 50 * least(scene);
@@ -183,7 +173,7 @@ TEST(TimeBudget, NothingTranslucentSeen) {
 // Claim: large pictures of a smooth surface get the surface cache where the scene leaves that open, and keep
 // its evaluator where it does not. Fails if: the cache is never tried, or tried where another is asked for.
 TEST(TimeBudget, ChoosesTheEvaluatorWhereItIsOpen) {
-  Scene scene = torus();
+  Scene scene = marble_torus(kPictureSide);
   scene.film.resolution = {1600, 1600};
   const double seconds = 1.5 * least(scene);
   Session session;
@@ -198,7 +188,7 @@ TEST(TimeBudget, ChoosesTheEvaluatorWhereItIsOpen) {
 // that of as many entry samples without a clock. Fails if: a pass is given twice, or the last passes are not
 // counted.
 TEST(TimeBudget, DirectEndsInTime) {
-  Scene scene = torus();
+  Scene scene = marble_torus(kPictureSide);
   scene.settings.method = Method::direct;
   Session session;
   session.edit(scene);
@@ -228,7 +218,7 @@ TEST(TimeBudget, DirectEndsInTime) {
 
 // Claim: the scene's own bounds on direct hold in less time. Fails if: they are replaced.
 TEST(TimeBudget, DirectKeepsItsOwnBounds) {
-  Scene scene = torus();
+  Scene scene = marble_torus(kPictureSide);
   scene.film.resolution = {32, 32};
   scene.settings.method = Method::direct;
   Session session;

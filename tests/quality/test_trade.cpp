@@ -5,17 +5,14 @@
 
 #include "opaline/core/stopwatch.h"
 #include "opaline/quality/trade.h"
+#include "quality/one_body.h"
 #include "quality/probe.h"
-#include "session/session_test.h"
 
 namespace opaline::test {
 namespace {
 
 Scene torus_scene() {
-  Scene scene = single_shape(TorusShape{{}, 10, 4}, marble(), 1);
-  scene.lights = {point_light({30, 40, 10}, {1e4, 1e4, 1e4})};
-  scene.camera.position = {10, 25, 45};
-  scene.film.resolution = {96, 96};
+  Scene scene = marble_torus(96);
   scene.settings.samples = 4000;
   return scene;
 }

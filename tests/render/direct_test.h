@@ -24,6 +24,13 @@ inline std::string name_of(ProfileKind kind, EntryStrategy strategy) {
          (strategy == EntryStrategy::disc_axes ? ", disc_axes" : ", chords");
 }
 
+inline SurfacePoint point_at(const Vec3d& position, const Vec3d& normal) {
+  SurfacePoint p;
+  p.position = Vec3f(position);
+  p.normal = p.geometric = Vec3f(normal);
+  return p;
+}
+
 /// Independent random numbers of sample i.
 inline EntryRandom random_of(std::uint64_t i, std::uint64_t seed = 0) {
   EntryRandom random{{}, hash_bits(seed + 9, i)};

@@ -6,19 +6,13 @@
 
 #include "core/scratch_folder.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
 #include "opaline/transport/rough_boundary.h"
 #include "support/pictures.h"
+#include "support/scene_picture.h"
 #include "support/scenes.h"
 
 namespace opaline::test {
 namespace {
-
-Image rendered(const Scene& scene) {
-  Session session;
-  session.edit(scene);
-  return session.render().image;
-}
 
 constexpr double kRoughness = .5, kAnisotropy = .7, kDegrees = 35;
 
@@ -62,7 +56,9 @@ TEST(Anisotropy, HighlightsLieInTheFrameOfTheUvs) {
   const Vec3d x{1, 0, 0}, z{0, 0, 1};
   EXPECT_GT(std::abs(highlight(x) / highlight(z) - 1), .05);
   EXPECT_GT(std::abs(highlight(x) / highlight(x, 0) - 1), .05);
-  const auto seen = [](const Scene& scene) { return double(channel(rendered(scene), 0, 0, "specular.G")); };
+  const auto seen = [](const Scene& scene) {
+    return double(channel(cold_picture(scene), 0, 0, "specular.G"));
+  };
   EXPECT_NEAR(seen(one_highlight(QuadShape{{-50, 0, 50}, {100, 0, 0}, {0, 0, -100}})) / highlight(x), 1,
               1e-3);
   EXPECT_NEAR(seen(one_highlight(QuadShape{{-50, 0, -50}, {0, 0, 100}, {100, 0, 0}})) / highlight(z), 1,
@@ -91,7 +87,7 @@ TEST(Anisotropy, WhiteFurnace) {
       const std::string coat =
           R"("specular_anisotropy": 0.8, "specular_rotation": 30, "specular_roughness": )" + roughness;
       const bool is_body = surface[1] == 'm';
-      const Image image = rendered(
+      const Image image = cold_picture(
           parse_scene(R"({"media": {"white": {"sigma_a": 0, "sigma_s": 1, "specular_ior": 1.5, )" + coat +
                           R"(}}, "shapes": [{"sphere": {"radius": 10}, )" + surface + (is_body ? "" : coat) +
                           R"(}], "surroundings": 1, "settings": {"method": "lambert", "light_samples": 1024},
@@ -119,7 +115,7 @@ TEST(Anisotropy, NoneIsNone) {
   plain.shapes[0].gloss->grain = {0, kDegrees};
   Scene none = plain;
   none.shapes[0].gloss->grain = {};
-  EXPECT_EQ(rendered(plain).pixels, rendered(none).pixels);
+  EXPECT_EQ(cold_picture(plain).pixels, cold_picture(none).pixels);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "opaline/render/direct.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
+#include "support/scene_picture.h"
 #include "support/scenes.h"
 
 namespace opaline::test {
@@ -165,10 +166,6 @@ Scene ball_beside_wall() {
   scene.shapes.push_back(translucent("ball", SphereShape{{20, 10, 0}, 10}));
   scene.settings.samples = 2000;
   return scene;
-}
-
-bool same_pixels(const Image& a, const Image& b) {
-  return a.pixels == b.pixels;
 }
 
 // Claim: a session that goes from one colour of a wall to another, to no bounces and back gives the pictures of new

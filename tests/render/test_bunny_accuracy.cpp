@@ -45,11 +45,11 @@ std::vector<Exitance> exact_sum(std::size_t samples, std::span<const Query> poin
   return evaluate({group.octree, group.kernel, points, {}, EvaluatorKind::brute_force});
 }
 
-struct Error {
+struct MeanAndTail {
   double mean, p99;
 };
 
-Error error_between(const std::vector<Exitance>& a, const std::vector<Exitance>& reference) {
+MeanAndTail error_between(const std::vector<Exitance>& a, const std::vector<Exitance>& reference) {
   std::vector<double> errors;
   for (std::size_t i = 0; i < a.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
@@ -66,7 +66,7 @@ Error error_between(const std::vector<Exitance>& a, const std::vector<Exitance>&
 TEST(BunnyAccuracy, HundredThousandSamples) {
   const std::vector<Query> points = shading_points(64, 12);
   ASSERT_GT(points.size(), 100u);
-  const Error error = error_between(exact_sum(100'000, points), exact_sum(600'000, points));
+  const MeanAndTail error = error_between(exact_sum(100'000, points), exact_sum(600'000, points));
   RecordProperty("mean", std::to_string(error.mean));
   EXPECT_LT(error.mean, 0.01);
   EXPECT_LT(error.p99, 0.05);
@@ -79,7 +79,7 @@ TEST(LongBunnyAccuracy, AgainstThreeMillionSamples) {
   const std::vector<Exitance> reference = exact_sum(3'000'000, points);
   double previous = 1;
   for (const std::size_t samples : {10'000u, 30'000u, 100'000u}) {
-    const Error error = error_between(exact_sum(samples, points), reference);
+    const MeanAndTail error = error_between(exact_sum(samples, points), reference);
     std::printf("%zu samples: mean %.3f %%, p99 %.3f %%\n", samples, 100 * error.mean, 100 * error.p99);
     EXPECT_LT(error.mean, previous);
     previous = error.mean;
@@ -88,7 +88,7 @@ TEST(LongBunnyAccuracy, AgainstThreeMillionSamples) {
 }
 
 // The green channel where the object covers the pixel, else 0.
-std::vector<double> picture(std::size_t samples) {
+std::vector<double> bunny_picture(std::size_t samples) {
   Scene scene = bunny(samples);
   scene.settings.max_solid_angle = 0.02;
   const Prepared prepared(scene);
@@ -121,7 +121,7 @@ std::vector<double> blurred(const std::vector<double>& ratio, int width) {
 // most .5 % rms.
 // Source: README.md, "How accurate it is". Fails when: the near field is not split off.
 TEST(LongBunnyAccuracy, NoMottling) {
-  const std::vector<double> picture_100k = picture(100'000), reference = picture(3'000'000);
+  const std::vector<double> picture_100k = bunny_picture(100'000), reference = bunny_picture(3'000'000);
   std::vector<double> ratio(reference.size());
   for (std::size_t i = 0; i < ratio.size(); ++i)
     ratio[i] = reference[i] > 0 ? picture_100k[i] / reference[i] : 0;

@@ -16,7 +16,7 @@ std::string scene_file(const std::string& name) {
   return std::string(OPALINE_SCENES_DIR) + "/" + name + ".json";
 }
 
-Image picture(const std::string& name, const std::vector<std::string>& more) {
+Image picture_of_file(const std::string& name, const std::vector<std::string>& more) {
   std::vector<std::string> overrides{"film.resolution=[96,96]", "film.samples_per_pixel=1", "film.filter=box",
                                      "film.pixel_type=float", "settings.tolerance=0.001"};
   overrides.insert(overrides.end(), more.begin(), more.end());
@@ -37,10 +37,10 @@ ErrorStatistics sampling_error(const Image& image, const Image& reference) {
 // %).
 TEST(DefaultSamples, KeepWithinOnePercent) {
   for (const std::string name : {"bunny-marble", "bunny-skin1", "sphere", "backlit-slab"}) {
-    const Image reference = picture(name, {"settings.samples=300000"});
+    const Image reference = picture_of_file(name, {"settings.samples=300000"});
     const auto expect_one_percent = [&](const std::string& what, const std::vector<std::string>& more) {
       SCOPED_TRACE(name + what);
-      const ErrorStatistics error = sampling_error(picture(name, more), reference);
+      const ErrorStatistics error = sampling_error(picture_of_file(name, more), reference);
       RecordProperty(name + what + "_mean", std::to_string(error.mean));
       RecordProperty(name + what + "_p99", std::to_string(error.p99));
       EXPECT_LT(error.mean, 0.01);

@@ -36,13 +36,6 @@ void expect_near(const Mean& mean, double expected, double systematic, const std
   EXPECT_LT(mean.error(), .015 * expected) << name << ": too noisy to tell";
 }
 
-SurfacePoint point_at(const Vec3d& position, const Vec3d& normal) {
-  SurfacePoint p;
-  p.position = Vec3f(position);
-  p.normal = p.geometric = Vec3f(normal);
-  return p;
-}
-
 /// Integral of R_d over the sphere of radius R times the E of parallel light of irradiance 1, seen from a
 /// point at this cosine from the light: rings of chord length r, dA = r dr dphi.
 double lit_sphere(const ChannelProfile& profile, double R, double cosine, double eta) {

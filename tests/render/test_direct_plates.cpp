@@ -8,13 +8,6 @@
 namespace opaline::test {
 namespace {
 
-SurfacePoint point_at(const Vec3d& position, const Vec3d& normal) {
-  SurfacePoint p;
-  p.position = Vec3f(position);
-  p.normal = p.geometric = Vec3f(normal);
-  return p;
-}
-
 /// A plate of 40 x 40 mm, 1 mm thick, in the light of one parallel beam of irradiance 1 across it.
 DirectScene plate_scene(ProfileKind kind, double mean_free_path, const Vec3d& beam) {
   Medium medium = grey_medium(mean_free_path, .02, 1.4, kind);

@@ -12,7 +12,7 @@
 namespace opaline {
 namespace {
 
-RenderResult picture(const std::string& name, const std::vector<std::string>& more) {
+RenderResult estimated(const std::string& name, const std::vector<std::string>& more) {
   std::vector<std::string> overrides{"film.resolution=[32,32]", "film.samples_per_pixel=1",
                                      "film.filter=box"};
   overrides.insert(overrides.end(), more.begin(), more.end());
@@ -59,14 +59,14 @@ TEST(ErrorEstimate, IsWithinAFactorOfTwo) {
     const std::vector<std::string> profile = name == "backlit-slab"
                                                  ? std::vector<std::string>{"media.jade.profile=dipole"}
                                                  : std::vector<std::string>{};
-    const Image truth = picture(name, joined(profile, kTruth)).image;
+    const Image truth = estimated(name, joined(profile, kTruth)).image;
     for (const std::string samples : {"", "5000", "500"}) {
       const std::vector<std::string> few{"settings.samples=" + samples};
-      expect_estimate(picture(name, samples.empty() ? profile : joined(profile, few)), truth,
+      expect_estimate(estimated(name, samples.empty() ? profile : joined(profile, few)), truth,
                       name + ", samples " + samples);
     }
   }
-  expect_estimate(picture("backlit-slab", {}), picture("backlit-slab", kTruth).image, "multipole");
+  expect_estimate(estimated("backlit-slab", {}), estimated("backlit-slab", kTruth).image, "multipole");
 }
 
 // Claim: the same with any number of camera rays a pixel and of shadow rays, in the light of a panel and the
@@ -79,13 +79,13 @@ TEST(ErrorEstimate, HoldsForAnyNumberOfRaysAPixel) {
   for (const int rays : {1, 16, 64}) {
     const std::vector<std::string> pixel{"film.samples_per_pixel=" + std::to_string(rays)};
     const Image truth =
-        picture("sphere", joined(joined(skin, pixel),
-                                 {"settings.samples=30000", "settings.light_samples=128", "settings.seed=5"}))
+        estimated("sphere", joined(joined(skin, pixel), {"settings.samples=30000",
+                                                         "settings.light_samples=128", "settings.seed=5"}))
             .image;
     for (const int light : {4, 16})
-      expect_estimate(
-          picture("sphere", joined(joined(skin, pixel), {"settings.light_samples=" + std::to_string(light)})),
-          truth, std::to_string(rays) + " rays, " + std::to_string(light) + " to a light");
+      expect_estimate(estimated("sphere", joined(joined(skin, pixel),
+                                                 {"settings.light_samples=" + std::to_string(light)})),
+                      truth, std::to_string(rays) + " rays, " + std::to_string(light) + " to a light");
   }
 }
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 
 #include "core/scratch_folder.h"
 #include "opaline/geometry/nearest_surface.h"
@@ -14,11 +13,6 @@
 
 namespace opaline::test {
 namespace {
-
-bool same_pixels(const Image& a, const Image& b) {
-  return a.channels == b.channels && a.pixels.size() == b.pixels.size() &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(float)) == 0;
-}
 
 /// A ball of wax, lit from above.
 std::string wax_scene(const std::string& color, const std::string& radius, const std::string& settings,
@@ -32,7 +26,7 @@ std::string wax_scene(const std::string& color, const std::string& radius, const
          settings + "}}";
 }
 
-const std::vector<std::string> kMethods{
+const std::vector<std::string> kMethodsInside{
     R"("method": "hierarchical", "samples": 3000)", R"("method": "direct", "entry_samples": 4)",
     R"("method": "volume_diffusion")", R"("method": "volume", "samples": 50, "until_error": 0.5)"};
 
@@ -41,7 +35,7 @@ TEST(MediumTextures, OfOneTexelAreConstants) {
   const ScratchFolder folder;
   put_png(folder.file("grey.png"), 4, 4, Bytes{204, 204, 204});
   const std::string texture = R"({"texture": "grey.png", "color_space": "linear"})";
-  for (const std::string& method : kMethods)
+  for (const std::string& method : kMethodsInside)
     EXPECT_TRUE(
         same_pixels(picture_of(folder, wax_scene(texture, texture, method, R"(, "texture_mix": "medium")")),
                     picture_of(folder, wax_scene("0.8", "0.8", method))))
@@ -58,13 +52,14 @@ TEST(MediumTextures, OfRadialProfilesAreMeans) {
   const std::string color = R"({"texture": "two.png"})";
   for (std::size_t m = 0; m < 2; ++m) {
     const auto picture = [&](const std::string& radius, const std::string& mix) {
-      return picture_of(folder, wax_scene(color, radius, kMethods[m], ", \"texture_mix\": \"" + mix + '"'));
+      return picture_of(folder,
+                        wax_scene(color, radius, kMethodsInside[m], ", \"texture_mix\": \"" + mix + '"'));
     };
     const Image inside = picture(R"({"texture": "two.png", "scale": 2})", "medium");
     // 2 (200 + 100) / 2 / 255 and so on, as numbers of a file are: linear.
     EXPECT_TRUE(
         same_pixels(inside, picture("[1.1764705882352942, 1.4901960784313726, 1.1764705882352942]", "split")))
-        << kMethods[m];
+        << kMethodsInside[m];
   }
 }
 
@@ -86,14 +81,14 @@ TEST(MediumTextures, NoErrorIsSaidThatWasNotMeasured) {
 }
 
 /// Exitance of the samples' cells.
-struct Exitance {
+struct CellExitance {
   std::vector<SurfaceSample> samples;
   std::vector<RgbF> values, errors;
 };
 
 /// Of a channel over the cells of walks: rms of what another method sends out there less what they do, without their noise,
 /// over the mean.
-double difference(const Exitance& other, const Exitance& walks, std::size_t channel) {
+double difference(const CellExitance& other, const CellExitance& walks, std::size_t channel) {
   const NearestSample nearest(walks.samples);
   std::vector<double> sums(walks.samples.size()), areas(walks.samples.size());
   for (std::size_t i = 0; i < other.samples.size(); ++i) {
@@ -112,7 +107,7 @@ double difference(const Exitance& other, const Exitance& walks, std::size_t chan
   return std::sqrt(std::max(0., square / area)) / (mean / area);
 }
 
-Exitance exitance_of(const ScratchFolder& folder, const std::string& text) {
+CellExitance exitance_of(const ScratchFolder& folder, const std::string& text) {
   Session session;
   session.edit(parse_scene(text, folder.file("scene.json"), {}));
   session.prepare();
@@ -138,9 +133,9 @@ TEST(MediumTextures, HoldInsideAsWalked) {
       return exitance_of(folder, wax_scene(is_color ? varied : other, is_color ? other : varied, settings,
                                            R"(, "texture_mix": "medium")"));
     };
-    const Exitance cells = exitance(R"("method": "volume_diffusion")", true),
-                   walks = exitance(R"("method": "volume", "samples": 300, "until_error": 0.08)", true),
-                   even = exitance(R"("method": "volume_diffusion")", false);
+    const CellExitance cells = exitance(R"("method": "volume_diffusion")", true),
+                       walks = exitance(R"("method": "volume", "samples": 300, "until_error": 0.08)", true),
+                       even = exitance(R"("method": "volume_diffusion")", false);
     double largest = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_LT(difference(cells, walks, c), .05) << is_color << c;

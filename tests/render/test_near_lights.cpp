@@ -20,7 +20,7 @@ Scene box_under(const LightSource& light) {
   return scene;
 }
 
-std::vector<std::string> warnings_of(const Scene& scene) {
+std::vector<std::string> warnings_of_plan(const Scene& scene) {
   return make_plan(scene, make_world(scene)).warnings;
 }
 
@@ -52,7 +52,7 @@ TEST(NearLights, AreWarnedOf) {
       {Surroundings{white}, ""},
   };
   for (const auto& c : cases) {
-    const std::vector<std::string> warnings = warnings_of(box_under(c.light));
+    const std::vector<std::string> warnings = warnings_of_plan(box_under(c.light));
     ASSERT_EQ(warnings.size(), c.said.empty() ? 0u : 1u) << (warnings.empty() ? c.said : warnings[0]);
     if (warnings.empty()) continue;
     EXPECT_NE(warnings[0].find(c.said), std::string::npos) << warnings[0];
@@ -65,11 +65,11 @@ TEST(NearLights, AreWarnedOf) {
 TEST(NearLights, OnlyWhereSamplesAre) {
   Scene scene = box_under(PointLight{{93, 120.5, 104}, {1, 1, 1}});
   scene.settings.method = Method::lambert;
-  EXPECT_TRUE(warnings_of(scene).empty());
+  EXPECT_TRUE(warnings_of_plan(scene).empty());
   scene.settings.method = Method::hierarchical;
-  EXPECT_EQ(warnings_of(scene).size(), 1u);
+  EXPECT_EQ(warnings_of_plan(scene).size(), 1u);
   scene.shapes[0].medium.reset();
-  EXPECT_TRUE(warnings_of(scene).empty());
+  EXPECT_TRUE(warnings_of_plan(scene).empty());
 }
 
 double brute_distance(const std::vector<Piece>& pieces, const Vec3d& start, const Vec3d& along, int steps) {

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "support/scene_picture.h"
 #include "support/scenes.h"
 
 namespace opaline::test {
@@ -29,30 +30,25 @@ Scene mixed_scene() {
   return scene;
 }
 
-Image picture(const Scene& scene, int threads) {
+Image picture_by_threads(const Scene& scene, int threads) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
   return Prepared(scene).picture();
-}
-
-bool same_bytes(const Image& a, const Image& b) {
-  return a.pixels.size() == b.pixels.size() &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(float)) == 0;
 }
 
 // Claim: the picture's bytes depend on the scene alone. Source: bits do not move. Tolerance none.
 // Fails when: a sum is taken in the order in which threads finish (try unordered accumulation in
 // surface_shares).
 TEST(PictureBytes, SameForOneAndTwoThreadsAndTwoRuns) {
-  const Image one = picture(mixed_scene(), 1);
-  EXPECT_TRUE(same_bytes(one, picture(mixed_scene(), 2)));
-  EXPECT_TRUE(same_bytes(one, picture(mixed_scene(), 2)));
+  const Image one = picture_by_threads(mixed_scene(), 1);
+  EXPECT_TRUE(same_pixels(one, picture_by_threads(mixed_scene(), 2)));
+  EXPECT_TRUE(same_pixels(one, picture_by_threads(mixed_scene(), 2)));
 }
 
 // Claim: another seed moves samples and light samples: bytes differ. Fails when: the seed is ignored.
 TEST(PictureBytes, SeedMatters) {
   Scene other = mixed_scene();
   other.settings.seed = 1;
-  EXPECT_FALSE(same_bytes(picture(mixed_scene(), 2), picture(other, 2)));
+  EXPECT_FALSE(same_pixels(picture_by_threads(mixed_scene(), 2), picture_by_threads(other, 2)));
 }
 
 // Claim: a crop's pixels are those of the whole picture. Tolerance none. Fails when: tiles start at the
@@ -60,7 +56,7 @@ TEST(PictureBytes, SeedMatters) {
 TEST(PictureBytes, CropIsPartOfTheWhole) {
   Scene cropped = mixed_scene();
   cropped.film.crop = {{5, 3, 37, 29}};
-  const Image whole = picture(mixed_scene(), 2), part = picture(cropped, 2);
+  const Image whole = picture_by_threads(mixed_scene(), 2), part = picture_by_threads(cropped, 2);
   ASSERT_EQ(part.width, 32);
   ASSERT_EQ(part.height, 26);
   const std::size_t n = whole.channels.size();
@@ -72,7 +68,7 @@ TEST(PictureBytes, CropIsPartOfTheWhole) {
 }
 
 // All lengths times k, coefficients over k, intensities times k^2: the same radiance.
-Scene scaled(Scene scene, double k) {
+Scene enlarged(Scene scene, double k) {
   auto& medium = std::get<PhysicalMedium>(scene.media[0].coefficients);
   medium.sigma_a = medium.sigma_a / k;
   medium.sigma_s_prime = medium.sigma_s_prime / k;
@@ -113,9 +109,9 @@ double relative_difference(const Image& a, const Image& b) {
 // other samples' noise. Source: the extremes that must hold: same bytes; other k within 1 %. Fails when: any
 // absolute epsilon (a ray offset, a table's range) is in mm.
 TEST(PictureBytes, ScaleDoesNotMatter) {
-  const Image one = picture(mixed_scene(), 2);
+  const Image one = picture_by_threads(mixed_scene(), 2);
   for (const double k : {0.0009765625, 8.0, 4096.0}) {
-    const Image other = picture(scaled(mixed_scene(), k), 2);
+    const Image other = picture_by_threads(enlarged(mixed_scene(), k), 2);
     std::size_t different = 0;
     for (int y = 0; y < one.height; ++y)
       for (int x = 0; x < one.width; ++x)
@@ -123,7 +119,7 @@ TEST(PictureBytes, ScaleDoesNotMatter) {
           different += channel(one, x, y, name) != channel(other, x, y, name) ? 1 : 0;
     EXPECT_EQ(different, 0u) << "k " << k;
   }
-  EXPECT_LT(relative_difference(one, picture(scaled(mixed_scene(), 3.7), 2)), 0.01);
+  EXPECT_LT(relative_difference(one, picture_by_threads(enlarged(mixed_scene(), 3.7), 2)), 0.01);
 }
 
 // Claim: a scene 1e6 mm from the origin gives the same picture within .1 %. Source: the extremes that must
@@ -137,7 +133,7 @@ TEST(PictureBytes, FarFromTheOrigin) {
   std::get<QuadLight>(far.lights[2].source).corner += away;
   far.camera.position += away;
   far.camera.look_at += away;
-  EXPECT_LT(relative_difference(picture(mixed_scene(), 2), picture(far, 2)), 0.001);
+  EXPECT_LT(relative_difference(picture_by_threads(mixed_scene(), 2), picture_by_threads(far, 2)), 0.001);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ Scene scaled(Scene scene, double k) {
   return scene;
 }
 
-Image picture(const Scene& scene) {
+Image picture_by_any_method(const Scene& scene) {
   if (scene.settings.method != Method::direct) return Prepared(scene).picture();
   const World world = make_world(scene);
   const RayScene rays(world);
@@ -91,11 +91,11 @@ TEST(Scale, PowersOfTwoAreTheSamePicture) {
     for (const ProfileKind profile : {ProfileKind::dipole, ProfileKind::normalized_diffusion}) {
       Scene scene = plain_scene(profile);
       scene.settings.method = method;
-      const Image plain = picture(scene);
+      const Image plain = picture_by_any_method(scene);
       for (const double k : {0x1p-58, 0x1p-30, 2., 0x1p5, 0x1p20, 0x1p50}) {
         SCOPED_TRACE(testing::Message()
                      << "method " << int(method) << " profile " << int(profile) << " k " << k);
-        expect_same(plain, picture(scaled(scene, k)), k);
+        expect_same(plain, picture_by_any_method(scaled(scene, k)), k);
       }
     }
 }
@@ -114,11 +114,11 @@ TEST(Scale, BrightnessTimesPowersOfTwo) {
   for (const EvaluatorKind evaluator : {EvaluatorKind::dual_tree, EvaluatorKind::surface_cache}) {
     Scene scene = plain_scene(ProfileKind::dipole);
     scene.settings.evaluator = evaluator;
-    const Image plain = picture(scene);
+    const Image plain = picture_by_any_method(scene);
     const double error = estimated_relative_error(plain);
     EXPECT_GT(error, 0);
     for (const double k : {0x1p-90, 0x1p-70, 0x1p-50, 2., 0x1p50, 0x1p62, 0x1p70, 0x1p80}) {
-      const Image bright = picture(brighter(scene, k));
+      const Image bright = picture_by_any_method(brighter(scene, k));
       SCOPED_TRACE(testing::Message() << "evaluator " << int(evaluator) << " k " << k);
       EXPECT_EQ(estimated_relative_error(bright), error);
       std::map<std::string, int> other;
@@ -220,13 +220,13 @@ TEST(Scale, BodiesInsideOfAHugeShell) {
   Scene scene = plain_scene(ProfileKind::normalized_diffusion);
   scene.shapes.pop_back();  // the floor
   scene.lights.resize(1);
-  const Image alone = picture(scene);
+  const Image alone = picture_by_any_method(scene);
   Shape shell;
   shell.name = "shell";
   shell.source = SphereShape{{10, -20, 30}, 1e9};
   shell.reflectance = {};
   scene.shapes.push_back(shell);
-  const Image inside = picture(scene);
+  const Image inside = picture_by_any_method(scene);
   const std::size_t channels = alone.channels.size();
   float brightest = 0;
   for (std::size_t i = 0; i < alone.pixels.size(); i += channels)

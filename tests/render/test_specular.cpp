@@ -4,9 +4,9 @@
 
 #include "opaline/core/random.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
 #include "opaline/transport/fresnel.h"
 #include "opaline/transport/rough_boundary.h"
+#include "support/scene_picture.h"
 #include "support/scenes.h"
 
 namespace opaline::test {
@@ -21,12 +21,6 @@ Scene white_ball(double roughness) {
   scene.settings.method = Method::lambert;
   scene.camera.field_of_view = 15;
   return scene;
-}
-
-Image rendered(const Scene& scene) {
-  Session session;
-  session.edit(scene);
-  return session.render().image;
 }
 
 double mean_over_ball(const Image& image, const std::string& layer) {
@@ -48,7 +42,7 @@ TEST(Coat, WhiteFurnace) {
     SCOPED_TRACE(roughness);
     Scene scene = white_ball(roughness);
     scene.lights = {{"all around", Surroundings{Rgb(1.0)}}};
-    const Image image = rendered(scene);
+    const Image image = cold_picture(scene);
     EXPECT_NEAR(mean_over_ball(image, "G"), 1, .005);
     for (int x = 12; x < 20; ++x) EXPECT_NEAR(channel(image, x, 16, "G"), 1, .04) << x;
   }
@@ -67,10 +61,10 @@ TEST(Coat, HighlightsOfAPointAndASmallBall) {
   const RoughBoundary boundary(.4, kEta);
   const double value = double(boundary.value({0, 0, 1}, Vec3f(to_light)));
   scene.lights = {point_light(at, Rgb(d2))};
-  EXPECT_NEAR(channel(rendered(scene), 0, 0, "specular.G") / value, 1, 1e-3);
+  EXPECT_NEAR(channel(cold_picture(scene), 0, 0, "specular.G") / value, 1, 1e-3);
   scene.lights = {{"ball", SphereLight{at, 2, Rgb(d2 / (4 * kPi))}}};
   scene.film.samples_per_pixel = 64;
-  EXPECT_NEAR(channel(rendered(scene), 0, 0, "specular.G") / value, 1, .03);
+  EXPECT_NEAR(channel(cold_picture(scene), 0, 0, "specular.G") / value, 1, .03);
 }
 
 // Claim: a ball mirrors the floor as it is lit, smooth or a little rough. Source: the floor's radiance, reflectance E /
@@ -91,7 +85,7 @@ TEST(Coat, MirrorsTheFloorAsItIsLit) {
     // The eye sees (0, -10 sin 30, 10 cos 30) at 30 degrees; the mirrored ray goes down at 60.
     scene.camera.position = {0, -5, 100};
     scene.camera.look_at = {0, -5, 0};
-    const Image image = rendered(scene);
+    const Image image = cold_picture(scene);
     const double share = double(RoughBoundary(std::max(.01, roughness), kEta).reflectance(std::sqrt(.75f)));
     const char* const channels[] = {"specular.R", "specular.G", "specular.B"};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -103,11 +97,11 @@ TEST(Coat, MirrorsTheFloorAsItIsLit) {
 
 // A picture of a scene file in white surroundings.
 Image picture_of_text(const std::string& shapes, int samples_per_pixel = 1) {
-  return rendered(parse_scene(R"({"shapes": [)" + shapes +
-                                  R"(], "surroundings": 1, "settings": {"method": "lambert"},
+  return cold_picture(parse_scene(R"({"shapes": [)" + shapes +
+                                      R"(], "surroundings": 1, "settings": {"method": "lambert"},
     "camera": {"position": [0, 0, 100], "field_of_view": 15}, "film": {"resolution": [32, 32], "samples_per_pixel": )" +
-                                  std::to_string(samples_per_pixel) + R"(, "pixel_type": "float"}})",
-                              "text.json"));
+                                      std::to_string(samples_per_pixel) + R"(, "pixel_type": "float"}})",
+                                  "text.json"));
 }
 
 // Claim: an opaque white ball under a coat of any specular_weight looks like its surroundings, metal or not. Source:
@@ -147,7 +141,7 @@ TEST(Coat, SpecularWeightOfBodies) {
     for (const char* const roughness : {"0", "0.4"})
       for (const double weight : {0., .25, 1.}) {
         SCOPED_TRACE(std::string(method) + ' ' + roughness + ' ' + std::to_string(weight));
-        const Image image = rendered(parse_scene(
+        const Image image = cold_picture(parse_scene(
             std::string(R"({"media": {"white": {"sigma_a": 0, "sigma_s": 200, "specular_ior": 1.5,
           "specular_roughness": )") +
                 roughness + R"(, "specular_weight": )" + std::to_string(weight) +
@@ -197,10 +191,10 @@ TEST(Coat, IsSeenInMirrors) {
     scene.shapes[1].gloss->metalness = metalness;
     const double mirrored = value * (metalness > 0 ? 1 : fresnel_reflectance(std::sqrt(.5), kEta));
     scene.lights = {point_light(at, Rgb(d2))};
-    EXPECT_NEAR(channel(rendered(scene), 0, 0, "specular.G") / mirrored, 1, 1e-3) << metalness;
+    EXPECT_NEAR(channel(cold_picture(scene), 0, 0, "specular.G") / mirrored, 1, 1e-3) << metalness;
     scene.lights = {{"ball", SphereLight{at, 2, Rgb(d2 / (4 * kPi))}}};
     scene.film.samples_per_pixel = 64;
-    EXPECT_NEAR(channel(rendered(scene), 0, 0, "specular.G") / mirrored, 1, .03) << metalness;
+    EXPECT_NEAR(channel(cold_picture(scene), 0, 0, "specular.G") / mirrored, 1, .03) << metalness;
   }
 }
 
@@ -233,7 +227,7 @@ TEST(Coat, TwoBodiesInAFurnace) {
          {R"("reflectance": 1, "specular_roughness": )", R"("medium": "white", "name": )"}) {
       SCOPED_TRACE(std::string(ball) + roughness);
       const std::string rough(roughness), is_named = ball[1] == 'm' ? "\"" : "";
-      const Image image = rendered(parse_scene(
+      const Image image = cold_picture(parse_scene(
           R"({"media": {"white": {"sigma_a": 0, "sigma_s": 1, "specular_ior": 1.5, "specular_roughness": )" +
               rough + R"(}}, "shapes": [{"sphere": {"radius": 10}, )" + ball + is_named + rough + is_named +
               R"(}, {"quad": {"corner": [-400, -90, 400], "u": [800, 0, 0], "v": [0, 0, -800]}, "reflectance": 1,

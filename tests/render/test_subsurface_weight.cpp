@@ -12,12 +12,12 @@
 namespace opaline::test {
 namespace {
 
-constexpr int kPixels = 16;
+constexpr int kSide = 16;
 
 // Between things surfaces are lit as methods know best, where parts are not added up.
 const std::vector<std::string> kAlone{"settings.bounces=0"};
 
-const std::vector<std::string> kMethods{"lambert", "hierarchical", "direct", "volume_diffusion", "volume"};
+const std::vector<std::string> kAllMethods{"lambert", "hierarchical", "direct", "volume_diffusion", "volume"};
 
 /// A ball on a floor under a lamp and a little light from all around; `surface` are the ball's keys.
 std::string scene_text(const std::string& medium, const std::string& method,
@@ -35,8 +35,8 @@ std::string scene_text(const std::string& medium, const std::string& method,
 /// expected(x, y, name) of all pixels' light that is not mirrored
 template <class Expected>
 void expect_diffuse(const Image& image, double tolerance, const Expected& expected) {
-  for (int y = 0; y < kPixels; ++y)
-    for (int x = 0; x < kPixels; ++x)
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
       for (const char* name : {"diffuse.R", "diffuse.G", "diffuse.B"}) {
         const double value = expected(x, y, name);
         EXPECT_NEAR(channel(image, x, y, name), value, tolerance * std::abs(value)) << x << ' ' << y << name;
@@ -48,7 +48,7 @@ void expect_diffuse(const Image& image, double tolerance, const Expected& expect
 TEST(SubsurfaceWeight, OfOneIsNone) {
   const ScratchFolder folder;
   put_png(folder.file("grey.png"), 4, 4, Bytes{51, 51, 51});
-  for (const std::string& method : kMethods) {
+  for (const std::string& method : kAllMethods) {
     const auto picture = [&](const std::string& keys) {
       return picture_of(folder, scene_text(keys, method));
     };
@@ -65,7 +65,7 @@ TEST(SubsurfaceWeight, OfOneIsNone) {
 // lit as what is opaque.
 TEST(SubsurfaceWeight, OfZeroIsTheBaseColour) {
   const ScratchFolder folder;
-  for (const std::string& method : kMethods) {
+  for (const std::string& method : kAllMethods) {
     SCOPED_TRACE(method);
     const Image base = picture_of(
         folder,
@@ -76,8 +76,8 @@ TEST(SubsurfaceWeight, OfZeroIsTheBaseColour) {
     if (method == "hierarchical" || method == "lambert")
       expect_diffuse(mixed, 1e-4, [&](int x, int y, const char* name) { return channel(base, x, y, name); });
     double sum = 0, of_base = 0;
-    for (int y = 0; y < kPixels; ++y)
-      for (int x = 0; x < kPixels; ++x) {
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
         sum += channel(mixed, x, y, "diffuse.G");
         of_base += channel(base, x, y, "diffuse.G");
       }
@@ -90,7 +90,7 @@ TEST(SubsurfaceWeight, OfZeroIsTheBaseColour) {
 // leaves, or by its root.
 TEST(SubsurfaceWeight, IsAShareOfTheLight) {
   const ScratchFolder folder;
-  for (const std::string& method : kMethods) {
+  for (const std::string& method : kAllMethods) {
     SCOPED_TRACE(method);
     const auto picture = [&](const std::string& weight) {
       return picture_of(
@@ -112,7 +112,7 @@ TEST(SubsurfaceWeight, MeetsTexturesAsATint) {
     return x < 30 ? Bytes{250, 250, 250} : Bytes{60, 60, 60};
   });
   const std::string texture = R"({"texture": "sides.png", "color_space": "linear"})";
-  for (const std::string& method : kMethods)
+  for (const std::string& method : kAllMethods)
     for (const std::string mix : {"pre", "post", "split"}) {
       SCOPED_TRACE(method + ' ' + mix);
       const std::string mixed = R"(, "texture_mix": ")" + mix + '"';
@@ -147,8 +147,8 @@ TEST(SubsurfaceWeight, LeavesAFurnaceWhite) {
          "settings": {"samples": 20000, "light_samples": 1024, "method": ")" +
           method + "\"}}";
       const Image image = picture_of(folder, text);
-      for (int y = 0; y < kPixels; ++y)
-        for (int x = 0; x < kPixels; ++x)
+      for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x)
           EXPECT_NEAR(channel(image, x, y, "G"), 1, tolerance) << weight << method << x << ' ' << y;
     }
 }

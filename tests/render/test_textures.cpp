@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include "core/scratch_folder.h"
@@ -16,11 +15,6 @@
 
 namespace opaline::test {
 namespace {
-
-bool same_pixels(const Image& a, const Image& b) {
-  return a.channels == b.channels && a.pixels.size() == b.pixels.size() &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(float)) == 0;
-}
 
 /// A quad that fills the picture, seen and lit from the front; `surface` are its keys.
 std::string quad_scene(const std::string& surface, const std::string& settings = "") {

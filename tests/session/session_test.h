@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <functional>
 
 #include "opaline/session/session.h"
+#include "support/scene_picture.h"
 #include "support/scenes.h"
 
 namespace opaline::test {
@@ -37,25 +37,8 @@ inline Scene two_balls() {
   return scene;
 }
 
-/// Camera rays of BouncedPlaces in a picture of two_balls: one for each of 24 x 16 pixels, and two more rows and columns
-/// around.
-constexpr std::uint64_t kPlaces = (24 + 1 + 4) * (16 + 1 + 4);
-
-inline Image picture_of(Session& session, const Scene& scene) {
-  session.edit(scene);
-  return session.render().image;
-}
-
-/// By a session that has seen nothing else.
-inline Image cold_picture(const Scene& scene) {
-  Session session;
-  return picture_of(session, scene);
-}
-
-inline bool same_pixels(const Image& a, const Image& b) {
-  return a.channels == b.channels && a.pixels.size() == b.pixels.size() &&
-         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(float)) == 0;
-}
+/// Camera rays of BouncedPlaces in a picture of 24 x 16 pixels: one for each, and two more rows and columns around.
+constexpr std::uint64_t kBouncedPlaces = (24 + 1 + 4) * (16 + 1 + 4);
 
 /// Mean over the columns [x0, x1) of |a - b| of the diffuse layer, over b's mean there.
 inline double difference(const Image& a, const Image& b, int x0, int x1) {

@@ -122,7 +122,7 @@ void expect_edits(bool near_field, int bounces = 0) {
     const std::uint64_t before = session.rays().statistics().rays;
     EXPECT_TRUE(same_pixels(session.render().image, cold_picture(scene)));
     const std::uint64_t rays = session.rays().statistics().rays - before;
-    EXPECT_EQ(rays > (scene.settings.bounces > 0 ? kPlaces : 0), traces || near_field);
+    EXPECT_EQ(rays > (scene.settings.bounces > 0 ? kBouncedPlaces : 0), traces || near_field);
   }
 }
 

@@ -73,7 +73,7 @@ TEST(HeldGathering, ColoursAndMediaTraceNothing) {
   Held held;
   const auto expect_none = [&](const char* what) {
     SCOPED_TRACE(what);
-    EXPECT_LE(held.rays(), kPlaces);
+    EXPECT_LE(held.rays(), kBouncedPlaces);
   };
   std::get<PointLight>(held.scene.lights[0].source).intensity = {1e4, 3e4, 2e4};
   expect_none("a point light");
@@ -92,7 +92,7 @@ TEST(HeldGathering, LightsThatMoveAndBoundaries) {
   const auto edit = [&](const char* what, const std::function<void(Scene&)>& apply) {
     SCOPED_TRACE(what);
     apply(held.scene);
-    EXPECT_GT(held.rays(), kPlaces);
+    EXPECT_GT(held.rays(), kBouncedPlaces);
   };
   edit("point moved", [](Scene& s) { std::get<PointLight>(s.lights[0].source).position.x = 9; });
   edit("panel moved", [](Scene& s) { std::get<QuadLight>(s.lights[1].source).corner.x = -9; });

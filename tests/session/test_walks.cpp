@@ -23,7 +23,7 @@ Scene walked_scene() {
 
 constexpr std::size_t kPasses = 16;  // of each channel and light by default
 
-struct Edit {
+struct WalkedEdit {
   const char* name;
   std::function<void(Scene&)> edit;
   std::size_t passes;
@@ -33,7 +33,7 @@ struct Edit {
 // channels, a medium for everything; and the picture is a new session's, bit for bit. Source: the table in session.h.
 // Tolerance: none. Fails if: sums hold the lights' colours, or a key lacks what its edit changes.
 TEST(Walks, EditsWalkForWhatTheyConcern) {
-  const Edit edits[] = {
+  const WalkedEdit edits[] = {
       {"camera",
        [](Scene& s) {
          s.camera.position = {8, 2, 9};
@@ -59,7 +59,7 @@ TEST(Walks, EditsWalkForWhatTheyConcern) {
       {"re-entry", [](Scene& s) { s.settings.reenter = false; }, 6 * kPasses},
       {"seed", [](Scene& s) { s.settings.seed = 3; }, 6 * kPasses},
   };
-  for (const Edit& edit : edits) {
+  for (const WalkedEdit& edit : edits) {
     SCOPED_TRACE(edit.name);
     Scene scene = walked_scene();
     Session session;

@@ -67,6 +67,12 @@ struct Cloud {
   }
 };
 
+/// 2,000 places on a sphere of radius 25 mm around the origin that are no samples of another cloud.
+inline const std::vector<Query>& places_on_sphere() {
+  static const std::vector<Query> queries = Cloud(SphereShape{{}, 25}, 2000, 7).queries();
+  return queries;
+}
+
 /// A coloured irradiance that varies smoothly, and by a hard shadow in green.
 inline RgbF coloured_light(const SurfaceSample& s) {
   const Vec3f& p = s.position;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the text of a scene file to its picture, by any method.
+// From a scene, or the text of its file, to its picture.
 #pragma once
 
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,23 @@
 
 namespace opaline::test {
 
-/// The picture of a scene file in the folder.
+inline Image picture_of(Session& session, const Scene& scene) {
+  session.edit(scene);
+  return session.render().image;
+}
+
+/// By a session that has seen nothing else.
+inline Image cold_picture(const Scene& scene) {
+  Session session;
+  return picture_of(session, scene);
+}
+
+inline bool same_pixels(const Image& a, const Image& b) {
+  return a.channels == b.channels && a.pixels.size() == b.pixels.size() &&
+         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(float)) == 0;
+}
+
+/// The picture of a scene file in the folder, by any method.
 inline Image picture_of(const ScratchFolder& folder, const std::string& text,
                         const std::vector<std::string>& overrides = {}) {
   Session session;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "opaline/render/direct.h"
@@ -38,24 +39,16 @@ inline Scene shadow_edge_scene(bool wide, ProfileKind profile) {
 }
 
 struct EdgeLine {
-  std::vector<double> x;                             ///< mm from the lid's edge, one a pixel
-  std::vector<double> hierarchical, cached, direct;  ///< exitance, W/mm^2, green; cached: by a surface cache
-  std::vector<double> noise;                         ///< estimated standard error of `direct`, W/mm^2
+  std::vector<double> x, z;                  ///< mm from the lid's edge, and along it; one a pixel
+  std::vector<double> of_radiance;           ///< exitance over the radiance that is seen
+  std::vector<double> hierarchical, cached;  ///< exitance, W/mm^2, green; cached: by a surface cache
 };
 
-/// The line with `entries` random entry points a pixel in the direct picture.
-inline EdgeLine shadow_edge_line(const Scene& scene, std::size_t entries) {
-  const Prepared prepared(scene);
-  const Image sums = prepared.picture();
+inline EdgeLine shadow_edge_line(const Scene& scene) {
+  const Image sums = Prepared(scene).picture();
   Scene interpolated = scene;
   interpolated.settings.evaluator = EvaluatorKind::surface_cache;
   const Image cached = Prepared(interpolated).picture();
-  Scene random = scene;
-  random.settings.method = Method::direct;
-  random.settings.entry_samples = entries;
-  DirectState state;
-  const Image direct =
-      render_direct({random, prepared.world, prepared.rays, prepared.plan}, state).picture.image;
   const DiffuseProfile profile = make_diffuse_profile(scene.media[0]);
   EdgeLine line;
   for (int i = 0; i < sums.width; ++i) {
@@ -64,12 +57,34 @@ inline EdgeLine shadow_edge_line(const Scene& scene, std::size_t entries) {
     const double exitance = kPi * (1 - profile.average_reflectance) /
                             double(fresnel_transmittance(float(cosine), float(profile.eta)));
     line.x.push_back(x);
+    line.z.push_back(z);
+    line.of_radiance.push_back(exitance);
     line.hierarchical.push_back(exitance * double(channel(sums, i, 0, "diffuse.G")));
     line.cached.push_back(exitance * double(channel(cached, i, 0, "diffuse.G")));
-    line.direct.push_back(exitance * double(channel(direct, i, 0, "diffuse.G")));
-    line.noise.push_back(exitance * std::sqrt(double(channel(direct, i, 0, "variance.G"))));
   }
   return line;
+}
+
+struct RandomEdgeLine {
+  std::vector<double> exitance;  ///< W/mm^2, green
+  std::vector<double> noise;     ///< its estimated standard error, W/mm^2
+};
+
+/// By `direct`, with `entries` random entry points a pixel.
+inline RandomEdgeLine direct_edge_line(Scene scene, const EdgeLine& line, std::size_t entries) {
+  scene.settings.method = Method::direct;
+  scene.settings.entry_samples = entries;
+  const Prepared prepared(scene);
+  DirectState state;
+  const Image direct =
+      render_direct({scene, prepared.world, prepared.rays, prepared.plan}, state).picture.image;
+  RandomEdgeLine found;
+  for (int i = 0; i < direct.width; ++i) {
+    const double exitance = line.of_radiance[std::size_t(i)];
+    found.exitance.push_back(exitance * double(channel(direct, i, 0, "diffuse.G")));
+    found.noise.push_back(exitance * std::sqrt(double(channel(direct, i, 0, "variance.G"))));
+  }
+  return found;
 }
 
 }  // namespace opaline::test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A picture in other light without a ray: how near it is to the one that is rendered, and that the view shows it first.
 #include "opaline/lights/light.h"
+#include "support/scene_picture.h"
 #include "view/lit_anew.h"
 #include "view_client.h"
 
@@ -8,12 +9,6 @@ namespace opaline {
 namespace {
 
 using namespace test;
-
-Image picture_of(const Scene& scene) {
-  Session session;
-  session.edit(scene);
-  return session.render().image;
-}
 
 /// All lights as they emit, times a factor.
 Scene in_light(Scene scene, const Rgb& factor) {
@@ -49,9 +44,9 @@ TEST(LitAnew, IsWhatIsRendered) {
     SCOPED_TRACE(method);
     const std::vector<std::string> edits{"settings.method=" + std::string(method), "settings.samples=800"};
     const Scene scene = load_scene(folder.scene, edits);
-    const Image before = picture_of(scene);
+    const Image before = cold_picture(scene);
     const Scene brighter = in_light(scene, {1.37, 1.37, 1.37}), tinted = in_light(scene, {.3, 1, 2.5});
-    const Image in_brighter = picture_of(brighter), in_tinted = picture_of(tinted);
+    const Image in_brighter = cold_picture(brighter), in_tinted = cold_picture(tinted);
     const std::optional<Image> lit = lit_anew(before, scene, brighter),
                                coloured = lit_anew(before, scene, tinted);
     ASSERT_TRUE(lit && coloured);
@@ -68,7 +63,7 @@ TEST(LitAnew, IsWhatIsRendered) {
 TEST(LitAnew, IsOfLightAlone) {
   const ViewFolder folder;
   const Scene scene = load_scene(folder.scene);
-  const Image picture = picture_of(scene);
+  const Image picture = cold_picture(scene);
   for (const char* edit :
        {"lights.key.intensity=1e4", "lights.key.position=[1, 90, 0]", "media.stone.eta=1.4",
         "settings.seed=3", "camera.position=[0, 30, 110]", "film.samples_per_pixel=2"})
