@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
@@ -109,17 +111,18 @@ ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& mediu
 double invert_albedo(ProfileKind kind, double total, double eta) {
   if (total >= 1) return 0;
   if (total <= 0) return 1;
-  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1; bisect its logarithm, so that the relative
-  // error of 1 - alpha' is small where the medium hardly absorbs.
-  double low = -80, high = 0;
-  for (int i = 0; i < 200; ++i) {
-    const double middle = 0.5 * (low + high);
-    if (middle == low || middle == high) break;
-    if (total_diffuse_reflectance(make_channel_profile(kind, {1, std::exp2(middle), eta})) > total)
-      low = middle;
-    else
-      high = middle;
-  }
+  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1. Its logarithm is looked for, so that the relative error of
+  // 1 - alpha' is small where the medium hardly absorbs.
+  constexpr double kLeast = -80, kTolerance = 1e-12;
+  const auto excess = [&](double logarithm) {
+    return total_diffuse_reflectance(make_channel_profile(kind, {1, std::exp2(logarithm), eta})) - total;
+  };
+  const double most_excess = excess(kLeast);
+  if (!(most_excess > 0)) return std::exp2(kLeast);
+  const auto is_narrow = [](double low, double high) { return high - low < kTolerance; };
+  std::uintmax_t trials = 200;
+  const auto [low, high] =
+      boost::math::tools::toms748_solve(excess, kLeast, 0.0, most_excess, -total, is_narrow, trials);
   return std::exp2(0.5 * (low + high));
 }
 

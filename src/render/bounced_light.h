@@ -68,8 +68,9 @@ class BouncedPlaces {
   std::size_t chunks_ = 0;         // of places that gathered
 };
 
-/// At the hits of a picture: by RenderInput::bounced, or places of its own. Hits that no place stands for gather for
-/// themselves.
+/// At the hits of a picture: by RenderInput::bounced, or places of its own. Hits that no place stands for, at rims, gather
+/// for themselves, with a second bounce where trees hold the first: a tenth of what they gather is .001 % of grapes, jade
+/// or marble-room, and 1 % of a pixel at most.
 class BouncedLight {
  public:
   /// shader: without bounced light; both must outlive it

@@ -40,8 +40,8 @@ TEST(SceneValues, ManyBallsAreCoarserThanFew) {
     EXPECT_EQ(std::get<SphereShape>(scene.shapes.front().source).fineness, of_torus);
     return of_torus;
   };
-  EXPECT_EQ(fineness_of(96), kMostFineness);
-  EXPECT_EQ(fineness_of(97), kMostFineness - 1);
+  EXPECT_EQ(fineness_of(5), kMostFineness);
+  EXPECT_EQ(fineness_of(6), kMostFineness - 1);
   EXPECT_EQ(fineness_of(299), kMostFineness - 1);
   EXPECT_EQ(fineness_of(2000), kLeastFineness);
 }
