@@ -37,7 +37,8 @@ They are applied first, then each --set in its order: the last one wins.
 --target-error is the mean relative error of the diffuse light over the translucent pixels, of the worst channel,
 against the converged --method direct. What the diffusion model itself is off by is not in it, nor what --spp
 does to edges: that stays yours. A small picture estimates its own error; where that is too much it is made again
-with more samples. --verify measures what came of it, at a cost that grows with the square of the accuracy. With
+with more samples. --verify measures what came of it, at a cost that grows with the square of the accuracy. The
+closing line "again by" is a command that makes the same pixels and chooses nothing. With
 --frames it holds for settings.reference_frame: settings are chosen there, once, and all frames share them, so that
 nothing flickers. With --method volume_diffusion it is the error against --method volume without settings.reenter,
 the model's own included: a bound of what the plan expects of it. Where that alone is more, a warning says the least
@@ -47,8 +48,8 @@ that can be promised, which is taken.
 start, loading, choosing and writing are within, --verify is not. Small pictures, tiles of the whole one and small
 files tell what samples cost and bring; as many are taken as there is time for, up to settings.max_samples. Where
 even the cheapest picture takes longer it is made, and a warning says how long. Pixels, --spp and
-settings.light_samples stay yours. What is chosen depends on the clock: the closing line "again by" is a command
-that makes the same pixels without it. With --method direct it is when to stop.)";
+settings.light_samples stay yours. What is chosen depends on the clock; "again by" does not. With --method direct it
+is when to stop.)";
 
 inline constexpr const char* kImportNotes =
     R"(Other commands take an asset wherever they take a scene file: what they see is what is written here. Each line

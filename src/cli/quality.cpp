@@ -87,11 +87,15 @@ void check_budget(const RenderArguments& render) {
 
 void check_quality(const RenderArguments& render) {
   if (render.time_budget) check_budget(render);
-  if (!render.target_error && !render.time_budget) return;
+  if (!chooses_settings(render)) return;
   for (const char* key : {"settings.samples", "settings.sample_spacing", "settings.tolerance"})
     for (const std::string& text : render.overrides)
       if (text.starts_with(std::string(key) + "="))
         throw bad_usage(fmt::format("{} chooses {} itself", option_of(render), key), "one of the two", text);
+}
+
+bool chooses_settings(const RenderArguments& arguments) {
+  return arguments.time_budget || arguments.target_error;
 }
 
 double budget_left(const RenderArguments& arguments) {
@@ -168,7 +172,7 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
                         : "--method hierarchical or volume_diffusion; the noise of direct and volume "
                           "ends at --until-error",
                     std::string(name_of(settings.method)));
-  if ((!arguments.target_error && !arguments.time_budget) || !hierarchical) return {};
+  if (!chooses_settings(arguments) || !hierarchical) return {};
   if (settings.evaluator == EvaluatorKind::classic)
     throw bad_usage(fmt::format("{} cannot tell the error of the classic traversal", option_of(arguments)),
                     "another --evaluator", "classic");

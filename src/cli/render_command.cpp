@@ -170,13 +170,17 @@ void show_refinement(StageRunner& stages, const Session& session, PartialPicture
                "refinement");
 }
 
-/// The arguments, with what --time-budget chose in its place.
+/// The arguments, with what --time-budget or --target-error chose in its place.
 RenderArguments repeating(const RenderArguments& arguments, const Session& session, const Shading& shading) {
+  if (!chooses_settings(arguments)) return arguments;
   RenderArguments repeated = arguments;
-  if (!arguments.time_budget) return repeated;
-  repeated.time_budget.reset();
   for (std::string& text : chosen_overrides(session, shading.direct ? shading.direct->entry_samples : 0))
     repeated.overrides.push_back(std::move(text));
+  if (arguments.target_error)
+    repeated.overrides.push_back(
+        fmt::format("settings.light_samples={}", session.scene().settings.light_samples));
+  repeated.time_budget.reset();
+  repeated.target_error.reset();
   return repeated;
 }
 
@@ -264,9 +268,10 @@ void finish(StageRunner& stages, const RenderArguments& arguments, const RenderA
   if (arguments.time_budget) {
     double spent = 0;
     for (const StageCost& cost : stages.costs()) spent += cost.stage == "verifying" ? 0 : cost.cpu_seconds;
-    summary.budget = {*arguments.time_budget, spent, command_again(repeated)};
+    summary.budget = {*arguments.time_budget, spent};
     warn_of_little_time(arguments, session.scene().film, spent, shading.direct);
   }
+  if (chooses_settings(arguments)) summary.again_by = command_again(repeated);
   summary.costs = stages.costs();
   summary.errors = errors;
   summary.outputs = std::move(outputs);
@@ -291,7 +296,9 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   const RenderArguments repeated = repeating(arguments, session, shading);
   if (arguments.time_budget) hash = scene_hash(repeated.scene, repeated.overrides, scene);
   Image& image = shading.picture.image;
-  image.metadata = make_metadata(repeated, *hash, scene, session.world(), session.bodies(), frame);
+  // With --target-error the picture is what was asked for; with --time-budget it hangs on the clock.
+  image.metadata = make_metadata(arguments.time_budget ? repeated : arguments, *hash, scene, session.world(),
+                                 session.bodies(), frame);
   if (errors.target || errors.measured)
     image.metadata.emplace_back("opaline:error", compact(errors_json(errors)));
   add_asked_layers(stages, arguments.layers, session, image);

@@ -57,9 +57,8 @@ Json errors_json(const KnownErrors& errors);
 
 /// A picture within a CPU time.
 struct SpentBudget {
-  double seconds = 0;   ///< the budget
-  double spent = 0;     ///< CPU of the whole process but verifying, s
-  std::string command;  ///< that makes the same picture without a clock
+  double seconds = 0;  ///< the budget
+  double spent = 0;    ///< CPU of the whole process but verifying, s
 };
 
 struct Summary {
@@ -70,6 +69,8 @@ struct Summary {
   double estimated_error = 0;  ///< of `hierarchical`, see estimated_relative_error; 0: there is none
   KnownErrors errors;
   std::optional<SpentBudget> budget;
+  std::string
+      again_by;  ///< the command that makes the same picture without choosing; empty: nothing was chosen
   std::size_t walks = 0;          ///< of `volume`, a sample: VolumeExitance::walks, the largest of all bodies
   double walk_noise = 0;          ///< their relative_error, the largest
   std::size_t entry_samples = 0;  ///< of `direct`, a pixel

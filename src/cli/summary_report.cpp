@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <vector>
 
 #include "cli/report.h"
@@ -25,13 +26,28 @@ double mega_rays(std::uint64_t rays, double seconds) {
   return seconds > 0 ? 1e-6 * double(rays) / seconds : 0;
 }
 
+/// Costs nothing that the table could show.
+bool is_nothing(const StageCost& cost) {
+  constexpr double kShown = .0005;
+  return cost.wall_seconds < kShown && cost.cpu_seconds < kShown;
+}
+
+/// What the trials left to the picture is among what choosing cost, and named there.
 void print_costs(const Summary& summary) {
-  const auto row = [](const StageCost& cost) {
-    write_line(stdout, fmt::format("{:<12}{:>9.3f} s wall{:>9.3f} s CPU", cost.stage, cost.wall_seconds,
-                                   cost.cpu_seconds));
-  };
-  for (const StageCost& cost : summary.costs) row(cost);
-  row(total_of(summary.costs));
+  std::vector<StageCost> shown = summary.costs;
+  const auto choosing = std::ranges::find(shown, "choosing", &StageCost::stage);
+  std::string of_trials;
+  if (choosing != shown.end()) {
+    const auto rest = std::stable_partition(choosing + 1, shown.end(), std::not_fn(is_nothing));
+    std::vector<std::string> names;
+    std::transform(rest, shown.end(), std::back_inserter(names), [](const StageCost& c) { return c.stage; });
+    if (!names.empty()) of_trials = fmt::format("   with {}", fmt::join(names, ", "));
+    shown.erase(rest, shown.end());
+  }
+  shown.push_back(total_of(summary.costs));
+  for (const StageCost& cost : shown)
+    write_line(stdout, fmt::format("{:<12}{:>9.3f} s wall{:>9.3f} s CPU{}", cost.stage, cost.wall_seconds,
+                                   cost.cpu_seconds, cost.stage == "choosing" ? of_trials : ""));
 }
 
 std::string error_text(const Summary& summary) {
@@ -85,13 +101,13 @@ void print_text(const Summary& summary) {
     const SpentBudget& budget = *summary.budget;
     row("budget", fmt::format("{:.3g} s of CPU spent, {:.3g} % of {:.4g} s", budget.spent,
                               100 * budget.spent / budget.seconds, budget.seconds));
-    row("again by", budget.command);
   }
+  if (!summary.again_by.empty()) row("again by", summary.again_by);
   for (const std::string& output : summary.outputs) row("wrote", output);
 }
 
 Json budget_json(const SpentBudget& budget) {
-  return {{"seconds", budget.seconds}, {"spent", budget.spent}, {"command", budget.command}};
+  return {{"seconds", budget.seconds}, {"spent", budget.spent}};
 }
 
 Json done_json(const Summary& summary) {
@@ -118,6 +134,7 @@ Json done_json(const Summary& summary) {
             {"embree_cpu_seconds", summary.embree_seconds},
             {"outputs", summary.outputs}};
   if (summary.budget) json["budget"] = budget_json(*summary.budget);
+  if (!summary.again_by.empty()) json["again_by"] = summary.again_by;
   return json;
 }
 

@@ -131,22 +131,44 @@ TEST(CliQuality, BudgetStatesWhatWasSpentAndHowToRepeatIt) {
 }
 
 // Claim: the command behind "again by" runs as it is printed, in the folder where the first one ran, whatever
-// is in the names of scene and output: the same bytes. Source: metadata.h. Fails if: the program's path or an
-// output is left out, or a blank is not quoted.
-TEST(CliQuality, AgainByRunsAsPrinted) {
+// is in the names of scene and output: the same pixels, and but for a target the same bytes. Source: metadata.h.
+// Fails if: the program's path, an output or a setting that was chosen is left out, or a blank is not quoted.
+class CliAgainBy : public testing::TestWithParam<std::pair<std::string, std::string>> {};
+
+TEST_P(CliAgainBy, RunsAsPrinted) {
+  const auto& [option, value] = GetParam();
   const QualityFolder folder;
   const std::string output = "it's a $HOME.exr";
   std::filesystem::rename(folder.scene, folder.file("a ball.json"));
-  const Outcome first = run_program(
-      {"render", "a ball.json", "-o", output, "--time-budget", "1.5", "--set", "lights.key.name=the key"},
-      folder.path.string());
+  const Outcome first =
+      run_program({"render", "a ball.json", "-o", output, option, value, "--set", "lights.key.name=the key"},
+                  folder.path.string());
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const std::string line = closing_line(first.out, "again by"), before = bytes_of(folder.file(output));
+  const Image picture = read_image(folder.file(output));
   ASSERT_GT(line.size(), 12u) << first.out;
   std::filesystem::remove(folder.file(output));
   put_bytes(folder.file("again.sh"), line.substr(12) + " >/dev/null\n");
   ASSERT_EQ(std::system(("cd '" + folder.path.string() + "' && sh again.sh").c_str()), 0) << line;
-  EXPECT_TRUE(bytes_of(folder.file(output)) == before);
+  EXPECT_TRUE(read_image(folder.file(output)).pixels == picture.pixels);
+  EXPECT_TRUE(bytes_of(folder.file(output)) == before || option == "--target-error");
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, CliAgainBy,
+                         testing::Values(std::pair{"--time-budget", "1.5"},
+                                         std::pair{"--target-error", ".02"}),
+                         [](const auto& option) {
+                           return option.param.first == "--time-budget" ? "TimeBudget" : "TargetError";
+                         });
+
+// Claim: what the trials of --target-error left to the picture is named where it was paid, and no stage without
+// a cost has a line.
+TEST(CliQuality, StagesOfTheTrialsAreNamedWithThem) {
+  const QualityFolder folder;
+  const Outcome render = folder.render({"--target-error", ".02"});
+  ASSERT_EQ(render.exit_code, 0) << render.err;
+  EXPECT_TRUE(contains(closing_line(render.out, "choosing"), "   with rays, sampling")) << render.out;
+  EXPECT_EQ(closing_line(render.out, "sampling"), "") << render.out;
 }
 
 // Claim: spacings are repeated in the scene's own units where several groups have them. Fails if: they are in
@@ -192,7 +214,7 @@ TEST(CliQuality, DirectStopsInTime) {
   const nlohmann::json done = event_of(events_of(json.out), "done");
   EXPECT_GT(done["entry_samples"], 16);
   const std::string entries = "settings.entry_samples=" + std::to_string(int(done["entry_samples"]));
-  EXPECT_TRUE(contains(done["budget"]["command"], entries)) << done["budget"];
+  EXPECT_TRUE(contains(done["again_by"], entries)) << done["again_by"];
 }
 
 // Claim: what makes no sense is exit 2 with what was expected, and nothing is written: values that are no
