@@ -7,7 +7,7 @@ namespace opaline {
 namespace {
 
 constexpr int kTile = 16;
-constexpr std::uint64_t kBatchRays = 1024;
+constexpr std::uint64_t kBatchRays = 512;
 
 // Rays of a batch: all samples of a square of pixels, or where they are too many some of one pixel's. So they lie as close
 // together as can be, and what is known of a pixel's rays is known at once.
