@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "opaline/core/parallel.h"
@@ -24,9 +25,16 @@ bool differ_in_emission_alone(Scene before, const Scene& now) {
   return before == now;
 }
 
+bool is_same(double factor, double other) {
+  return std::abs(factor - other) <= kSame * other;
+}
+
+/// A channel's is none where no light has it.
+using ChannelFactors = std::array<std::optional<double>, 3>;
+
 /// By which each channel of all lights differs; none: not by one factor.
-std::optional<Rgb> common_factor(const Scene& before, const Scene& now) {
-  Rgb factor{1, 1, 1};
+std::optional<ChannelFactors> common_factors(const Scene& before, const Scene& now) {
+  ChannelFactors factors;
   for (std::size_t c = 0; c < 3; ++c) {
     std::optional<double> known;
     for (std::size_t l = 0; l < now.lights.size(); ++l) {
@@ -34,12 +42,17 @@ std::optional<Rgb> common_factor(const Scene& before, const Scene& now) {
       if (was == is && was == 0) continue;
       if (!(was > 0)) return {};
       const double own = is / was;
-      if (known && std::abs(own - *known) > kSame * *known) return {};
+      if (known && !is_same(own, *known)) return {};
       known = own;
     }
-    factor[c] = known.value_or(1);
+    factors[c] = known;
   }
-  return factor;
+  return factors;
+}
+
+bool are_one(const ChannelFactors& factors) {
+  const auto first = std::ranges::find_if(factors, [](const auto& factor) { return factor.has_value(); });
+  return std::all_of(first, factors.end(), [&](const auto& f) { return !f || is_same(*f, **first); });
 }
 
 /// For each channel of a picture the one of the light that it goes with; none: it does not.
@@ -57,21 +70,21 @@ std::vector<std::optional<std::size_t>> lit_channels(const std::vector<std::stri
 
 }  // namespace
 
-std::optional<Image> lit_anew(const Image& picture, const Scene& before, const Scene& now) {
+std::optional<LitAnew> lit_anew(const Image& picture, const Scene& before, const Scene& now) {
   if (!differ_in_emission_alone(before, now)) return {};
-  const std::optional<Rgb> factor = common_factor(before, now);
-  if (!factor) return {};
+  const std::optional<ChannelFactors> of_channels = common_factors(before, now);
+  if (!of_channels) return {};
   Image lit = picture;
   const std::vector<std::optional<std::size_t>> channels = lit_channels(lit.channels);
   const std::size_t count = channels.size();
   std::vector<float> factors(count, 1.0f);
   for (std::size_t c = 0; c < count; ++c)
-    if (channels[c]) factors[c] = float((*factor)[*channels[c]]);
+    if (channels[c]) factors[c] = float((*of_channels)[*channels[c]].value_or(1));
   parallel_chunks(lit.pixels.size() / count, 1 << 14, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t p = begin; p < end; ++p)
       for (std::size_t c = 0; c < count; ++c) lit.pixels[p * count + c] *= factors[c];
   });
-  return lit;
+  return LitAnew{std::move(lit), are_one(*of_channels)};
 }
 
 }  // namespace opaline

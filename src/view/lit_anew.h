@@ -9,11 +9,16 @@
 
 namespace opaline {
 
+struct LitAnew {
+  Image image;
+  /// The channels have one factor, so that it is within 1e-4 of what is rendered. Else 99 % of the values are within
+  /// settings.tolerance, and the error layer, which is an estimate, within a tenth.
+  bool is_exact = false;
+};
+
 /// The final picture of a scene made of that of another: light adds up, and channel by channel it goes with what lamps
 /// emit. None where the scenes differ in more than that, or lamps by different factors.
 /// in    picture: of `before`, with the layers of a method without noise that is estimated (not `direct`)
-/// out   within 1e-4 where all channels have one factor; else 99 % of the values within settings.tolerance, and the error
-///       layer, which is an estimate, within a tenth
-std::optional<Image> lit_anew(const Image& picture, const Scene& before, const Scene& now);
+std::optional<LitAnew> lit_anew(const Image& picture, const Scene& before, const Scene& now);
 
 }  // namespace opaline

@@ -145,27 +145,32 @@ void ViewRenderer::draw(const Wanted& wanted) {
   Spent& spent = spent_[change];
   const bool is_direct = wanted.scene.settings.method == Method::direct;
   const bool is_quick = spent.prepare < kFrame && !is_direct;
-  const bool is_shown = !(is_quick && spent.final < kKnob) && show_lit_anew(wanted);
-  if (!is_quick && !is_shown) publish(wanted, PictureStep::moving, session_->first_light());
+  const Stopwatch watch;
+  const auto lit = is_quick && spent.final < kKnob ? nullptr : show_lit_anew(wanted);
+  StageCost relighting = watch.cost("shading");
+  if (!is_quick && lit == nullptr) publish(wanted, PictureStep::moving, session_->first_light());
   const Clock::time_point start = Clock::now();
   session_->prepare(is_quick ? nullptr : &monitor_);
   spent.prepare = seconds_since(start);
   prepared_ = wanted.scene;
   if (is_direct) return draw_direct(wanted);
-  if (is_shown) return draw_final(wanted, spent, &monitor_);
+  if (lit != nullptr && lit->step == PictureStep::final)
+    return report(wanted, lit->image, estimated_relative_error(lit->image, lit->translucent),
+                  std::move(relighting));
+  if (lit != nullptr) return draw_final(wanted, spent, &monitor_);
   if (is_quick && spent.final < (change == camera ? kFrame : kKnob))
     return draw_final(wanted, spent, nullptr);
   draw_draft(wanted, draft_stride(wanted.scene.film), PictureStep::moving, nullptr);
   refine(wanted, spent);
 }
 
-/// The last final picture in the light of the scene, where that tells it; false: it does not.
-bool ViewRenderer::show_lit_anew(const Wanted& wanted) {
-  if (final_ == nullptr || wanted.scene.settings.method == Method::direct) return false;
-  std::optional<Image> lit = lit_anew(final_->image, *final_scene_, wanted.scene);
-  if (!lit) return false;
-  publish(wanted, PictureStep::sharper, std::move(*lit));
-  return true;
+/// The last final picture in the light of the scene, where that tells it; null: it does not.
+std::shared_ptr<const ViewPicture> ViewRenderer::show_lit_anew(const Wanted& wanted) {
+  if (final_ == nullptr || wanted.scene.settings.method == Method::direct) return nullptr;
+  std::optional<LitAnew> lit = lit_anew(final_->image, *final_scene_, wanted.scene);
+  if (!lit) return nullptr;
+  return publish(wanted, lit->is_exact ? PictureStep::final : PictureStep::sharper, std::move(lit->image),
+                 final_->translucent);
 }
 
 void ViewRenderer::refine(const Wanted& wanted, Spent& spent) {

@@ -21,7 +21,8 @@
 namespace opaline {
 
 /// moving: whatever is there within a thirtieth of a second; sharper: more pixels, the same samples, or the last final
-/// picture in other light (lit_anew.h); final: the bits of `opaline render`. reference: of another method, for
+/// picture in light of another colour (lit_anew.h); final: the bits of `opaline render`, or, where that takes longer than a
+/// knob turns and all light is brighter or darker by one factor, the last final picture times it. reference: of another method, for
 /// comparison (view_background.h).
 enum class PictureStep : std::uint32_t { moving, sharper, final, reference };
 
@@ -89,7 +90,7 @@ class ViewRenderer {
   std::optional<Wanted> next();
   void draw(const Wanted& wanted);
   void anchor(const Wanted& wanted);
-  bool show_lit_anew(const Wanted& wanted);
+  std::shared_ptr<const ViewPicture> show_lit_anew(const Wanted& wanted);
   void refine(const Wanted& wanted, Spent& spent);
   void draw_final(const Wanted& wanted, Spent& spent, Monitor* monitor);
   void draw_direct(const Wanted& wanted);
