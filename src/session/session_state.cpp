@@ -316,7 +316,9 @@ void Session::State::arrange_bodies() {
 }
 
 void Session::State::note_decision(const Body& body, const std::string& text) {
-  decisions_.push_back(body.plan.name + ": " + text);
+  std::string decision = body.plan.name + ": " + text;
+  if (decisions_.empty() || decisions_.back() != decision)  // channels of a room are lights of one name
+    decisions_.push_back(std::move(decision));
 }
 
 }  // namespace opaline
