@@ -110,8 +110,8 @@ CompareArguments checked(CompareArguments compare, const Options& options) {
 
 ImportArguments checked(ImportArguments import) {
   if (!is_asset_name(import.asset))
-    throw usage_error("is no asset that can be imported", "a name that ends in .glb, .gltf or .obj",
-                      "'" + import.asset + "'");
+    throw bad_file(import.asset, "is no asset that can be imported",
+                   "a name that ends in .glb, .gltf or .obj");
   if (!import.scene.ends_with(".json"))
     throw usage_error("a scene file is written", "a name that ends in .json", "'" + import.scene + "'");
   return import;

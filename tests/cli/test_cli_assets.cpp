@@ -150,7 +150,7 @@ TEST(CliAssets, BrokenAssetsAreNamed) {
       {{"render", "dusk.json", "-o", "a.png"}, "dusk.json:3:9: gone.exr: cannot read"},
       {{"import", "gone.glb", "-o", "a.json"}, "gone.glb: no such file"},
       {{"import", "cubes.glb", "--material", "gone.mtlx", "-o", "a.json"}, "gone.mtlx: no such file"},
-      {{"import", "wax.txt", "-o", "a.json"}, "is no asset that can be imported"},
+      {{"import", "wax.txt", "-o", "a.json"}, "wax.txt: is no asset that can be imported"},
       {{"import", "cubes.glb", "-o", "a.gltf"}, "a name that ends in .json"},
       {{"render", "cubes.glb", "-o", "a.png", "--set", "media.wix.g=0"}, "did you mean 'wax'"}};
   for (const auto& c : cases) {
