@@ -85,6 +85,21 @@ TEST(CliAssets, DefaultLightsShowWhiteAsWhite) {
   EXPECT_LT(brightest, .99);
 }
 
+// Claim: the gallery's asset is rendered as it comes, with nothing to warn of: three translucent apples, their medium's flesh
+// and painted skin, by its own camera. Source: scenes/README.md.
+TEST(CliAssets, TheApplesOfTheGallery) {
+  const ScratchFolder folder;
+  const std::string apples = std::string(OPALINE_SCENES_DIR) + "/apples.glb";
+  const Outcome outcome = run_program({"render", apples, "-o", "a.exr", "--layers", "albedo", "--resolution",
+                                       "40x30", "--set", "settings.samples=300"},
+                                      folder.path);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_TRUE(contains(outcome.out, "sampling: 3 translucent group(s)")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "mean free path 0.7 mm")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "1 translucent medium, its camera, default lights")) << outcome.out;
+}
+
 // Claim: `--environment` lights a scene by a picture in place of all its lights, wherever the program is started: what is
 // seen beside the asset is the picture, and its white cube is as bright as an even room.
 TEST(CliAssets, EnvironmentInPlaceOfLights) {
