@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
+#include <system_error>
 
 #include "cli/command_options.h"
 #include "cli/frames.h"
@@ -66,14 +67,27 @@ Error unknown_format(const std::string& path) {
                      "'" + path + "'");
 }
 
+/// Of a path that is there, or of its folder, however it is written.
+std::string same_file(const std::string& path) {
+  std::error_code unknown;
+  const std::filesystem::path whole =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(path), unknown);
+  return unknown ? path : whole.string();
+}
+
 void check_outputs(const RenderArguments& render) {
   std::set<std::string> seen;
+  const auto take = [&](const std::string& path) {
+    if (!seen.insert(same_file(path)).second)
+      throw usage_error("two outputs have the same name '" + path + "'");
+  };
   for (const std::string& path : render.outputs) {
     if (output_format(path) == OutputFormat::unknown) throw unknown_format(path);
-    if (!seen.insert(path).second) throw usage_error("two outputs have the same name '" + path + "'");
+    take(path);
   }
-  if (seen.contains(render.samples_ply))
-    throw usage_error("two outputs have the same name '" + render.samples_ply + "'");
+  // A picture under the name of the sums would take their place.
+  for (const std::string& path : {render.samples_ply, render.resume})
+    if (!path.empty()) take(path);
   std::vector<std::string> files = render.outputs;
   for (const std::string& more : {render.samples_ply, render.resume})
     if (!more.empty()) files.push_back(more);
