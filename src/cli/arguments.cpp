@@ -67,8 +67,8 @@ Error unknown_format(const std::string& path) {
                      "'" + path + "'");
 }
 
-/// Of a path that is there, or of its folder, however it is written.
-std::string same_file(const std::string& path) {
+/// The one name of a file, however it is written: also of one that is not there yet.
+std::string whole_path(const std::string& path) {
   std::error_code unknown;
   const std::filesystem::path whole =
       std::filesystem::weakly_canonical(std::filesystem::absolute(path), unknown);
@@ -76,22 +76,15 @@ std::string same_file(const std::string& path) {
 }
 
 void check_outputs(const RenderArguments& render) {
-  std::set<std::string> seen;
-  const auto take = [&](const std::string& path) {
-    if (!seen.insert(same_file(path)).second)
-      throw usage_error("two outputs have the same name '" + path + "'");
-  };
-  for (const std::string& path : render.outputs) {
+  for (const std::string& path : render.outputs)
     if (output_format(path) == OutputFormat::unknown) throw unknown_format(path);
-    take(path);
-  }
-  // A picture under the name of the sums would take their place.
-  for (const std::string& path : {render.samples_ply, render.resume})
-    if (!path.empty()) take(path);
   std::vector<std::string> files = render.outputs;
   for (const std::string& more : {render.samples_ply, render.resume})
     if (!more.empty()) files.push_back(more);
+  std::set<std::string> seen;
   for (const std::string& path : files) {
+    if (!seen.insert(whole_path(path)).second)
+      throw usage_error("two outputs have the same name '" + path + "'");
     const bool has_place = path.find("##") != std::string::npos;
     if (!render.frames.empty() && !has_place)
       throw usage_error("all frames would be written to '" + path + "'",

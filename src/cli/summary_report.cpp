@@ -32,17 +32,18 @@ bool is_nothing(const StageCost& cost) {
   return cost.wall_seconds < kShown && cost.cpu_seconds < kShown;
 }
 
-/// What the trials left to the picture is among what choosing cost, and named there.
+/// What the trials left to the picture, of the stages between, is among what choosing cost, and named there.
 void print_costs(const Summary& summary) {
   std::vector<StageCost> shown = summary.costs;
   const auto choosing = std::ranges::find(shown, "choosing", &StageCost::stage);
   std::string of_trials;
   if (choosing != shown.end()) {
-    const auto rest = std::stable_partition(choosing + 1, shown.end(), std::not_fn(is_nothing));
+    const auto shading = std::ranges::find(choosing, shown.end(), "shading", &StageCost::stage);
+    const auto left = std::stable_partition(choosing + 1, shading, std::not_fn(is_nothing));
     std::vector<std::string> names;
-    std::transform(rest, shown.end(), std::back_inserter(names), [](const StageCost& c) { return c.stage; });
+    std::transform(left, shading, std::back_inserter(names), [](const StageCost& c) { return c.stage; });
     if (!names.empty()) of_trials = fmt::format("   with {}", fmt::join(names, ", "));
-    shown.erase(rest, shown.end());
+    shown.erase(left, shading);
   }
   shown.push_back(total_of(summary.costs));
   for (const StageCost& cost : shown)

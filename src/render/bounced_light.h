@@ -69,8 +69,7 @@ class BouncedPlaces {
 };
 
 /// At the hits of a picture: by RenderInput::bounced, or places of its own. Hits that no place stands for, at rims, gather
-/// for themselves, with a second bounce where trees hold the first: a tenth of what they gather is .001 % of grapes, jade
-/// or marble-room, and 1 % of a pixel at most.
+/// for themselves, with a second bounce where trees hold the first.
 class BouncedLight {
  public:
   /// shader: without bounced light; both must outlive it

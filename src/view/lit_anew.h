@@ -13,7 +13,7 @@ struct LitAnew {
   Image image;
   /// The channels have one factor, so that it is within 1e-4 of what is rendered. Else 99 % of the values are within
   /// settings.tolerance, and the error layer, which is an estimate, within a tenth.
-  bool is_exact = false;
+  bool has_one_factor = false;
 };
 
 /// The final picture of a scene made of that of another: light adds up, and channel by channel it goes with what lamps

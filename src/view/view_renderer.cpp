@@ -146,7 +146,7 @@ void ViewRenderer::draw(const Wanted& wanted) {
   const bool is_direct = wanted.scene.settings.method == Method::direct;
   const bool is_quick = spent.prepare < kFrame && !is_direct;
   const Stopwatch watch;
-  const auto lit = is_quick && spent.final < kKnob ? nullptr : show_lit_anew(wanted);
+  const auto lit = is_quick && spent.final < kKnob ? nullptr : show_lit_anew(wanted, spent);
   StageCost relighting = watch.cost("shading");
   if (!is_quick && lit == nullptr) publish(wanted, PictureStep::moving, session_->first_light());
   const Clock::time_point start = Clock::now();
@@ -165,11 +165,13 @@ void ViewRenderer::draw(const Wanted& wanted) {
 }
 
 /// The last final picture in the light of the scene, where that tells it; null: it does not.
-std::shared_ptr<const ViewPicture> ViewRenderer::show_lit_anew(const Wanted& wanted) {
+std::shared_ptr<const ViewPicture> ViewRenderer::show_lit_anew(const Wanted& wanted, const Spent& spent) {
   if (final_ == nullptr || wanted.scene.settings.method == Method::direct) return nullptr;
   std::optional<LitAnew> lit = lit_anew(final_->image, *final_scene_, wanted.scene);
   if (!lit) return nullptr;
-  return publish(wanted, lit->is_exact ? PictureStep::final : PictureStep::sharper, std::move(lit->image),
+  // Until one was rendered, nobody knows that it takes long.
+  const bool is_final = lit->has_one_factor && std::isfinite(spent.final);
+  return publish(wanted, is_final ? PictureStep::final : PictureStep::sharper, std::move(lit->image),
                  final_->translucent);
 }
 

@@ -21,9 +21,9 @@
 namespace opaline {
 
 /// moving: whatever is there within a thirtieth of a second; sharper: more pixels, the same samples, or the last final
-/// picture in light of another colour (lit_anew.h); final: the bits of `opaline render`, or, where that takes longer than a
-/// knob turns and all light is brighter or darker by one factor, the last final picture times it. reference: of another method, for
-/// comparison (view_background.h).
+/// picture in light of another colour (lit_anew.h); final: the bits of `opaline render`, or, where all light is brighter or
+/// darker by one factor and those bits are known to take long, the last final picture times it. reference: of another
+/// method, for comparison (view_background.h).
 enum class PictureStep : std::uint32_t { moving, sharper, final, reference };
 
 struct ViewPicture {
@@ -90,7 +90,7 @@ class ViewRenderer {
   std::optional<Wanted> next();
   void draw(const Wanted& wanted);
   void anchor(const Wanted& wanted);
-  std::shared_ptr<const ViewPicture> show_lit_anew(const Wanted& wanted);
+  std::shared_ptr<const ViewPicture> show_lit_anew(const Wanted& wanted, const Spent& spent);
   void refine(const Wanted& wanted, Spent& spent);
   void draw_final(const Wanted& wanted, Spent& spent, Monitor* monitor);
   void draw_direct(const Wanted& wanted);

@@ -2,6 +2,10 @@
 // `opaline render --cache` and `opaline cache`.
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+#include <vector>
+
 #include "run_program.h"
 
 namespace opaline {
@@ -47,6 +51,18 @@ TEST(CliCache, WarmRunIsTheSame) {
   EXPECT_TRUE(bytes_of(folder.file("warm.exr")) == plain);
   EXPECT_TRUE(is_all_from_the_cache(folder.render("camera.exr", {"--set", "camera.position=[0,20,40]"})));
   EXPECT_FALSE(is_all_from_the_cache(folder.render("seed.exr", {"--seed", "1"})));
+}
+
+// Claim: each decision about reuse is told once. Fails if: the three channels of a room in colour, lights of one name, tell
+// theirs each.
+TEST(CliCache, ARoomsChannelsAreToldOnce) {
+  const CachedScene folder;
+  const Outcome outcome =
+      folder.render("a.exr", {"--environment", OPALINE_SCENES_DIR "/../tests/cli/goldens/room.exr"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::vector<std::string> told = event_of(events_of(outcome.out), "reuse")["decisions"];
+  EXPECT_FALSE(told.empty());
+  EXPECT_EQ(std::set<std::string>(told.begin(), told.end()).size(), told.size());
 }
 
 // Claim: a damaged entry is one warning that names it, exit 0, the same picture, and mended. Source: the

@@ -61,7 +61,7 @@ TEST(LitAnew, IsWhatIsRendered) {
     const std::optional<LitAnew> lit = lit_anew(before, scene, brighter),
                                  coloured = lit_anew(before, scene, tinted);
     ASSERT_TRUE(lit && coloured);
-    EXPECT_TRUE(lit->is_exact && !coloured->is_exact);
+    EXPECT_TRUE(lit->has_one_factor && !coloured->has_one_factor);
     EXPECT_EQ(lit->image.channels, in_brighter.channels);
     EXPECT_LE(difference(lit->image, in_brighter, "", 1), 1e-4);
     for (const char* layer : {"R", "G", "B", "diffuse.", "specular.", "irradiance."})

@@ -62,8 +62,8 @@ double diffuse_transmittance_within(const ChannelProfile& profile, double r, dou
 /// To any distance.
 double total_diffuse_transmittance(const ChannelProfile& profile, double thickness);
 
-/// 1 - alpha' of the medium whose profile has this total: relative error in 1 - alpha' below
-/// 1e-12. total in [0, 1], of a half space: what a thick piece of the medium sends back.
+/// 1 - alpha' of the medium whose profile has this total: relative error in 1 - alpha' below 1e-12. total in [0, 1], of a
+/// half space: what a thick piece of the medium sends back.
 double invert_albedo(ProfileKind kind, double total, double eta);
 
 /// 1/sigma_t' of a medium with this 1/sigma_t, 1 - alpha' and mean cosine g.
