@@ -180,7 +180,8 @@ class GltfImporter {
       for (std::size_t i = 0; i < 3; ++i) rows.push_back({t.x[i], t.y[i], t.z[i], t.translation[i]});
       shape["transform"] = Json::array({{{"matrix", rows}}});
     }
-    if (!primitive.attributes.contains("NORMAL")) shape["normals"] = "faceted";
+    const bool is_faceted = !primitive.attributes.contains("NORMAL");
+    if (is_faceted) shape["normals"] = "faceted";
     const MaterialUse use{primitive.material, primitive.attributes.contains("TEXCOORD_0"),
                           primitive.attributes.contains("TANGENT") && primitive.attributes.contains("NORMAL"),
                           mesh_path_};
@@ -188,7 +189,8 @@ class GltfImporter {
     scene_.shapes.push_back(std::move(shape));
     parts_.push_back({part, t});
     scene_.translated.push_back(
-        fmt::format("{}, part {} of the asset -> shape {}", label, part, in_quotes(name)));
+        fmt::format("{}, part {} of the asset -> shape {}{}", label, part, in_quotes(name),
+                    is_faceted ? ", faceted: it has no normals (\"normals\": \"smooth\" makes some)" : ""));
   }
 
   /// Primitives of one node that share a medium are one body.

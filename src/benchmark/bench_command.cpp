@@ -172,9 +172,7 @@ int bench_command(const BenchArguments& arguments) {
   advance(&monitor, 0);
   write_report(arguments, folder, report);
   print_bench(report);
-  const int code = verdict(arguments, before, report);
-  if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
-  return code;
+  return verdict(arguments, before, report);
 }
 
 }  // namespace opaline

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include "benchmark/child_process.h"
@@ -136,6 +137,20 @@ std::uint64_t other_seed(std::uint64_t seed, const std::array<std::string, 2>& t
   return seed;
 }
 
+/// error Error{bad_input} naming the rung: not a setting, or a value that it cannot have
+void check_rungs(const BenchArguments& arguments, const BenchScene& scene) {
+  for (const Rung& rung : arguments.rungs) {
+    std::vector<std::string> overrides = scene.overrides;
+    std::ranges::copy(rung_overrides(scene, rung), std::back_inserter(overrides));
+    try {
+      load_scene(scene.file, overrides);
+    } catch (const Error& failure) {
+      throw Error(failure.kind, "--rung " + rung.knob + '=' + rung.value, 0, 0, failure.message,
+                  failure.expected, failure.got);
+    }
+  }
+}
+
 /// more: overrides after the user's own.
 BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& file,
                             const std::vector<std::string>& more, Monitor& monitor) {
@@ -154,6 +169,9 @@ BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& 
   scene.planned_samples = planned_samples(scene, monitor);
   scene.rungs = ladder({scene.planned_samples, arguments.quick, bounces_of(scene.scene) > 0});
   scene.rungs.insert(scene.rungs.end(), arguments.rungs.begin(), arguments.rungs.end());
+  check_rungs(arguments, scene);
+  if (scene.planned_samples == 0)
+    print_warning({}, file + ": nothing is translucent: no rung has samples or a tolerance to trade");
   return scene;
 }
 
@@ -171,6 +189,18 @@ BenchScene open_truth(const BenchArguments& arguments, const std::string& file, 
 }
 
 }  // namespace
+
+std::vector<std::string> rung_overrides(const BenchScene& scene, const Rung& rung) {
+  std::vector<std::string> media;
+  for (const Medium& medium : scene.scene.media) media.push_back(medium.name);
+  std::vector<std::string> overrides = overrides_of(rung, media);
+  if (rung.method == "direct") {
+    overrides.push_back(fmt::format("settings.seed={}", scene.direct_seed));
+    // Its knob is the number of entry samples, whatever noise the scene wants.
+    if (scene.scene.settings.until_error) overrides.emplace_back("settings.until_error=1e-30");
+  }
+  return overrides;
+}
 
 std::vector<BenchScene> open_bench_scenes(const BenchArguments& arguments, const std::string& file,
                                           Monitor& monitor) {
@@ -203,18 +233,6 @@ void prepare_reference(const BenchArguments& arguments, const std::string& folde
     reference.seeds[i] = check_half(reference.halves[i], scene);
   }
   scene.direct_seed = other_seed(scene.scene.settings.seed, reference.seeds);
-}
-
-std::vector<std::string> rung_overrides(const BenchScene& scene, const Rung& rung) {
-  std::vector<std::string> media;
-  for (const Medium& medium : scene.scene.media) media.push_back(medium.name);
-  std::vector<std::string> overrides = overrides_of(rung, media);
-  if (rung.method == "direct") {
-    overrides.push_back(fmt::format("settings.seed={}", scene.direct_seed));
-    // Its knob is the number of entry samples, whatever noise the scene wants.
-    if (scene.scene.settings.until_error) overrides.emplace_back("settings.until_error=1e-30");
-  }
-  return overrides;
 }
 
 std::vector<std::string> render_arguments(const BenchArguments& arguments, const BenchScene& scene,

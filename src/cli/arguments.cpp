@@ -2,11 +2,13 @@
 #include "cli/arguments.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -86,9 +88,11 @@ void check_outputs(const RenderArguments& render) {
     if (!seen.insert(whole_path(path)).second)
       throw usage_error("two outputs have the same name '" + path + "'");
     const bool has_place = path.find("##") != std::string::npos;
-    if (!render.frames.empty() && !has_place)
-      throw usage_error("all frames would be written to '" + path + "'",
-                        "## for their number, as in out.####.exr");
+    if (render.frames.size() > 1 && !has_place)
+      throw usage_error(
+          "all frames would be written to '" + path + "'" +
+              (path.find('#') != std::string::npos ? ": a single # is no place for a number" : ""),
+          "## for their number, as in out.####.exr");
     if (render.frames.empty() && has_place)
       throw usage_error("'" + path + "' has a place for the number of a frame, and none is asked for",
                         "--frames FIRST-LAST, or a name without ##");
@@ -170,10 +174,19 @@ std::string hint(const CLI::App& command) {
   return fmt::format("; see opaline {}--help", names);
 }
 
-Error unknown_command(const CLI::App& parent, const std::string& name) {
+std::vector<std::string_view> commands_of(const CLI::App& app) {
   std::vector<std::string_view> names;
-  for (const CLI::App* command : parent.get_subcommands([](const CLI::App*) { return true; }))
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
+  return names;
+}
+
+Error no_command(const CLI::App& parent) {
+  return usage_error("no command given: " + join(commands_of(parent)) + hint(parent));
+}
+
+Error unknown_command(const CLI::App& parent, const std::string& name) {
+  const std::vector<std::string_view> names = commands_of(parent);
   const std::string near = did_you_mean(name, names);
   return usage_error("unknown command '" + printable(name) + "'" + near,
                      near.empty() ? "one of " + join(names) : "");
@@ -186,14 +199,16 @@ Error unknown_option(const CLI::App& command, const std::string& text) {
     for (const std::string& word : option->get_lnames()) names.push_back("--" + word);
     for (const std::string& letter : option->get_snames()) names.push_back("-" + letter);
   }
-  // A letter that is none stands for the words that begin with it.
-  if (name.size() == 2 && name.front() == '-')
-    for (const std::string& word : names)
-      if (word.starts_with("-" + name))
-        return usage_error("unknown option '" + printable(name) + "' (did you mean '" + word + "'?)" +
-                           hint(command));
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  return usage_error("unknown option '" + printable(name) + "'" + did_you_mean(name, views) + hint(command));
+  // A beginning stands for its words, and a letter that is none for those that begin with it.
+  const bool is_letter = name.size() == 2;
+  const std::string beginning = is_letter ? '-' + name : name;
+  std::vector<std::string_view> begun, views(names.begin(), names.end());
+  std::ranges::copy_if(names, std::back_inserter(begun),
+                       [&](const std::string& word) { return word.starts_with(beginning); });
+  const std::string near = !begun.empty() ? fmt::format(" (did you mean '{}'?)", fmt::join(begun, "' or '"))
+                           : is_letter    ? ""
+                                          : did_you_mean(name, views);
+  return usage_error("unknown option '" + printable(name) + "'" + near + hint(command));
 }
 
 /// CLI11 tells of what is missing before it tells of what it does not know, which may be the same misspelt.
@@ -205,8 +220,9 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
   const std::string what = failure.what();
   if (const std::size_t end = what.find(": At Most 1 required but received"); end != std::string::npos)
     return usage_error(what.substr(0, end) + ": is given more than once" + hint(command));
+  const bool has_commands = !commands_of(command).empty();
+  if (is_unknown && extras.empty() && has_commands) return no_command(command);
   if (!is_unknown || extras.empty()) return usage_error(what + hint(command));
-  const bool has_commands = !command.get_subcommands([](const CLI::App*) { return true; }).empty();
   if (has_commands && !extras.front().starts_with('-')) return unknown_command(command, extras.front());
   const auto option = std::ranges::find_if(extras, [](const std::string& e) { return e.starts_with('-'); });
   if (option != extras.end()) return unknown_option(command, *option);
@@ -293,7 +309,7 @@ Command command_of(const std::string& name, Parsed parsed) {
     return with_log(std::move(arguments));
   };
   const auto with_frames = [&](auto arguments) {
-    if (!options.frames.empty()) arguments.frames = *parse_frames(options.frames);
+    if (options.frames) arguments.frames = parse_frames(*options.frames);
     return with_overrides(std::move(arguments));
   };
   if (name == "compare") return checked(with_log(std::move(parsed.compare)), options);
@@ -302,10 +318,10 @@ Command command_of(const std::string& name, Parsed parsed) {
   parsed.profile.command_line = parsed.bench.command_line = parsed.words;
   if (name == "profile") return with_log(std::move(parsed.profile));
   if (name == "bench") return checked(std::move(parsed.bench), options);
+  parsed.view.program = parsed.render.program = parsed.program;
   if (name == "view") return with_frames(std::move(parsed.view));
   if (name == "precompute") return with_frames(std::move(parsed.precompute));
   if (name == "info") return with_overrides(std::move(parsed.info));
-  parsed.render.program = parsed.program;
   parsed.render.command_line = shell_quoted(parsed.program) + parsed.words;
   return checked(with_frames(std::move(parsed.render)), options);
 }
@@ -339,10 +355,7 @@ Command parse_arguments(int argc, const char* const* argv) {
     throw parse_error(app, failure);
   }
   const std::vector<CLI::App*> called = app.get_subcommands();
-  if (called.empty())
-    throw usage_error(
-        "no command given: render, view, info, import, compare, bench, profile, cache or precompute" +
-        hint(app));
+  if (called.empty()) throw no_command(app);
   parsed.program = argv[0];
   for (int i = 1; i < argc; ++i) parsed.words += ' ' + shell_quoted(argv[i]);
   return command_of(called.front()->get_name(), std::move(parsed));

@@ -92,6 +92,7 @@ struct ProfileArguments {
 
 /// A scene on a page.
 struct ViewArguments {
+  std::string program;  ///< as it was called
   std::string scene;
   std::vector<std::string> overrides;
   std::vector<int> frames;  ///< empty: those that the scene has keys for

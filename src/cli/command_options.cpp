@@ -7,7 +7,6 @@
 #include <iterator>
 #include <utility>
 
-#include "cli/frames.h"
 #include "cli/help_texts.h"
 #include "cli/option_helpers.h"
 #include "cli/option_values.h"
@@ -19,12 +18,6 @@ namespace {
 void add_frames_option(CLI::App& app, Options& options, const char* meaning) {
   app.add_option("--frames", options.frames,
                  fmt::format("frames of a range, e.g. 1-24, 1-24x2 or 1,5,7-9; {}", meaning))
-      ->check(CLI::Validator(
-          [](std::string& text) {
-            return parse_frames(text) ? std::string()
-                                      : "expected frames such as 1-24 or 1,5,7-9, got " + text;
-          },
-          {}))
       ->type_name("FRAMES");
 }
 
@@ -76,7 +69,7 @@ void add_common_options(CLI::App& app, std::string& scene, Options& options) {
                  "change any value of the scene, e.g. media.marble.eta=1.4; repeatable")
       ->type_name("KEY=VALUE");
   app.add_option("--log", options.log, "text, or json: one object a line on stdout")
-      ->check(CLI::IsMember({"text", "json"}).description(""))
+      ->check(log_check())
       ->type_name("text|json");
 }
 
@@ -87,7 +80,7 @@ void add_picture_options(CLI::App& app, Options& options) {
   option(options.spp, "film.samples_per_pixel", "N");
   option(options.resolution, "film.resolution", "WxH")->check(resolution_check());
   option(options.crop, "film.crop", "x0,y0,x1,y1")->check(crop_check());
-  option(options.exposure, "film.exposure", "STOPS");
+  option(options.exposure, "film.exposure", "STOPS")->check(number_check());
   option(options.view, "film.view", "NAME");
   app.add_option("--environment", options.environment,
                  "a lat-long picture (EXR, HDR) of a room in place of the scene's lights, at exposure 0")
@@ -112,22 +105,20 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
       ->check(layers_check())
       ->type_name("NAME,...");
   app.add_option("--samples-ply", render.samples_ply, "also write the surface samples as a PLY point cloud")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(extension_check(".ply"));
   app.add_option("--resume", render.resume,
                  "direct, volume: go on from this file's sums if it is there; they are written to it every "
                  "minute, at "
                  "the end and on Ctrl-C")
       ->type_name("FILE")
-      ->check(CLI::Validator(
-          [](std::string& path) {
-            return path.ends_with(".exr") ? std::string()
-                                          : fmt::format("expected a name that ends in .exr, got {}", path);
-          },
-          {}));
-  app.add_option("--cache", render.cache,
-                 "keep samples, irradiance and trees in this folder, and take from it what was computed from "
-                 "the same")
-      ->type_name("FOLDER");
+      ->check(extension_check(".exr"));
+  CLI::Option* cache =
+      app.add_option(
+             "--cache", render.cache,
+             "keep samples, irradiance and trees in this folder, and take from it what was computed from "
+             "the same")
+          ->type_name("FOLDER");
   app.add_flag("--write-partial", render.write_partial,
                "write coarse pictures to the outputs, the first within a tenth of the time, and what is done "
                "every five seconds; an interrupted run leaves the last one");
@@ -140,7 +131,8 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
       "## in the names of outputs and meshes is their number; frames that are there already, whole "
       "and of this scene, are left alone");
   add_size(app, "--cache-size", render.cache_bytes,
-           "the least recently used beyond it go, e.g. 20GB (default 8GB)");
+           "the least recently used beyond it go, e.g. 20GB (default 8GB)")
+      ->needs(cache);
   add_threads(app, render.threads, "at most this many; default: one for each core");
   app.add_flag("--quiet", render.log.quiet, "print warnings and errors only");
   app.add_flag("--timings-in-metadata", render.timings_in_metadata,
@@ -155,7 +147,6 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
   app.add_option("--time-budget", options.time_budget,
                  "choose them for the smallest error within this CPU time of all, e.g. 2s; direct: stop then")
       ->transform(seconds_of())
-      ->check(CLI::PositiveNumber.description(""))
       ->type_name("TIME")
       ->group(quality);
   app.add_flag("--verify", render.verify, "measure the error at some 200 points by --method direct")
@@ -179,7 +170,8 @@ void add_view_options(CLI::App& app, ViewArguments& view, Options& options) {
       app, options,
       "## in the names of meshes is their number; default: from the scene's first key to its last");
   add_threads(app, view.threads, "at most this many; default: one for each core");
-  app.add_flag("!--no-open", view.opens_browser, "do not open the URL in the desktop's browser");
+  app.add_flag_callback(
+      "--no-open", [&view] { view.opens_browser = false; }, "do not open the URL in the desktop's browser");
   app.add_flag("--quiet", view.log.quiet, "print the URL and errors only");
   add_picture_options(app, options);
   app.footer(kViewNotes);

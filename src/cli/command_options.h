@@ -27,7 +27,7 @@ struct Options {
   bool json = false;
   std::string reference_error;
   std::vector<std::string> rungs;
-  std::string frames;
+  std::optional<std::string> frames;
   std::string display_server;
   std::string layers;
 };

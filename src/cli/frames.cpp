@@ -15,6 +15,7 @@
 #include "opaline/core/interrupt.h"
 #include "opaline/core/units.h"
 #include "opaline/image/image.h"
+#include "opaline/scene/json_tree.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/scene_hash.h"
 
@@ -40,20 +41,25 @@ bool take(std::string_view& text, char c) {
 
 }  // namespace
 
-std::optional<std::vector<int>> parse_frames(const std::string& text) {
+std::vector<int> parse_frames(const std::string& text) {
+  const auto refused = [&](const std::string& message, const std::string& expected) {
+    return Error(ErrorKind::bad_input, "--frames", 0, 0, message, expected, printable(text));
+  };
+  const char* const such_as = "such as 1-24, 1-24x2 or 1,5,7-9";
   std::set<int> frames;
   std::string_view rest = text;
   do {
     const std::optional<int> first = take_number(rest);
     const std::optional<int> last = take(rest, '-') ? take_number(rest) : first;
     const std::optional<int> step = take(rest, 'x') ? take_number(rest) : 1;
-    if (!first || !last || !step || *last < *first || *step < 1) return {};
+    if (!first || !last || !step || *step < 1) throw refused("cannot tell the frames", such_as);
+    if (*last < *first) throw refused("a range ends before it begins", such_as);
     for (std::int64_t frame = *first; frame <= *last; frame += *step) {
       frames.insert(int(frame));
-      if (frames.size() > kMostFrames) return {};
+      if (frames.size() > kMostFrames) throw refused("too many frames", "at most " + grouped(kMostFrames));
     }
   } while (take(rest, ','));
-  if (!rest.empty()) return {};
+  if (!rest.empty()) throw refused("cannot tell the frames", such_as);
   return std::vector<int>(frames.begin(), frames.end());
 }
 

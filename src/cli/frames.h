@@ -12,9 +12,9 @@
 
 namespace opaline {
 
-/// "1-24", "1-24x2", "1,5,7-9" in rising order, each once; nothing if it is none of these, or more than
-/// 100000.
-std::optional<std::vector<int>> parse_frames(const std::string& text);
+/// "1-24", "1-24x2", "1,5,7-9" in rising order, each once.
+/// error Error{bad_input}: it is none of these, or more than 100000
+std::vector<int> parse_frames(const std::string& text);
 
 /// Calls work(frame) for each, which says whether it rendered the frame or found it there; what goes wrong
 /// with a frame is printed, naming it, and the others go on. `so_far` is kept up to date. At the end a line

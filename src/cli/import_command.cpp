@@ -25,7 +25,8 @@ std::string path_from(const std::string& scene, const std::string& asset) {
 void import_command(const ImportArguments& arguments) {
   const ImportedAsset asset =
       import_asset(arguments.asset, path_from(arguments.scene, arguments.asset), arguments.material);
-  for (const std::string& line : asset.translated) write_line(stderr, line);
+  if (!arguments.log.quiet)
+    for (const std::string& line : asset.translated) write_line(stderr, line);
   for (const std::string& line : asset.not_carried) write_line(stderr, "not carried over: " + line);
   parse_scene(asset.text, arguments.scene);
   if (!arguments.overwrite && fs::is_regular_file(arguments.scene) &&
@@ -33,8 +34,7 @@ void import_command(const ImportArguments& arguments) {
     throw bad_file(arguments.scene, "is there already and says something else",
                    "another name, or --overwrite");
   write_file(arguments.scene, asset.text);
-  write_line(stdout, arguments.scene + ": " + asset.summary);
-  if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
+  if (!arguments.log.quiet) write_line(stdout, arguments.scene + ": " + asset.summary);
 }
 
 }  // namespace opaline

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/commands.h"
 #include "cli/report.h"
-#include "opaline/core/error.h"
 #include "opaline/render/choose_models.h"
 #include "opaline/scene/load_scene.h"
 
@@ -14,7 +13,6 @@ void info_command(const InfoArguments& arguments) {
   const Plan plan = make_plan(scene, world);
   print_plan(arguments.log, scene, world, plan);
   print_plates(arguments.log, compare_plates(scene, plan));
-  if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
 }
 
 }  // namespace opaline

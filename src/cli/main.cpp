@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The only place where exceptions are caught and become exit codes.
+#include <cstdio>
 #include <exception>
 
 #include "cli/commands.h"
@@ -40,6 +41,15 @@ opaline::Log log_of(const opaline::Command& command) {
   return {};
 }
 
+/// Whether what could not be printed is a log alone, of a program that was started without standard output: what was asked
+/// for is in files, or on a page.
+bool is_for_nobody(const opaline::Command& command) {
+  const bool is_log = std::holds_alternative<opaline::RenderArguments>(command) ||
+                      std::holds_alternative<opaline::PrecomputeArguments>(command) ||
+                      std::holds_alternative<opaline::ViewArguments>(command);
+  return is_log && opaline::was_started_without_output();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -48,7 +58,10 @@ int main(int argc, char** argv) {
   try {
     const opaline::Command command = opaline::parse_arguments(argc, argv);
     log = log_of(command);
-    return run(command);
+    const int code = run(command);
+    if (std::ferror(stdout) != 0 && !is_for_nobody(command))
+      throw opaline::run_failed("stdout", "cannot write");
+    return code;
   } catch (const opaline::Error& failure) {
     return opaline::print_failure(log, opaline::placed_at_option(failure, argc, argv));
   } catch (const std::exception& failure) {

@@ -20,9 +20,7 @@ CLI::Option* add_repeatable(CLI::App& app, const std::string& names, std::vector
 
 inline CLI::Option* add_size(CLI::App& app, const std::string& name, std::uint64_t& bytes,
                              const std::string& help) {
-  return app.add_option(name, bytes, help)
-      ->transform(CLI::AsSizeValue(true).description(""))
-      ->type_name("SIZE");
+  return app.add_option(name, bytes, help)->transform(bytes_of())->type_name("SIZE");
 }
 
 inline void add_threads(CLI::App& app, int& threads, const std::string& help) {

@@ -56,6 +56,47 @@ CLI::Validator check(const char* expected, const IsGood& is_good) {
       {});
 }
 
+/// is_good(share): within its range.
+template <class IsGood>
+CLI::Validator share_below(const char* such_as, const IsGood& is_good) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        const std::optional<double> share = share_of(text);
+        const bool percent = text.ends_with('%');
+        if (share && is_good(*share) && (percent || *share < 1)) return std::string();
+        std::string failure = fmt::format("expected a share such as {}, got {}", such_as, text);
+        if (share && *share >= 1 && *share <= 100 && !percent)
+          failure += fmt::format(", which is {:.4g} %; did you mean {}%?", 100 * *share, text);
+        return failure;
+      },
+      {});
+}
+
+/// Whether CLI11 made a number of text and unit. What it would say tells of the unit alone.
+bool converts(const CLI::Validator& conversion, std::string& text) {
+  try {
+    return conversion(text).empty();
+  } catch (const CLI::ParseError&) {
+    return false;
+  }
+}
+
+/// The number in the unit of 1.
+CLI::Validator positive_with_unit(const char* expected, const std::map<std::string, double>& units) {
+  const CLI::AsNumberWithUnit in_unit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE);
+  return CLI::Validator(
+      [=](std::string& text) {
+        std::string number = text;
+        double value = 0;
+        if (!converts(in_unit, number) || !CLI::detail::lexical_cast(number, value) || !(value > 0) ||
+            std::isinf(value))
+          return fmt::format("expected {}, got {}", expected, text);
+        text = number;
+        return std::string();
+      },
+      {});
+}
+
 }  // namespace
 
 std::string resolution_json(std::string_view text) {
@@ -109,32 +150,56 @@ CLI::Validator whole_number(const Range& range) {
 }
 
 CLI::Validator share_check() {
-  return check("a share such as 1% or .01",
-               [](const std::string& text) { return share_of(text).has_value(); });
+  return share_below("1% or .01", [](double) { return true; });
 }
 
 CLI::Validator positive_share_check() {
+  return share_below("2% or .02", [](double share) { return share > 0 && share <= 1; });
+}
+
+CLI::Validator seconds_of() {
+  return positive_with_unit("a time such as 2s, 500ms, 1.5min or 1h",
+                            {{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}});
+}
+
+CLI::Validator millimetres_of() {
+  return positive_with_unit("a length such as 2mm, 500um, .5cm or 1m",
+                            {{"um", 1e-3}, {"mm", 1}, {"cm", 10}, {"m", 1000}});
+}
+
+CLI::Validator bytes_of() {
+  const CLI::AsSizeValue bytes(true);
   return CLI::Validator(
-      [](std::string& text) {
-        const std::optional<double> share = share_of(text);
-        const bool percent = text.ends_with('%');
-        if (share && *share > 0 && (percent ? *share <= 1 : *share < 1)) return std::string();
-        std::string failure = "expected a share such as 2% or .02, got " + text;
-        if (share && *share >= 1 && *share <= 100 && !percent)
-          failure += fmt::format(", which is {:.4g} %; did you mean {}%?", 100 * *share, text);
-        return failure;
+      [bytes](std::string& text) {
+        std::string number = text;
+        // CLI11 would let one below 0 wrap.
+        if (text.find('-') != std::string::npos || !converts(bytes, number))
+          return "expected a size such as 500MB or 8GB, got " + text;
+        text = number;
+        return std::string();
       },
       {});
 }
 
-CLI::Validator seconds_of() {
-  const std::map<std::string, double> units{{"ms", 1e-3}, {"s", 1}, {"min", 60}, {"h", 3600}};
-  return CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE).description("");
+CLI::Validator number_check() {
+  return check("a number", [](const std::string& text) {
+    double number = 0;
+    return CLI::detail::lexical_cast(text, number) && std::isfinite(number);
+  });
 }
 
-CLI::Validator millimetres_of() {
-  const std::map<std::string, double> units{{"um", 1e-3}, {"mm", 1}, {"cm", 10}, {"m", 1000}};
-  return CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::CASE_SENSITIVE).description("");
+CLI::Validator log_check() {
+  return check("text or json", [](const std::string& text) { return text == "text" || text == "json"; });
+}
+
+CLI::Validator extension_check(const std::string& extension) {
+  return CLI::Validator(
+      [extension](std::string& path) {
+        return path.ends_with(extension)
+                   ? std::string()
+                   : fmt::format("expected a name that ends in {}, got {}", extension, path);
+      },
+      {});
 }
 
 std::optional<LayerChoice> layers_of(const std::string& text) {

@@ -26,13 +26,21 @@ CLI::Validator resolution_check();
 CLI::Validator crop_check();
 /// CLI11 would let a number beyond 64 bits wrap or stop at the end, and take 010 for 8.
 CLI::Validator whole_number(const Range& range);
+/// Of 0 and more. A number without % is below 1: who writes 1 means 1 %.
 CLI::Validator share_check();
-/// Of (0, 1]. A number without % is below 1: who writes 1 means 1 %.
+/// Of (0, 1], the same.
 CLI::Validator positive_share_check();
 /// "2s", "500ms", "1.5min", "1h" or seconds alone, to seconds.
 CLI::Validator seconds_of();
 /// "2mm", "500um", ".5cm", "1m" or millimetres alone, to millimetres.
 CLI::Validator millimetres_of();
+/// "500MB", "8GB" or bytes alone, to bytes; kB is 1000.
+CLI::Validator bytes_of();
+/// Finite.
+CLI::Validator number_check();
+CLI::Validator log_check();
+/// Of a file's name.
+CLI::Validator extension_check(const std::string& extension);
 /// What parse_server_address takes.
 CLI::Validator server_address_check();
 /// "diffuse,N", "all" or "none"; nothing if a name is no layer's.

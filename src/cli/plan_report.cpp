@@ -65,10 +65,17 @@ void print_group(const Scene& scene, const World& world, const GroupPlan& group)
 }
 
 /// How an asset without a translucent material gets one: few formats can name it.
-std::string marble_text(const Scene& scene) {
+std::string marble_text(const Scene& scene, const World& world) {
   if (scene.translation.empty() || scene.shapes.empty() || !scene.media.empty()) return {};
-  return fmt::format("; --set media.marble.preset=marble --set shapes.{}.medium=marble makes marble of {}",
-                     scene.shapes[0].name, scene.shapes[0].name);
+  constexpr double kHandful = 50;  // mm
+  const Shape& shape = scene.shapes[0];
+  // An OBJ has no unit, and by its size in mm light goes through or does not.
+  const bool has_unit = !scene.file.ends_with(".obj") || scene.mm_per_unit != 1 || !(world.diagonal > 0);
+  return fmt::format(
+      "; --set media.marble.preset=marble --set shapes.{}.medium=marble{} makes marble of {}{}{}", shape.name,
+      has_unit ? "" : fmt::format(" --set mm_per_unit={:.2g}", kHandful / world.diagonal), shape.name,
+      has_unit ? "" : fmt::format(", {} mm across", kHandful),
+      shape.reflectance_texture ? " and not of its texture" : "");
 }
 
 void print_text(const Scene& scene, const World& world, const Plan& plan) {
@@ -78,7 +85,8 @@ void print_text(const Scene& scene, const World& world, const Plan& plan) {
   print_row("picture", picture_text(scene.film));
   print_row("lights", lights_text(scene.lights));
   for (const GroupPlan& group : plan.groups) print_group(scene, world, group);
-  if (plan.groups.empty()) print_row("translucent", "nothing: no samples are needed" + marble_text(scene));
+  if (plan.groups.empty())
+    print_row("translucent", "nothing: no samples are needed" + marble_text(scene, world));
   for (std::size_t i = 0; i < plan.stages.size(); ++i) print_row(i == 0 ? "stages" : "", plan.stages[i]);
   print_row("memory", "about " + short_bytes(plan.bytes) + " at the peak");
 }
@@ -214,11 +222,12 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
                                     100 * target, counted(chosen.samples, "sample"), 100 * chosen.predicted,
                                     100 * settings.tolerance));
   if (!chosen.reached)
-    print_warning(
-        log,
-        fmt::format("an error of {:.3g} % cannot be reached with settings.max_samples of {}: {:.2g} % is "
-                    "predicted",
-                    100 * target, settings.max_samples, 100 * chosen.predicted));
+    print_warning(log, fmt::format("an error of {:.3g} % cannot be reached with {}: {:.2g} % is predicted",
+                                   100 * target,
+                                   double(chosen.samples) < .9 * double(settings.max_samples)
+                                       ? "half a billion shadow rays to a light"
+                                       : fmt::format("settings.max_samples of {}", settings.max_samples),
+                                   100 * chosen.predicted));
 }
 
 void print_volume_target(const Log& log, double target, const TargetError& chosen, const Settings& settings) {

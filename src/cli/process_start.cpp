@@ -19,4 +19,8 @@ void prepare_process() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
+bool was_started_without_output() {
+  return (::fcntl(STDOUT_FILENO, F_GETFL) & O_ACCMODE) == O_RDONLY;
+}
+
 }  // namespace opaline

@@ -10,4 +10,7 @@ namespace opaline {
 /// left behind.
 void prepare_process();
 
+/// Whether standard output came closed.
+bool was_started_without_output();
+
 }  // namespace opaline

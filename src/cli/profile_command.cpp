@@ -211,7 +211,6 @@ void profile_command(const ProfileArguments& arguments) {
     print_text(report);
   if (!arguments.report.empty() && arguments.log.format == LogFormat::text)
     print_row("wrote", {arguments.report + "/index.html"});
-  if (std::ferror(stdout) != 0) throw run_failed("stdout", "cannot write");
 }
 
 }  // namespace opaline

@@ -190,15 +190,22 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
 std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArguments& arguments,
                                             const Session& session, const KnownErrors& errors,
                                             const RenderResult& picture) {
-  if (!arguments.verify || session.bodies().empty()) return {};
+  if (!arguments.verify) return {};
+  if (session.bodies().empty()) {
+    print_warning(arguments.log, "nothing is translucent: --verify has nothing to measure");
+    return {};
+  }
   // An error far below the target need not be known to its last digit.
   const double expected = errors.predicted
                               ? std::max(*errors.predicted, kKnownShare * errors.target.value_or(0))
                               : estimated_relative_error(picture.image, picture.translucent);
   try {
-    return stages.run(
+    const MeasuredError measured = stages.run(
         "verifying", [&] { return measure_error(session, expected, &stages.monitor()); },
         InnerStages::trials);
+    if (measured.points == 0)
+      print_warning(arguments.log, "nothing translucent is seen: --verify has nothing to measure");
+    return measured;
   } catch (const Error& stopped) {
     if (stopped.kind != ErrorKind::interrupted) throw;
     throw Error(ErrorKind::interrupted, {}, 0, 0,

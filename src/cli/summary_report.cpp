@@ -73,7 +73,9 @@ void print_text(const Summary& summary) {
   };
   row("memory", short_bytes(summary.peak_memory) + " at the peak");
   if (summary.samples > 0)
-    row("samples", fmt::format("{}, {} shading points", grouped(summary.samples), grouped(summary.queries)));
+    row("samples",
+        grouped(summary.samples) +
+            (summary.queries > 0 ? fmt::format(", {} shading points", grouped(summary.queries)) : ""));
   if (summary.entry_samples > 0)
     row("samples",
         fmt::format("{} entry samples a pixel; noise {:.3g} % (standard error, rms over the pixels)",

@@ -15,6 +15,7 @@ void add_import_options(CLI::App& app, ImportArguments& import) {
                  "its name")
       ->type_name("FILE[#NAME]");
   app.add_flag("--overwrite", import.overwrite, "write over a scene file that says something else");
+  app.add_flag("--quiet", import.log.quiet, "print what is not carried over, and errors only");
   app.footer(kImportNotes);
 }
 
@@ -34,6 +35,7 @@ void add_compare_options(CLI::App& app, CompareArguments& compare, Options& opti
       ->type_name("FILE");
   app.add_option("--exposure", compare.exposure,
                  "stops, for FLIP; default: 0 for PNG, else what turns the p99 of B white")
+      ->check(number_check())
       ->type_name("STOPS");
   app.add_flag("--json", options.json, "the result as one JSON object on stdout");
   app.footer(kCompareNotes);
@@ -91,10 +93,12 @@ void add_profile_options(CLI::App& app, ProfileArguments& profile, Options& opti
       ->transform(millimetres_of())
       ->type_name("LENGTH");
   app.add_option("--eta", profile.eta, "index of refraction, inside over outside, in place of the medium's")
+      ->check(number_check())
       ->type_name("X");
   app.add_option(
          "--g", profile.g,
          "mean cosine that walks scatter with, at the same reduced scattering (default: the medium's, or 0)")
+      ->check(number_check())
       ->type_name("X");
   app.add_option(
          "--walks", profile.walks,

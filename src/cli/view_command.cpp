@@ -62,14 +62,16 @@ void view_command(const ViewArguments& arguments) {
   Monitor monitor;
   const InterruptHandler interrupt(monitor);
   RenderArguments render;
+  render.program = arguments.program;
   render.scene = arguments.scene;
+  render.outputs = {std::filesystem::path(arguments.scene).stem().string() + ".png"};
   const ViewHooks hooks{
       [&](const std::string& text) {
         if (!arguments.log.quiet) print_warning(arguments.log, "refused " + text);
       },
       [&](const std::vector<std::string>& overrides, std::optional<int> frame) {
         render.overrides = overrides;
-        return command_of(render) + (frame ? " --frames " + std::to_string(*frame) : "");
+        return command_again(render) + (frame ? " --frames " + std::to_string(*frame) : "");
       },
       [&](const std::vector<std::string>& overrides, std::optional<int> frame, const std::string& path,
           Monitor& stopped) { render_file(arguments, overrides, frame, path, stopped); }};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/log.h"
 
+#include <cerrno>
 #include <new>
 #include <stdexcept>
 #include <system_error>
@@ -39,8 +40,10 @@ std::string compact(const Json& value) {
 
 void write_line(std::FILE* stream, std::string_view line) {
   const std::string whole = std::string(line) + '\n';
-  std::fwrite(whole.data(), 1, whole.size(), stream);
-  std::fflush(stream);
+  errno = 0;
+  const bool is_written =
+      std::fwrite(whole.data(), 1, whole.size(), stream) == whole.size() && std::fflush(stream) == 0;
+  if (!is_written && errno == EPIPE) std::clearerr(stream);  // a reader that left has seen enough
 }
 
 void print_event(const Log& log, const char* event, const Json& members) {
@@ -64,7 +67,7 @@ int print_failure(const Log& log, const std::exception& failure) {
   if (error != nullptr && error->line > 0) members["line"] = error->line;
   if (error != nullptr && error->column > 0) members["column"] = error->column;
   print_event(log, "error", members);
-  if (log.format == LogFormat::text)
+  if (log.format == LogFormat::text || std::ferror(stdout) != 0)
     write_line(stderr, kind == ErrorKind::interrupted ? "opaline: " + text : "opaline: error: " + text);
   return int(kind);
 }

@@ -35,7 +35,8 @@ using Json = nlohmann::ordered_json;
 /// One line without spaces; bytes that are not UTF-8 (a path may hold any) become U+FFFD.
 std::string compact(const Json& value);
 
-/// One line, flushed. Failures are left in ferror(stream): a closed log must not cost a picture.
+/// One line, flushed. Failures are left in ferror(stream), but for a pipe that nobody reads any more: a log must not cost
+/// a picture.
 void write_line(std::FILE* stream, std::string_view line);
 
 /// A JSON event; only where the log is JSON.

@@ -15,6 +15,7 @@ std::string grouped(std::uint64_t count) {
 
 std::string short_bytes(std::size_t bytes) {
   const double megabytes = double(bytes) / 1e6;
+  if (bytes > 0 && megabytes < .0995) return fmt::format("{:.1f} kB", 1000 * megabytes);
   const bool giga = megabytes >= 999.5;
   const double value = giga ? megabytes / 1000 : megabytes;
   return fmt::format("{:.{}f} {}", value, value < 9.95 ? 1 : 0, giga ? "GB" : "MB");

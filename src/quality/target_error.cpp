@@ -22,6 +22,8 @@ constexpr double kLeastGrowth = 2.5, kBeyond = 1.25, kMostGrowth = 4;
 // Shadow rays grow where their noise alone is more than this share of the target.
 constexpr double kMostNoise = 0.5;
 constexpr int kMostLightSamples = 65536;
+constexpr double kMostShadowRays =
+    0x1p31;  // of all samples to a light: minutes. What asks for more is not reached
 constexpr int kMostSteps = 12;
 // Of the small pictures: a mean needs no more.
 constexpr double kProbePixels = 64 * 64;
@@ -41,11 +43,12 @@ double noise_of(SettingsSearch& search, const Image& picture) {
 
 /// Adds shadow rays where their noise is too much; whether it was. The error of low-discrepancy points falls
 /// faster than the root of their number.
-bool add_light_samples(SettingsSearch& search, double noise, double target) {
+bool add_light_samples(SettingsSearch& search, double noise, double samples, double target) {
   int& rays = search.scene.settings.light_samples;
-  const double excess = kSafety * noise / (kMostNoise * target);
-  if (excess <= 1 || rays >= kMostLightSamples) return false;
-  rays = int(std::min(std::ceil(rays * std::pow(excess, 1.5)), double(kMostLightSamples)));
+  const double excess = kSafety * noise / (kMostNoise * target),
+               most = std::min(double(kMostLightSamples), kMostShadowRays / samples);
+  if (excess <= 1 || rays >= most) return false;
+  rays = int(std::min(std::ceil(rays * std::pow(excess, 1.5)), most));
   return true;
 }
 
@@ -55,13 +58,15 @@ void approach(SettingsSearch& search, Image picture, double samples, double targ
   for (int step = 0; step < kMostSteps && safety * search.estimated > target; ++step) {
     const double estimated = search.estimated, noise = std::min(noise_of(search, picture), estimated),
                  excess = safety * std::sqrt(estimated * estimated - noise * noise) / target;
-    const bool more_rays = add_light_samples(search, noise, target),
-               more_samples = samples < search.most_samples && (excess > 1 || !more_rays);
+    const bool more_rays = add_light_samples(search, noise, samples, target);
+    const double most_samples =
+        std::min(search.most_samples, kMostShadowRays / search.scene.settings.light_samples);
+    const bool more_samples = samples < most_samples && (excess > 1 || !more_rays);
     if (!more_rays && !more_samples) return;
     const double before = samples;
     if (more_samples)
-      samples = std::min(search.most_samples, samples * std::clamp(kBeyond * std::pow(excess, 1 / kSlope),
-                                                                   kLeastGrowth, kMostGrowth));
+      samples = std::min(most_samples, samples * std::clamp(kBeyond * std::pow(excess, 1 / kSlope),
+                                                            kLeastGrowth, kMostGrowth));
     const Image last = std::exchange(picture, search.picture_of(samples));
     // A second opinion: the last picture was about as much off as the two differ.
     if (samples == before) continue;

@@ -38,6 +38,7 @@ class KeyedValue {
         fail(member, "'between' is not known", "\"linear\" or \"spline\"");
       spline_ = member.text == "spline";
     }
+    check_between();
   }
 
   Node at(double frame) const {
@@ -52,6 +53,12 @@ class KeyedValue {
   }
 
  private:
+  /// Where there is a frame between two keys, it has a value.
+  void check_between() const {
+    for (std::size_t i = 1; i < keys_.size(); ++i)
+      if (keys_[i].frame - keys_[i - 1].frame > 1) return void(at(keys_[i].frame - 1));
+  }
+
   [[noreturn]] void fail(const Node& at, const std::string& message, const std::string& expected) const {
     throw error_at(document_, at.offset, at.override_index, message, expected);
   }

@@ -57,6 +57,8 @@ void check_is_no_other_file(const std::string& path) {
 
 /// Assets are told by their names; under another one they end here.
 void check_begins_as_scene(const std::string& path, const std::string& text) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    throw bad_file(path, "is UTF-16", "a scene file in UTF-8");
   const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   if (first == std::string::npos || text[first] == '{' || text[first] == '/') return;
   throw bad_file(path, "does not begin as a scene does",

@@ -26,9 +26,10 @@ std::string layer_name(const std::string& light) {
   return name;
 }
 
-Error refused(const Scene& scene, const std::string& what, const std::string& expected,
+Error refused(const SourcePlace& place, const std::string& what, const std::string& expected,
               const std::string& got = {}) {
-  return Error(ErrorKind::bad_input, scene.file, 0, 0, "light groups: " + what, expected, got);
+  return Error(ErrorKind::bad_input, place.file, place.line, place.column, "light groups: " + what, expected,
+               got);
 }
 
 /// First red channel of each kind that a group has, in a picture's pixels.
@@ -132,9 +133,9 @@ Scene lit_by(Scene scene, const LightGroup& group) {
 std::vector<LightGroup> light_groups(const Scene& scene) {
   const Method method = scene.settings.method;
   if (method == Method::direct || method == Method::volume)
-    throw refused(scene, "the method's noise is another for each light",
+    throw refused({scene.file}, "the method's noise is another for each light",
                   "--method hierarchical, lambert or volume_diffusion", std::string(name_of(method)));
-  if (scene.lights.empty()) throw refused(scene, "the scene has no lights", "a light");
+  if (scene.lights.empty()) throw refused({scene.file}, "the scene has no lights", "a light");
   std::vector<LightGroup> groups;
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     const Light& light = scene.lights[l];
@@ -142,7 +143,7 @@ std::vector<LightGroup> light_groups(const Scene& scene) {
     const auto same = std::ranges::find(groups, layer, &LightGroup::layer);
     LightGroup& group = same != groups.end() ? *same : groups.emplace_back(LightGroup{layer, {}, false});
     if (!group.lights.empty() && scene.lights[group.lights[0]].name != light.name)
-      throw refused(scene, "two lights have the same layer \"" + layer + "\"",
+      throw refused(light.place, "two lights have the same layer \"" + layer + "\"",
                     "names that differ in letters or digits",
                     '"' + scene.lights[group.lights[0]].name + "\" and \"" + light.name + '"');
     group.lights.push_back(l);

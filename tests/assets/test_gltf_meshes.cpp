@@ -140,5 +140,16 @@ TEST(GltfMeshes, APartMustBeThere) {
   EXPECT_EQ(error("a.off", "0/0"), "a.off: its format has no parts (expected no \"part\", got \"0/0\")");
 }
 
+// Claim: what has no normals is flat (glTF 2.0, section 3.7.2.1), and that is said with how to have it otherwise. Fails if:
+// it is not told, or told of a mesh with normals.
+TEST(GltfMeshes, WithoutNormalsIsToldAsFaceted) {
+  Asset asset = cube_asset();
+  EXPECT_FALSE(has(imported(asset).translated, "faceted"));
+  asset.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
+  EXPECT_TRUE(has(imported(asset).translated,
+                  "-> shape 'cube', faceted: it has no normals (\"normals\": \"smooth\" makes some)"));
+  EXPECT_EQ(scene_of(asset.glb(), "a.glb").shapes.at(0).normals, NormalMode::faceted);
+}
+
 }  // namespace
 }  // namespace opaline::asset_test

@@ -100,6 +100,26 @@ TEST(CliAssets, TheApplesOfTheGallery) {
   EXPECT_TRUE(contains(outcome.out, "1 translucent medium, its camera, default lights")) << outcome.out;
 }
 
+// Claim: the plan of an opaque asset says how to make it translucent: by options that run, at a size that an OBJ has not,
+// and what of its surface is then lost. Fails if: marble of 2 mm is made, or a texture goes without a word.
+TEST(CliAssets, HowToMakeMarbleOfIt) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("a.obj"),
+            "mtllib a.mtl\nusemtl wood\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\n"
+            "f 1/1 3/1 2/1\nf 1/1 2/1 4/1\nf 2/1 3/1 4/1\nf 1/1 4/1 3/1\n");
+  put_bytes(folder.file("a.mtl"), "newmtl wood\nmap_Kd wood.exr\n");
+  std::filesystem::copy(OPALINE_SCENES_DIR "/../tests/cli/goldens/room.exr", folder.file("wood.exr"));
+  const Outcome info = run_program({"info", "a.obj"}, folder.path.string());
+  EXPECT_TRUE(contains(info.out,
+                       "; --set media.marble.preset=marble --set shapes.wood.medium=marble --set "
+                       "mm_per_unit=29 makes marble of wood, 50 mm across and not of its texture"))
+      << info.out;
+  const Outcome marble = run_program({"info", "a.obj", "--set", "media.marble.preset=marble", "--set",
+                                      "shapes.wood.medium=marble", "--set", "mm_per_unit=29"},
+                                     folder.path.string());
+  EXPECT_TRUE(contains(marble.out, "translucent wood in marble")) << marble.out << marble.err;
+}
+
 // Claim: `--environment` lights a scene by a picture in place of all its lights, wherever the program is started: what is
 // seen beside the asset is the picture, and its white cube is as bright as an even room.
 TEST(CliAssets, EnvironmentInPlaceOfLights) {

@@ -16,6 +16,7 @@ TEST(CliFailures, BadScenes) {
     std::string text, said;
   } cases[] = {
       {"", "empty"},
+      {"\xff\xfe{", "bad.json: is UTF-16"},
       {"{\n\"film\": {\"resolutoin\": [2, 2]}}", "bad.json:2:10: "},
       {"{\"shapes\": [\n{\"file\": \"missing.ply\"}]}", "missing.ply: no such mesh file"},
       {"{\"shapes\": [\n{\"file\": \"missing.ply\"}]}", "bad.json:2:10: "},
@@ -57,6 +58,8 @@ TEST(CliFailures, UnwritableOutputIsSaidAtOnce) {
     EXPECT_TRUE(outcome.err.starts_with("opaline: error: " + path)) << outcome.err;
     EXPECT_TRUE(outcome.out.empty());
   }
+  EXPECT_TRUE(
+      contains(run_program({"render", folder.scene, "-o", "none/a.png"}).err, "there is no folder 'none'"));
   EXPECT_EQ(folder.entries(), 2u);
 }
 

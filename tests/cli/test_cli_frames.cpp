@@ -227,6 +227,15 @@ TEST(CliFrames, Mistakes) {
   EXPECT_EQ(run_program({"precompute", shot.scene, "--frames", "1-2"}).exit_code, 2);
 }
 
+// Claim: a single frame needs no place for its number. Fails if: names are asked for it that it would not share.
+TEST(CliFrames, OneFrameUnderAnyName) {
+  const Shot shot;
+  ASSERT_EQ(shot.render("2").exit_code, 0);
+  const Outcome alone = run_program({"render", shot.scene, "-o", shot.file("a.exr"), "--frames", "2"});
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  EXPECT_TRUE(read_image(shot.file("a.exr")).pixels == read_image(shot.picture(2)).pixels);
+}
+
 /// Runs a script of scenes/ with the program under test.
 int run_script(const std::string& variables, const std::string& script, const std::string& words) {
   const std::string command = "OPALINE='" OPALINE_PROGRAM "' " + variables + ' ' + OPALINE_SCENES_DIR + '/' +

@@ -47,6 +47,27 @@ TEST(CliProcessStart, ResultForNobody) {
   EXPECT_TRUE(contains(outcome.err, "stdout: cannot write")) << outcome.err;
 }
 
+// Claim: what a full disk cannot take of the log is an error of every command, and costs no picture; a reader that has left
+// is none. Fails if: the log of a rendering is not looked at, or an error goes where nobody can read it.
+TEST(CliProcessStart, FullDiskUnderTheLog) {
+  const SceneFolder folder;
+  const auto run = [&](const std::string& words, const std::string& out) {
+    const std::string command = "'" OPALINE_PROGRAM "' " + words + " 2>'" + folder.file("err") + "' " + out;
+    return WEXITSTATUS(std::system(command.c_str()));
+  };
+  const std::string picture = folder.file("a.exr"),
+                    render = "render '" + folder.scene + "' -o '" + picture + "'";
+  for (const std::string& words :
+       {render, render + " --log json", "compare '" + picture + "' '" + picture + "' --json",
+        std::string("--version")}) {
+    EXPECT_EQ(run(words, ">/dev/full"), 3) << words;
+    EXPECT_TRUE(contains(bytes_of(folder.file("err")), "stdout: cannot write")) << words;
+    EXPECT_FALSE(read_image(picture).pixels.empty());
+  }
+  EXPECT_EQ(run(render + " ; echo $? >'" + folder.file("code") + "'", "| true"), 0);
+  EXPECT_EQ(bytes_of(folder.file("err")), "");
+}
+
 #ifndef __SANITIZE_ADDRESS__  // which needs more address space than the limits
 // Claim: whatever the address space, from what the program takes to start up to what the scene needs, a
 // picture is made or "out of memory" is said and nothing is left behind. Fails if: Embree's failures, or that

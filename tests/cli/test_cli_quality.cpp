@@ -84,6 +84,7 @@ TEST(CliQuality, WarnsWhereNothingCanBePromised) {
   const Outcome opaque = folder.render({"--target-error", "1%", "--verify"});
   EXPECT_EQ(opaque.exit_code, 0) << opaque.err;
   EXPECT_TRUE(contains(opaque.err, "promises nothing")) << opaque.err;
+  EXPECT_TRUE(contains(opaque.err, "--verify has nothing to measure")) << opaque.err;
 }
 
 /// The closing line of that label; empty if there is none.

@@ -91,6 +91,7 @@ TEST(SceneFrames, Mistakes) {
   EXPECT_NE(camera(R"({"keyed": {"1": 1}, "between": "smooth"})").find("\"linear\" or \"spline\""),
             std::string::npos);
   EXPECT_NE(camera(R"({"keyed": {"1": 1, "3": [1]}})").find("cannot be blended"), std::string::npos);
+  EXPECT_NE(camera(R"({"keyed": {"2": 1, "4": [1]}})").find("cannot be blended"), std::string::npos);  // of 3
   EXPECT_NE(camera(R"({"keyed": {"1": 20, "3": 30, "01": 40}})").find("'1' and '01' are the same frame"),
             std::string::npos);
   EXPECT_NE(camera(R"({"keyed": {"1": 20, "3": 400}})").find("camera.field_of_view"), std::string::npos);

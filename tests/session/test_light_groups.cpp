@@ -158,7 +158,10 @@ TEST(LightGroups, NamesAndRefusals) {
     return std::string();
   };
   scene.lights[1].name = "key-left 2";
-  EXPECT_NE(refusal(scene).find("key_left_2"), std::string::npos) << refusal(scene);
+  scene.lights[1].place = {"balls.json", 7, 3};
+  EXPECT_EQ(
+      refusal(scene).find("balls.json:7:3: light groups: two lights have the same layer \"key_left_2\""), 0u)
+      << refusal(scene);
   scene = two_balls();
   for (const Method method : {Method::direct, Method::volume}) {
     scene.settings.method = method;

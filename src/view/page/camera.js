@@ -22,9 +22,10 @@ export function cameraOf(scene) {
   };
 }
 
-// What turns a camera into values of the scene.
-export function cameraValues(camera) {
-  return {"camera.position": rounded(camera.position), "camera.look_at": rounded(camera.look_at)};
+// What turns a camera into values of the scene: those that have changed.
+export function cameraValues(camera, before) {
+  const changed = ["position", "look_at"].filter((key) => camera[key] !== before[key]);
+  return Object.fromEntries(changed.map((key) => [`camera.${key}`, rounded(camera[key])]));
 }
 
 export function basis(camera) {

@@ -118,7 +118,7 @@ function step(message) {
   ahead.clear();
 }
 
-const turn = (change, stroke) => set(cameraValues(change(state.camera)), stroke);
+const turn = (change, stroke) => set(cameraValues(change(state.camera), state.camera), stroke);
 
 // The room, and with it the sun. from: the lights before.
 function turnLights(from, angle, stroke) {
