@@ -83,7 +83,7 @@ void add_picture_options(CLI::App& app, Options& options) {
   option(options.exposure, "film.exposure", "STOPS")->check(number_check());
   option(options.view, "film.view", "NAME");
   app.add_option("--environment", options.environment,
-                 "a lat-long picture (EXR, HDR) of a room in place of the scene's lights, at exposure 0")
+                 "a lat-long picture (EXR, HDR, PNG) of a room in place of the scene's lights, at exposure 0")
       ->type_name("FILE")
       ->group("Picture");
   option(options.method, "settings.method", "NAME");

@@ -88,24 +88,23 @@ RgbF unshadowed(const EnvironmentLight& light, const Vec3f& normal) {
 template <>
 std::vector<KeyInfo> LightReader<EnvironmentLight>::rows() {
   using enum ValueType;
-  return {
-      {.key = "type", .type = choice, .meaning = "`\"environment\"`: a picture of the room, all around"},
-      {.key = "file",
-       .type = file,
-       .meaning =
-           "a lat-long EXR or HDR picture, twice as wide as high, +y up, +z in its middle; relative to the "
-           "scene file"},
-      {.key = "strength",
-       .type = color,
-       .range = kNonNegative,
-       .default_value = "1",
-       .meaning = "times the picture, whose values are then radiance, W/(mm² sr)"},
-      {.key = "rotation",
-       .type = number,
-       .unit = "degrees",
-       .range = {-360, 360},
-       .default_value = "0",
-       .meaning = "about +y, counterclockwise seen from above"}};
+  return {{.key = "type", .type = choice, .meaning = "`\"environment\"`: a picture of the room, all around"},
+          {.key = "file",
+           .type = file,
+           .meaning = "a lat-long EXR, HDR or PNG picture, twice as wide as high, +y up, +z in its middle; "
+                      "relative to the "
+                      "scene file"},
+          {.key = "strength",
+           .type = color,
+           .range = kNonNegative,
+           .default_value = "1",
+           .meaning = "times the picture, whose values are then radiance, W/(mm² sr)"},
+          {.key = "rotation",
+           .type = number,
+           .unit = "degrees",
+           .range = {-360, 360},
+           .default_value = "0",
+           .meaning = "about +y, counterclockwise seen from above"}};
 }
 
 template <>

@@ -11,6 +11,7 @@
 #include "opaline/lights/environment_picture.h"
 #include "opaline/lights/light.h"
 #include "opaline/lights/light_tree.h"
+#include "opaline/render/direct.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/precompute.h"
 #include "opaline/render/render.h"
@@ -85,7 +86,7 @@ constexpr std::size_t kBytesOfBouncedSample = 600 + 170 + 40;
 // sums.
 constexpr std::size_t kBytesOfWalkedCell = 300, kBytesOfWalkedChannel = 64, kBytesOfWalkSums = 24;
 
-std::string shading_stage(const Settings& settings, bool has_tree) {
+std::string shading_stage(const Settings& settings, const Film& film, bool has_tree) {
   if (settings.method == Method::lambert) return "shading: lambert";
   if (settings.method == Method::hierarchical) return "shading: hierarchical";
   if (settings.method == Method::volume_diffusion && has_tree)
@@ -93,8 +94,9 @@ std::string shading_stage(const Settings& settings, bool has_tree) {
   if (has_cells(settings.method)) return "shading: cells, interpolated";
   if (settings.until_error)
     return fmt::format("shading: direct, until the noise is {:.3g} %", 100 * *settings.until_error);
-  return fmt::format("shading: direct, {} entry samples a pixel",
-                     settings.entry_samples.value_or(kDefaultEntrySamples));
+  const std::size_t wanted = settings.entry_samples.value_or(kDefaultEntrySamples),
+                    pass = entry_samples_per_pass(film);
+  return fmt::format("shading: direct, {} entry samples a pixel", (wanted + pass - 1) / pass * pass);
 }
 
 std::string evaluation_stage(const Settings& settings) {
@@ -191,7 +193,7 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
             ? "bounces: light between things, once, by a ray from each place where light enters"
             : "bounces: light between things, once, gathered at the samples and at 64 x 64 places of the "
               "picture, more in corners");
-  plan.stages.push_back(shading_stage(scene.settings, has_tree));
+  plan.stages.push_back(shading_stage(scene.settings, scene.film, has_tree));
 }
 
 // Measured (world.h): a quick build saves .3 us a triangle and costs 5 ns a ray of the picture, which lie

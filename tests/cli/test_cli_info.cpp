@@ -103,6 +103,13 @@ TEST(CliInfo, ScenesOfTheRepository) {
   }
 }
 
+// Claim: what `direct` draws is said as whole passes draw it. Fails if: what was asked for is said.
+TEST(CliInfo, WholePassesOfDirect) {
+  const SceneFolder folder;
+  const Outcome seven = run_program({"info", folder.scene, "--method", "direct", "--entry-samples", "7"});
+  EXPECT_TRUE(contains(seven.out, "direct, 16 entry samples a pixel")) << seven.out;
+}
+
 // Claim: a plan that nobody can read is a failure. Source: commands.h. Fails if: ferror is not looked at.
 TEST(CliInfo, FullStandardOutput) {
   const SceneFolder folder;
