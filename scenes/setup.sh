@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Sourced by scenes/demo and tests/run: functions that take a Debian 12 from nothing to a built program and the
-# demo's mesh. What is already there costs no time. Exit codes are the program's: 2 when the user has something
+# demo's mesh and room. What is already there costs no time. Exit codes are the program's: 2 when the user has something
 # to do first, 3 when a step failed.
 set -euo pipefail
 
@@ -136,8 +136,11 @@ fetch_blender() {
 }
 
 rooms=./usr/share/blender/datafiles/studiolights/world
-fetch_rooms() {
+fetch_interior() {
   fetch blender-data "31 MB" "$rooms/interior.exr" 4f6810b182ade346eac6964bf02405adf430c321b8853a644316af4e05d0fdb5
+}
+
+fetch_sunset() {
   fetch blender-data "31 MB" "$rooms/sunset.exr" a164f20b86bc43ba4afd66c988a20a9dd5f1a0a5d8e960aed57a33f78119c168
 }
 
