@@ -225,7 +225,7 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
     print_warning(log, fmt::format("an error of {:.3g} % cannot be reached with {}: {:.2g} % is predicted",
                                    100 * target,
                                    double(chosen.samples) < .9 * double(settings.max_samples)
-                                       ? "half a billion shadow rays to a light"
+                                       ? "two billion shadow rays to a light"
                                        : fmt::format("settings.max_samples of {}", settings.max_samples),
                                    100 * chosen.predicted));
 }

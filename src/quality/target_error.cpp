@@ -22,8 +22,7 @@ constexpr double kLeastGrowth = 2.5, kBeyond = 1.25, kMostGrowth = 4;
 // Shadow rays grow where their noise alone is more than this share of the target.
 constexpr double kMostNoise = 0.5;
 constexpr int kMostLightSamples = 65536;
-constexpr double kMostShadowRays =
-    0x1p31;  // of all samples to a light: minutes. What asks for more is not reached
+constexpr double kMostShadowRays = 0x1p31;  // of all samples to a light: some minutes; more is not reached
 constexpr int kMostSteps = 12;
 // Of the small pictures: a mean needs no more.
 constexpr double kProbePixels = 64 * 64;
