@@ -152,7 +152,8 @@ class ObjImporter {
       } else if (is_bump(keyword) && !material.empty() && has_uvs_) {
         take_bump(material, keyword, line, path);
       } else if (is_lost(keyword, line)) {
-        lost_[material].insert(keyword);
+        const bool is_laid = !has_uvs_ && (keyword == "map_Kd" || is_bump(keyword));
+        lost_[material].insert(keyword + (is_laid ? " (the mesh has no UVs)" : ""));
       }
     });
   }

@@ -148,9 +148,7 @@ int verdict(const BenchArguments& arguments, const std::vector<WatchedRung>& bef
   return code;
 }
 
-}  // namespace
-
-int bench_command(const BenchArguments& arguments) {
+int run_bench(const BenchArguments& arguments) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not cost the CSV
   const std::vector<WatchedRung> before = read_before(arguments);
   if (!arguments.csv.empty()) AtomicFile(arguments.csv);  // what cannot be written is said before the work
@@ -173,6 +171,23 @@ int bench_command(const BenchArguments& arguments) {
   write_report(arguments, folder, report);
   print_bench(report);
   return verdict(arguments, before, report);
+}
+
+}  // namespace
+
+int bench_command(const BenchArguments& arguments) {
+  try {
+    return run_bench(arguments);
+  } catch (const Error& stopped) {
+    if (stopped.kind != ErrorKind::interrupted) throw;
+    const bool keeps_references = !arguments.csv.empty() || !arguments.reference_dir.empty();
+    throw Error(ErrorKind::interrupted, {}, 0, 0,
+                !arguments.report.empty()
+                    ? "interrupted; references and runs so far are kept, and the same command goes on"
+                : keeps_references
+                    ? "interrupted; references so far are kept, and the same command goes on with them"
+                    : "interrupted");
+  }
 }
 
 }  // namespace opaline

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "benchmark/machine.h"
+#include "benchmark/page.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 
@@ -74,7 +75,7 @@ BenchFolder::BenchFolder(const std::string& report) : path_(report), temporary_(
   }
   make_folder(file("pictures"));
   make_folder(file("runs"));
-  AtomicFile(file("index.html"));  // what cannot be written at the end is said before the work
+  check_page_file(file("index.html"));  // what cannot be written at the end is said before the work
   AtomicFile(file("runs/check"));
   AtomicFile(file("pictures/check"));
 }

@@ -4,9 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <string>
 
 #include "benchmark/figures.h"
 #include "benchmark/html.h"
+#include "opaline/core/atomic_file.h"
+#include "opaline/core/error.h"
 #include "opaline/image/error_picture.h"
 
 namespace opaline {
@@ -155,6 +159,16 @@ std::vector<std::string> to_charts(const BenchReport& report) {
     charts.push_back(scene.series.empty() ? "" : chart_svg(scene));
   }
   return charts;
+}
+
+void check_page_file(const std::string& path) {
+  const AtomicFile checked(path);
+  constexpr std::streamsize kHead = 4096;  // has the title
+  std::ifstream file(path, std::ios::binary);
+  std::string head(kHead, ' ');
+  file.read(head.data(), kHead);
+  if (file.gcount() > 0 && head.find("opaline") == std::string::npos)
+    throw bad_file(path, "is there already and is no page of opaline's", "another folder");
 }
 
 std::string to_page(const BenchReport& report) {

@@ -361,11 +361,25 @@ Command parse_arguments(int argc, const char* const* argv) {
   return command_of(called.front()->get_name(), std::move(parsed));
 }
 
+bool asks_for_json(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--json" || word == "--log=json" ||
+        (word == "json" && argv[i - 1] == std::string_view("--log")))
+      return true;
+  }
+  return false;
+}
+
 Error placed_at_option(const Error& failure, int argc, const char* const* argv) {
   constexpr std::string_view set = "--set ";
   if (!failure.file.starts_with(set)) return failure;
-  const std::string given = failure.file.substr(set.size());
-  const std::string_view option = option_of_key(std::string_view(given).substr(0, given.find('=')));
+  const std::string given = failure.file.substr(set.size()), name = given.substr(0, given.find('='));
+  if (const std::string_view key = key_of_option("--" + name);
+      !key.empty() && failure.message.find("did you mean") == std::string::npos)
+    return Error(failure.kind, failure.file, 0, 0,
+                 fmt::format("{} (did you mean '{}'?)", failure.message, key));
+  const std::string_view option = option_of_key(name);
   const bool is_set = std::any_of(argv + 1, argv + argc, [&](const char* word) {
     return printable(word) == given || printable(word) == "--set=" + given;
   });

@@ -125,6 +125,9 @@ OutputFormat output_format(const std::string& path);  ///< by extension, upper o
 /// error Error{bad_input}: an unknown option, a value that is not one, an output that is neither EXR nor PNG
 Command parse_arguments(int argc, const char* const* argv);
 
+/// Whether the words ask for a log of JSON, whatever else is wrong with them.
+bool asks_for_json(int argc, const char* const* argv);
+
 /// A failure whose place is "--set KEY=VALUE", where the command line has an option in its stead: its place is the option.
 Error placed_at_option(const Error& failure, int argc, const char* const* argv);
 

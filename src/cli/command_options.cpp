@@ -42,23 +42,32 @@ CLI::Option* add_key(CLI::App& app, T& value, std::string_view path) {
   return option;
 }
 
+struct KeyOption {
+  std::string_view key, option;
+};
+
+constexpr KeyOption kKeyOptions[] = {{"film.samples_per_pixel", "--spp"},
+                                     {"film.resolution", "--resolution"},
+                                     {"film.crop", "--crop"},
+                                     {"film.exposure", "--exposure"},
+                                     {"film.view", "--view"},
+                                     {"settings.method", "--method"},
+                                     {"settings.evaluator", "--evaluator"},
+                                     {"settings.entry_samples", "--entry-samples"},
+                                     {"settings.until_error", "--until-error"},
+                                     {"settings.seed", "--seed"},
+                                     {"lights", "--environment"}};
+
 }  // namespace
 
 std::string_view option_of_key(std::string_view key) {
-  constexpr std::pair<std::string_view, std::string_view> options[] = {
-      {"film.samples_per_pixel", "--spp"},
-      {"film.resolution", "--resolution"},
-      {"film.crop", "--crop"},
-      {"film.exposure", "--exposure"},
-      {"film.view", "--view"},
-      {"settings.method", "--method"},
-      {"settings.evaluator", "--evaluator"},
-      {"settings.entry_samples", "--entry-samples"},
-      {"settings.until_error", "--until-error"},
-      {"settings.seed", "--seed"},
-      {"lights", "--environment"}};
-  const auto found = std::ranges::find(options, key, &std::pair<std::string_view, std::string_view>::first);
-  return found == std::end(options) ? std::string_view() : found->second;
+  const auto found = std::ranges::find(kKeyOptions, key, &KeyOption::key);
+  return found == std::end(kKeyOptions) ? std::string_view() : found->option;
+}
+
+std::string_view key_of_option(std::string_view option) {
+  const auto found = std::ranges::find(kKeyOptions, option, &KeyOption::option);
+  return found == std::end(kKeyOptions) ? std::string_view() : found->key;
 }
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {

@@ -12,6 +12,7 @@
 #include "opaline/core/units.h"
 #include "opaline/image/error_picture.h"
 #include "opaline/image/flip.h"
+#include "opaline/scene/nearest_name.h"
 
 namespace opaline {
 namespace {
@@ -27,9 +28,12 @@ struct Picture {
 Picture load(const std::string& path, const std::string& layer) {
   Picture picture{path, read_image(path), {}, {}};
   picture.layer = extract_layer(picture.frame, layer);
-  if (picture.layer.channels.empty())
-    throw bad_file(path, "no such layer", fmt::format("one of {}", fmt::join(layers_of(picture.frame), "; ")),
-                   layer.empty() ? "R,G,B" : layer);
+  if (picture.layer.channels.empty()) {
+    const std::vector<std::string> layers = layers_of(picture.frame);
+    const std::vector<std::string_view> names(layers.begin(), layers.end());
+    throw bad_file(path, "no such layer" + did_you_mean(layer, names),
+                   fmt::format("one of {}", fmt::join(layers, "; ")), layer.empty() ? "R,G,B" : layer);
+  }
   picture.object = object_pixels(picture.frame);
   picture.frame.pixels = {};
   return picture;

@@ -63,6 +63,12 @@ std::vector<int> parse_frames(const std::string& text) {
   return std::vector<int>(frames.begin(), frames.end());
 }
 
+std::string frames_text(const std::vector<int>& frames) {
+  const bool is_range = frames.size() > 1 && std::size_t(frames.back() - frames.front()) == frames.size() - 1;
+  return is_range ? fmt::format("{}-{}", frames.front(), frames.back())
+                  : fmt::format("{}", fmt::join(frames, ","));
+}
+
 void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_far,
                 const std::function<bool(int)>& work) {
   using Clock = std::chrono::steady_clock;

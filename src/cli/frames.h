@@ -16,6 +16,9 @@ namespace opaline {
 /// error Error{bad_input}: it is none of these, or more than 100000
 std::vector<int> parse_frames(const std::string& text);
 
+/// What parse_frames makes the frames of.
+std::string frames_text(const std::vector<int>& frames);
+
 /// Calls work(frame) for each, which says whether it rendered the frame or found it there; what goes wrong
 /// with a frame is printed, naming it, and the others go on. `so_far` is kept up to date. At the end a line
 /// says what became of them all.

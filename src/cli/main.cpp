@@ -55,6 +55,8 @@ bool is_for_nobody(const opaline::Command& command) {
 int main(int argc, char** argv) {
   opaline::prepare_process();
   opaline::Log log;
+  if (opaline::asks_for_json(argc, argv))
+    log.format = opaline::LogFormat::json;  // of mistakes in the options, too
   try {
     const opaline::Command command = opaline::parse_arguments(argc, argv);
     log = log_of(command);

@@ -172,8 +172,9 @@ CLI::Validator bytes_of() {
   return CLI::Validator(
       [bytes](std::string& text) {
         std::string number = text;
-        // CLI11 would let one below 0 wrap.
-        if (text.find('-') != std::string::npos || !converts(bytes, number))
+        // CLI11 would let one below 0 wrap; and who writes 5 means GB.
+        const bool has_unit = text == "0" || (!text.empty() && (text.back() < '0' || text.back() > '9'));
+        if (text.find('-') != std::string::npos || !has_unit || !converts(bytes, number))
           return "expected a size such as 500MB or 8GB, got " + text;
         text = number;
         return std::string();

@@ -34,7 +34,7 @@ CLI::Validator positive_share_check();
 CLI::Validator seconds_of();
 /// "2mm", "500um", ".5cm", "1m" or millimetres alone, to millimetres.
 CLI::Validator millimetres_of();
-/// "500MB", "8GB" or bytes alone, to bytes; kB is 1000.
+/// "500MB", "8GB" or 0, to bytes; kB is 1000.
 CLI::Validator bytes_of();
 /// Finite.
 CLI::Validator number_check();

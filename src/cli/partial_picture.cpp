@@ -40,6 +40,7 @@ void PartialPicture::show(Image picture, const char* stage) {
       viewer_->update(name_, shown_, {part.x0, y, part.x1, std::min(y + kRows, part.y1)});
   }
   write_files(shown_);
+  is_written_ = !files_.empty();
 }
 
 void PartialPicture::show_tile(const Image& picture, const Rectangle& done) {

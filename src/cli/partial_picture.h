@@ -29,6 +29,9 @@ class PartialPicture {
   /// in    picture: R G B A, of the film's size; stage: of what, for the files' metadata
   void show(Image picture, const char* stage);
 
+  /// Whether the files hold a picture of it.
+  bool is_written() const { return is_written_; }
+
   /// Pixels that are as they will be, in the place of coarse ones; from any thread.
   /// in    picture: its first channels are R G B A
   void show_tile(const Image& picture, const Rectangle& done);
@@ -39,6 +42,7 @@ class PartialPicture {
   void write_files(const Image& picture);
 
   std::vector<std::string> files_;
+  bool is_written_ = false;
   std::string name_;
   Film film_;
   Log log_;

@@ -230,6 +230,12 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
                                    100 * chosen.predicted));
 }
 
+void print_again_by(const Log& log, const std::string& command) {
+  if (log.quiet) return;
+  print_event(log, "again_by", {{"command", command}});
+  if (log.format == LogFormat::text) print_row("again by", command);
+}
+
 void print_volume_target(const Log& log, double target, const TargetError& chosen, const Settings& settings) {
   if (!log.quiet)
     print_event(log, "target",

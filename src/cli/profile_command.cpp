@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "benchmark/machine.h"
+#include "benchmark/page.h"
 #include "benchmark/profile_page.h"
 #include "cli/commands.h"
 #include "cli/progress.h"
@@ -81,7 +82,7 @@ void prepare_folder(const std::string& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure) throw run_failed(folder, "cannot make the folder: " + failure.message());
-  AtomicFile(folder + "/index.html");
+  check_page_file(folder + "/index.html");
 }
 
 /// The page last: what it links to is there then.

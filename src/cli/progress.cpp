@@ -93,7 +93,7 @@ std::string progress_line(const ProgressState& state, std::size_t columns) {
   const std::size_t room = std::max<std::size_t>(columns, 1) - 1;
   const bool range = state.frames.has_value();
   std::string label = range ? fmt::format("frame {} of {}  ", state.frames->finished + 1, state.frames->count)
-                            : fmt::format("{:<12}", state.stage);
+                            : fmt::format("{:<11} ", state.stage);
   std::string text = stage_text(state);
   if (range)
     text = frames_text(*state.frames) + "  (" + state.stage +

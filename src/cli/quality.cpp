@@ -209,8 +209,7 @@ std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArg
   } catch (const Error& stopped) {
     if (stopped.kind != ErrorKind::interrupted) throw;
     throw Error(ErrorKind::interrupted, {}, 0, 0,
-                "interrupted while the error was measured, before the picture was written; without --verify "
-                "it is not measured");
+                "interrupted while the error was measured; the picture is written");
   }
 }
 

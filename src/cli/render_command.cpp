@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
 #include <csignal>
@@ -235,11 +236,9 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
 }
 
 /// The picture without its metadata, with warnings about it.
+/// partial: null, or shows what is done
 Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Session& session,
-                     const Shared& shared, bool is_frame) {
-  std::optional<PartialPicture> partial;
-  if (arguments.write_partial || shared.viewer != nullptr)
-    show_first_light(stages, session, partial.emplace(arguments, session.scene().film, shared.viewer));
+                     const Shared& shared, PartialPicture* partial, bool is_frame) {
   const std::size_t noted = session.costs().size();
   prepare(stages, arguments, session);
   for (std::size_t i = noted; i < session.costs().size(); ++i) stages.note(session.costs()[i]);
@@ -248,15 +247,31 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
                     shared.cache != nullptr ? shared.cache->warning() : "");
   for (const Body& body : session.bodies())
     for (const std::string& text : walk_warnings(body)) print_warning(arguments.log, text);
-  if (partial) show_refinement(stages, session, *partial);
-  Shading shading = shade(stages, arguments, session, partial ? &*partial : nullptr);
-  partial.reset();
+  if (partial != nullptr) show_refinement(stages, session, *partial);
+  Shading shading = shade(stages, arguments, session, partial);
   if (shading.picture.non_finite > 0)
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
   for (const std::string& text : picture_warnings(session.scene(), session.world(), shading.picture.image))
     print_warning(arguments.log, text);
   return shading;
+}
+
+/// The same, shown while it is made where that is asked for. Ctrl-C says what is left.
+Shading make_shown_picture(StageRunner& stages, const RenderArguments& arguments, Session& session,
+                           const Shared& shared, bool is_frame) {
+  if (!arguments.write_partial && shared.viewer == nullptr)
+    return make_picture(stages, arguments, session, shared, nullptr, is_frame);
+  PartialPicture partial(arguments, session.scene().film, shared.viewer);
+  try {
+    show_first_light(stages, session, partial);
+    return make_picture(stages, arguments, session, shared, &partial, is_frame);
+  } catch (const Error& stopped) {
+    if (stopped.kind != ErrorKind::interrupted || !partial.is_written()) throw;
+    throw Error(
+        ErrorKind::interrupted, {}, 0, 0,
+        fmt::format("{}; what was done is in {}", stopped.message, fmt::join(arguments.outputs, ", ")));
+  }
 }
 
 /// Writes the outputs, and says what they are and what they cost.
@@ -291,8 +306,15 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   }
   const Scene& scene = session.scene();
   KnownErrors errors = plan(stages, arguments, session);
-  Shading shading = make_picture(stages, arguments, session, shared, frame.has_value());
-  errors.measured = verify_picture(stages, arguments, session, errors, shading.picture);
+  Shading shading = make_shown_picture(stages, arguments, session, shared, frame.has_value());
+  std::optional<Error> stopped;  // by Ctrl-C while the error was measured; the picture is there
+  try {
+    errors.measured = verify_picture(stages, arguments, session, errors, shading.picture);
+  } catch (const Error& failure) {
+    if (failure.kind != ErrorKind::interrupted) throw;
+    stopped = failure;
+    stages.monitor().cancelled = false;
+  }
   const RenderArguments repeated = repeating(arguments, session, shading);
   if (arguments.time_budget) hash = scene_hash(repeated.scene, repeated.overrides, scene);
   Image& image = shading.picture.image;
@@ -304,6 +326,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   add_asked_layers(stages, arguments.layers, session, image);
   if (arguments.timings_in_metadata) image.metadata.push_back(timings_metadata(stages.costs()));
   finish(stages, arguments, repeated, session, shading, errors);
+  if (stopped) throw *stopped;
   return true;
 }
 
@@ -331,6 +354,8 @@ void render_command(const RenderArguments& arguments) {
   }
   RenderArguments settled =
       arguments.target_error ? settled_for_frames(arguments, cache ? &*cache : nullptr) : arguments;
+  if (arguments.target_error)
+    print_again_by(arguments.log, command_again(settled) + " --frames " + frames_text(arguments.frames));
   anchor_session(session, settled.scene, settled.overrides);
   FramesSoFar so_far;
   settled.log.frames = &so_far;

@@ -32,6 +32,9 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
 /// The same for volume_diffusion.
 void print_volume_target(const Log& log, double target, const TargetError& chosen, const Settings& settings);
 
+/// The command that makes the same frames without choosing.
+void print_again_by(const Log& log, const std::string& command);
+
 /// What was chosen for --time-budget, and a warning where that is too little; `before`: CPU before the
 /// choice, s.
 void print_budget(const Log& log, double budget, double before, const TimeBudget& chosen,

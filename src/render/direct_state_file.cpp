@@ -5,6 +5,7 @@
 
 #include "opaline/core/error.h"
 #include "opaline/render/direct.h"
+#include "render/sums_file.h"
 #include "render/tile_renderer.h"
 
 namespace opaline {
@@ -56,7 +57,7 @@ DirectState read_direct_state(const std::string& path, const Scene& scene, const
   DirectState state;
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return state;
-  const Image image = read_image(path), expected = empty_state_image(scene);
+  const Image image = read_sums_file(path), expected = empty_state_image(scene);
   const std::string passes = text_of(image, kPasses);
   std::vector<float> sums = values_in_order(image, expected.channels);
   const auto [end, error] = std::from_chars(passes.data(), passes.data() + passes.size(), state.passes);

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/lights/light.h"
 
 namespace opaline {
@@ -78,6 +79,18 @@ bool is_inside(const Image& image, const Vec3d& camera) {
   return 2 * behind > seen;
 }
 
+/// Where the camera sees what lies that way, of the whole picture. towards: in front of it
+std::string pixel_text(const Scene& scene, const Vec3d& towards) {
+  const Camera& camera = scene.camera;
+  const Vec3d forward = normalized(camera.look_at - camera.position),
+              right = normalized(cross(forward, camera.up)), up = cross(right, forward);
+  const auto [width, height] = scene.film.resolution;
+  const double scale =
+      height / 2. / (std::tan(camera.field_of_view * std::numbers::pi / 360) * dot(towards, forward));
+  return fmt::format("{:.0f},{:.0f} of {} x {}", width / 2. + scale * dot(towards, right),
+                     height / 2. - scale * dot(towards, up), width, height);
+}
+
 std::string nothing_in_view(const Scene& scene, const World& world) {
   const Bounds box = box_of(world);
   const Camera& camera = scene.camera;
@@ -88,13 +101,15 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
       radius / distance / std::tan(camera.field_of_view * std::numbers::pi / 360) * scene.film.resolution[1];
   const double degrees = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
   std::string where = fmt::format("{:.0f} degrees beside the middle of the view", degrees);
-  if (distance <= radius)
+  if (scene.film.crop && degrees < 90)
+    where = "around the pixel " + pixel_text(scene, towards);
+  else if (distance <= radius)
     where = "around the camera";
   else if (degrees > 90)
     where = "behind the camera";
   else if (pixels < 2)
     where = fmt::format("so far away that all of them are {:.2g} pixels wide", pixels);
-  else if (degrees < camera.field_of_view / 2 && !scene.film.crop)
+  else if (degrees < camera.field_of_view / 2)
     where = "in the view: does a lamp stand in front of them?";
   const std::string look = "--set camera.look_at=" + point_text(middle, scene.mm_per_unit);
   std::string advice = look + " looks at their middle";
@@ -149,15 +164,31 @@ std::string exposure_text(const Scene& scene, double brightest) {
   return fmt::format("; --exposure {:g} shows it in a PNG", stops);
 }
 
+/// Of which the plan has said so.
+bool has_black_medium(const Scene& scene) {
+  return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
+    return shape.medium && !make_diffuse_profile(scene.media[*shape.medium]).translucent;
+  });
+}
+
 std::string too_dark(const Scene& scene, const World& world, double brightest) {
-  std::string text;
+  const std::vector<std::string> causes = weak_lights(scene, world);
+  std::string text = "black";
   if (brightest > 0)
     text = fmt::format("almost black: what is seen is {:.2g} of white{}{}", brightest,
                        exposure_text(scene, brightest), unit_text(scene, brightest));
-  else
-    text = "black: no light reaches what is seen; is every light behind it, inside a shape or in its shadow?";
-  for (const std::string& cause : weak_lights(scene, world)) text += "; " + cause;
+  else if (causes.empty() && lamps_turned_away(scene, world).empty() && !has_black_medium(scene))
+    text += ": no light reaches what is seen; is every light behind it, inside a shape or in its shadow?";
+  for (const std::string& cause : causes) text += "; " + cause;
   return "the picture is " + text;
+}
+
+/// What to do about a lamp that turns its back.
+std::string way_to_turn(const Scene& scene, const World& world, const Light& light, const Vec3d& center) {
+  if (!is_delta(light)) return "it shines where u x v points, so exchange u and v";
+  const Bounds box = box_of(world);
+  return fmt::format("--set lights.{}.direction={} points it at their middle", light.name,
+                     point_text(.5 * (box.low + box.high) - center, scene.mm_per_unit));
 }
 
 }  // namespace
@@ -195,10 +226,8 @@ std::vector<std::string> lamps_turned_away(const Scene& scene, const World& worl
     });
     if (is_behind)
       texts.push_back(
-          text_at(light.place,
-                  fmt::format("the light {} turns its back to every shape: it shines where u x v points, "
-                              "so exchange u and v",
-                              light.name)));
+          text_at(light.place, fmt::format("the light {} turns its back to every shape: {}", light.name,
+                                           way_to_turn(scene, world, light, *lamp.center))));
   }
   return texts;
 }

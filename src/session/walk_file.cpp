@@ -10,6 +10,7 @@
 
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
+#include "render/sums_file.h"
 
 namespace opaline {
 namespace {
@@ -95,7 +96,7 @@ WalkFile read_walks(const std::string& path) {
   WalkFile walks;
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return walks;
-  const Image image = read_image(path);
+  const Image image = read_sums_file(path);
   const auto text =
       std::ranges::find_if(image.metadata, [](const auto& entry) { return entry.first == kSources; });
   if (text == image.metadata.end()) throw not_walks(path);

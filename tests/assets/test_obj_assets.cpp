@@ -47,7 +47,7 @@ TEST(ObjAssets, EachMaterialIsAShape) {
   }
   EXPECT_EQ(scene.mm_per_unit, 1);
   const ImportedAsset import = import_asset(folder.obj, "a.obj");
-  EXPECT_TRUE(has(import.not_carried, "material 'red': map_Kd"));
+  EXPECT_TRUE(has(import.not_carried, "material 'red': map_Kd (the mesh has no UVs)"));
   EXPECT_TRUE(has(import.not_carried, "material 'no such': no library has it; taken as grey"));
   EXPECT_EQ(import.not_carried.size(), 2u);
 }

@@ -2,6 +2,7 @@
 // Runs that end early: what is said, the exit code, and that the folder is as it was.
 #include <gtest/gtest.h>
 
+#include "opaline/image/image.h"
 #include "run_program.h"
 
 namespace opaline {
@@ -44,6 +45,9 @@ TEST(CliFailures, ErrorsAsEvents) {
   EXPECT_EQ(error["exit_code"], 2);
   EXPECT_EQ(error["file"], folder.scene);
   EXPECT_EQ(error["line"], 2);
+  const Outcome option = run_program({"render", folder.scene, "--log", "json", "--spps", "4"});
+  EXPECT_TRUE(option.err.empty()) << option.err;
+  EXPECT_TRUE(contains(event_of(events_of(option.out), "error")["message"].get<std::string>(), "'--spp'"));
 }
 
 // Claim: an output that cannot be written is said before the work, exit 3: the scene is not even read.
@@ -58,6 +62,8 @@ TEST(CliFailures, UnwritableOutputIsSaidAtOnce) {
     EXPECT_TRUE(outcome.err.starts_with("opaline: error: " + path)) << outcome.err;
     EXPECT_TRUE(outcome.out.empty());
   }
+  EXPECT_TRUE(contains(run_program({"render", folder.scene, "-o", "/proc/a.png"}).err,
+                       "cannot write in the folder '/proc'"));
   EXPECT_TRUE(
       contains(run_program({"render", folder.scene, "-o", "none/a.png"}).err, "there is no folder 'none'"));
   EXPECT_EQ(folder.entries(), 2u);
@@ -138,8 +144,8 @@ TEST(CliFailures, InterruptKeepsTheOldFile) {
   }
 }
 
-// Claim: Ctrl-C while the error is measured ends the run soon, says that the picture is not written yet and how to have it
-// next time; the old one stays. Fails if: the measurement does not look at its monitor, or it reads as any other stop.
+// Claim: Ctrl-C while the error is measured ends the run soon, and the picture, which is there, is written. Fails if: the
+// measurement does not look at its monitor, or the picture is lost.
 TEST(CliFailures, InterruptWhileVerifying) {
   const SceneFolder folder;
   const std::string out = folder.file("a.exr");
@@ -152,8 +158,8 @@ TEST(CliFailures, InterruptWhileVerifying) {
   EXPECT_EQ(outcome.exit_code, 130) << "signal " << outcome.signal;
   const nlohmann::json error = event_of(events_of(outcome.out), "error");
   EXPECT_EQ(error["kind"], "interrupted");
-  EXPECT_TRUE(contains(error["message"].get<std::string>(), "without --verify")) << error.dump();
-  EXPECT_EQ(bytes_of(out), "old");
+  EXPECT_TRUE(contains(error["message"].get<std::string>(), "the picture is written")) << error.dump();
+  EXPECT_EQ(read_image(out).width, 16);
   EXPECT_EQ(folder.entries(), 2u);
 }
 

@@ -94,6 +94,10 @@ TEST(CliFrames, TargetErrorIsChosenOnce) {
   ASSERT_EQ(shot.render("6", "one", target).exit_code, 0);
   EXPECT_TRUE(bytes_of(shot.picture(6, "one")) == bytes_of(shot.picture(6, "all")));
   EXPECT_EQ(command_of(shot.picture(6, "all")), command);
+  const std::string again_by = event_of(events_of(all.out), "again_by")["command"];
+  EXPECT_TRUE(again_by.ends_with(" --frames 1-6")) << again_by;
+  ASSERT_EQ(std::system((again_by + " --quiet").c_str()), 0);
+  EXPECT_TRUE(bytes_of(shot.picture(6, "one")) == bytes_of(shot.picture(6, "all")));
   const Outcome again = shot.render("1-6", "all", target);
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_TRUE(contains(again.out, R"("event":"skipped")")) << again.out;

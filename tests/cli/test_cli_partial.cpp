@@ -115,7 +115,9 @@ TEST(CliPartial, Interrupted) {
     Child child(ball.command(words));
     ASSERT_TRUE(child.prints(ended(partial ? "first light" : "rays")));
     child.send(SIGINT);
-    EXPECT_EQ(child.wait().exit_code, 130);
+    const Outcome outcome = child.wait();
+    EXPECT_EQ(outcome.exit_code, 130);
+    EXPECT_EQ(contains(outcome.out, "; what was done is in " + ball.exr), partial) << outcome.out;
     EXPECT_EQ(bytes_of(ball.exr) == "old", !partial);
     EXPECT_EQ(bytes_of(ball.png) == "old", !partial);
   }

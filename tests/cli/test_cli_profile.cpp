@@ -159,16 +159,20 @@ TEST(CliProfile, Mistakes) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-// Claim: Ctrl-C ends the walks with exit code 130 and leaves the old report. Source: the help of profile. Fails if: the
+// Claim: Ctrl-C ends the walks with exit code 130 and leaves the old report; another's page is not written over. Source: the help of profile. Fails if: the
 // walks do not look at the monitor, or the page is opened for writing at the start.
 TEST(CliProfile, InterruptLeavesTheOldReport) {
   const ScratchFolder folder;
-  put_bytes(folder.file("index.html"), "old");
+  put_bytes(folder.file("index.html"), "mine");
+  const Outcome refused = run_program({"profile", "spectralon", "-o", folder.path.string()});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(contains(refused.err, "is no page of opaline's")) << refused.err;
+  put_bytes(folder.file("index.html"), "old, of opaline");
   Child child({"profile", "spectralon", "--walks", "100000000", "-o", folder.path.string()});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   child.send(SIGINT);
   EXPECT_EQ(child.wait(60).exit_code, 130);
-  EXPECT_EQ(bytes_of(folder.file("index.html")), "old");
+  EXPECT_EQ(bytes_of(folder.file("index.html")), "old, of opaline");
   EXPECT_EQ(folder.entries(), 1u);
 }
 

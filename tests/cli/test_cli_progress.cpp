@@ -145,6 +145,18 @@ TEST(CliProgress, OneLineForAllFrames) {
   EXPECT_TRUE(contains(text, "frame 3 of 4  [############............] 50 %, "));
 }
 
+// Claim: a blank stands behind the longest name of a stage, and a bench shows how far a reference is. Source: progress.h.
+// Fails if: a name of more than eleven letters runs into its bar, or a child's progress goes nowhere.
+TEST(CliProgress, ProfilesAndReferences) {
+  if (!Terminal::is_to_be_had()) GTEST_SKIP() << "no pseudo terminals here";
+  const SceneFolder folder;
+  Terminal profile({"profile", "spectralon", "--walks", "100000000"}, 80);
+  EXPECT_TRUE(contains(profile.read_until("diffuse [", 20), "walks R, diffuse ["));
+  Terminal bench(
+      {"bench", folder.scene, "--csv", folder.file("a.csv"), "--quick", "--reference-error", "0.01%"}, 80);
+  EXPECT_TRUE(contains(bench.read_until("\x1b[Kshading ", 20), "%"));
+}
+
 // Claim: while settings are chosen the progress tells so, with what is being tried, and no share of it: how many
 // trials there will be is not known. Source: progress.h. Fails if: a trial's own stages stand in place of the search
 // ("shading 99 %").

@@ -185,14 +185,20 @@ TEST(CliReport, InterruptedGoesOn) {
   const std::vector<std::string> line =
       report_line(folder, {"--set", "shapes.ball={\"sphere\": {\"radius\": 10}}", "--repeats", "4"});
   fs::create_directories(folder.path / "report");
-  put_bytes(folder.file("report/index.html"), "old");
+  put_bytes(folder.file("report/index.html"), "mine");
+  EXPECT_TRUE(contains(run_program(line).err, "is no page of opaline's"));
+  put_bytes(folder.file("report/index.html"), "old, of opaline");
   {
     Child bench(line);
     ASSERT_TRUE(bench.complains("direct entry_samples=16:"));
     bench.send(SIGINT);
-    EXPECT_EQ(bench.wait().exit_code, 130);
+    const Outcome stopped = bench.wait();
+    EXPECT_EQ(stopped.exit_code, 130);
+    EXPECT_TRUE(contains(stopped.err,
+                         "interrupted; references and runs so far are kept, and the same command goes on"))
+        << stopped.err;
   }
-  EXPECT_EQ(bytes_of(folder.file("report/index.html")), "old");
+  EXPECT_EQ(bytes_of(folder.file("report/index.html")), "old, of opaline");
   EXPECT_FALSE(fs::exists(folder.path / "report/results.csv"));
   EXPECT_TRUE(nlohmann::json::parse(bytes_of(record(folder, "lambert-round1"))).contains("done"));
   const Outcome outcome = run_program(line);

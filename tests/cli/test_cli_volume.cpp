@@ -80,7 +80,10 @@ TEST(CliVolume, SumsOfAnotherSceneAreAnError) {
   }
   EXPECT_TRUE(bytes_of(sums) == before);
   put_bytes(sums, before.substr(0, before.size() / 2));
-  EXPECT_EQ(run({}).exit_code, 2);
+  const Outcome damaged = run({});
+  EXPECT_EQ(damaged.exit_code, 2);
+  EXPECT_TRUE(contains(damaged.err, sums + ": holds no sums to go on from: ")) << damaged.err;
+  EXPECT_TRUE(contains(damaged.err, "or a new file name")) << damaged.err;
   ASSERT_EQ(run_program({"render", folder.scene, "-o", sums, "--quiet"}).exit_code, 0);  // a picture
   const Outcome picture = run({});
   EXPECT_EQ(picture.exit_code, 2);

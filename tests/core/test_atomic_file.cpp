@@ -84,7 +84,7 @@ TEST(AtomicFile, UnwritableIsSaidAtOnce) {
   const struct {
     std::string path, reason;
   } lines[] = {
-      {folder.file("missing/a.exr"), "No such file or directory"},
+      {folder.file("missing/a.exr"), "there is no folder"},
       {folder.file("plain/a.exr"), "Not a directory"},
       {folder.path.string(), "it is a folder"},
       {folder.path.string() + "/", "not a file name"},

@@ -48,7 +48,7 @@ TEST(PictureWarnings, GoodScenesHaveNone) {
 }
 
 // Claim: where no shape is seen, the words say where the shapes are, in scene units, and how to look at them:
-// behind, beside, too small for a pixel, or outside of the crop. By hand: the ball is 100 mm along -z from
+// behind, beside, too small for a pixel, or outside of the crop, and at which pixel. By hand: the ball is 100 mm along -z from
 // the camera; seen at 90 degrees from its side; 20 mm at 1e7 mm are 2e-4 pixels of 32 under 40 degrees, and
 // fill them from sqrt(3) 10 mm / sin 20 degrees. Fails if: lengths are printed in mm, or a crop beside the ball is taken for a bad camera.
 TEST(PictureWarnings, NothingInView) {
@@ -66,7 +66,9 @@ TEST(PictureWarnings, NothingInView) {
                  {"nothing is in view", "pixels wide", "--set camera.position=[0,0,50.64] shows them"});
   scene = lit_ball();
   scene.film.crop = {{0, 0, 4, 4}};
-  expect_warning(scene, {"nothing is in view of the crop"});
+  expect_warning(scene, {"nothing is in view of the crop", "around the pixel 16,16 of 32 x 32"});
+  scene.camera.look_at = {36.397, 0, 0};  // 20 degrees beside the ball, which is half the view
+  expect_warning(scene, {"around the pixel 0,16 of 32 x 32"});
   scene = lit_ball();
   scene.lights.push_back({"lamp", SphereLight{{0, 0, 70}, 15, Rgb(5)}});
   expect_warning(scene, {"nothing is in view", "a lamp stand in front"});
@@ -94,6 +96,11 @@ TEST(PictureWarnings, LightsThatLightNothing) {
   const QuadLight lamp{{-60, -20, 60}, {40, 0, 0}, {0, 40, 0}, Rgb(5)};
   scene.lights.push_back({"lamp", lamp});
   expect_warning(scene, {"the light lamp turns its back to every shape", "exchange u and v"});
+  EXPECT_EQ(warnings_of(scene).back().find("inside a shape"),
+            std::string::npos);  // what is known is not guessed at
+  scene.lights.back().source = SpotLight{.position = {0, 0, 60}, .direction = {0, 0, 1}, .intensity = Rgb(5)};
+  expect_warning(scene,
+                 {"the light lamp turns its back", "--set lights.lamp.direction=[0,0,-60] points it at"});
   scene.lights.back().source = QuadLight{lamp.corner, lamp.v, lamp.u, lamp.radiance};
   scene.lights.erase(scene.lights.begin());
   EXPECT_TRUE(warnings_of(scene).empty());
