@@ -42,6 +42,8 @@ TEST_F(LongViewPage, EditsAreShown) {
   EXPECT_NEAR(length(scene.camera.position - scene.camera.look_at), length(Vec3d{0, 22, 120}), 1e-3);
   EXPECT_GT(length(scene.camera.position - Vec3d{0, 30, 120}), 5);
   EXPECT_EQ(scene.camera.look_at, (Vec3d{0, 8, 0}));
+  for (const std::string& edit : edits)
+    EXPECT_FALSE(edit.starts_with("camera.look_at=")) << edit;  // as it was
   expect_shown(rendered(folder.scene, edits));
   browser.drag(tab, x, y, 40, 0, 8);  // Shift: pan
   edits = final_edits(revision + 1);
