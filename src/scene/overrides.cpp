@@ -28,6 +28,13 @@ std::string element_name(const Node& list, std::size_t i) {
   return list.key.substr(0, list.key.size() - list.key.ends_with('s')) + std::to_string(i);
 }
 
+/// ".5" and "-.5" as JSON has them; empty for anything else.
+std::string with_leading_zero(std::string_view value) {
+  if (value.starts_with('.')) return '0' + std::string(value);
+  if (value.starts_with("-.")) return "-0" + std::string(value.substr(1));
+  return {};
+}
+
 class Override {
  public:
   Override(Document& document, int index)
@@ -88,8 +95,11 @@ class Override {
 
   void replace(Node& node, std::string_view value) const {
     Node fresh;
+    const std::string zeroed = with_leading_zero(value);
     if (nlohmann::json::accept(value.begin(), value.end(), /*ignore_comments=*/true)) {
       fresh = parse_tree(document_, value, index_);
+    } else if (nlohmann::json::accept(zeroed)) {
+      fresh = parse_tree(document_, zeroed, index_);
     } else {
       fresh.kind = Node::Kind::string;
       fresh.text = value;

@@ -35,6 +35,15 @@ TEST(SceneOverrides, Apply) {
   EXPECT_EQ(parse(base, {"media.marble.eta=1.2", "media.marble.specular_ior=1.1"}).media[0].eta, 1.1);
 }
 
+// Claim: a number without the zero before its point is one; words and nothing are none. Fails if: JSON's own rule decides,
+// or a zero is put before everything.
+TEST(SceneOverrides, NumbersBeginWithAPoint) {
+  EXPECT_EQ(parse(base, {"film.exposure=.5"}).film.exposure, .5);
+  EXPECT_EQ(parse(base, {"film.exposure=-.25"}).film.exposure, -.25);
+  EXPECT_EQ(parse(base, {"lights.0.name=.e1"}).lights[0].name, ".e1");
+  EXPECT_EQ(parse(base, {"lights.0.name=e5"}).lights[0].name, "e5");
+}
+
 // Claim: a new medium may be called almost as another one if a shape uses it. Source: load_scene.h. Fails if
 // every new medium with a near name is taken for a slip.
 TEST(SceneOverrides, NewMediumWithANearName) {
