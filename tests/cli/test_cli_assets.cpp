@@ -196,5 +196,32 @@ TEST(CliAssets, BrokenAssetsAreNamed) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("a.json")));
 }
 
+// Claim: the picture of README, Cycles' on the left and ours on the right, is the same twice. Tolerance: 1 % of white in the
+// mean (measured .1 %: edges of 64 rays). Fails if: the two are not of one camera, light or paint.
+TEST(LongCliAssets, SideBySideWithBlender) {
+  if (!std::filesystem::exists(OPALINE_SCENES_DIR "/../build-blender/bin/python3"))
+    GTEST_SKIP() << "Blender is not there; tests/run --long fetches it";
+  const ScratchFolder folder;
+  const std::string picture = folder.file("both.png");
+  ASSERT_EQ(std::system(("OPALINE='" OPALINE_PROGRAM "' '" OPALINE_SCENES_DIR
+                         "/../tests/assets/blender/side_by_side' '" +
+                         picture + "'")
+                            .c_str()),
+            0);
+  const Image both = read_image(picture);
+  const int gap = 8, width = (both.width - gap) / 2;
+  const std::size_t channels = both.channels.size();
+  double differs = 0, sum = 0;
+  for (int y = 0; y < both.height; ++y)
+    for (std::size_t i = 0; i < std::size_t(width) * channels; ++i) {
+      const float* const row = both.pixels.data() + std::size_t(y) * std::size_t(both.width) * channels;
+      differs += std::abs(double(row[i]) - double(row[i + std::size_t(width + gap) * channels]));
+      sum += double(row[i]);
+    }
+  const double count = double(width) * both.height * double(channels);
+  EXPECT_GT(sum / count, .05);
+  EXPECT_LT(differs / count, .01);
+}
+
 }  // namespace
 }  // namespace opaline
