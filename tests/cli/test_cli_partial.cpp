@@ -156,7 +156,7 @@ TEST(CliPartial, FrameIsNotDone) {
 TEST(LongCliPartial, TilesAreWritten) {
   const PartialScene ball;
   Child child(ball.command(
-      {"--spp", "4000", "--evaluator", "dual_tree", "--threads", "1", "--write-partial", "--log", "json"}));
+      {"--spp", "40000", "--evaluator", "dual_tree", "--threads", "1", "--write-partial", "--log", "json"}));
   ASSERT_TRUE(child.prints(ended("refinement")));
   for (int i = 0; i < 600 && partial_stage(ball.exr) != "tiles"; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
