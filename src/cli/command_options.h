@@ -34,7 +34,7 @@ struct Options {
 
 /// The option that stands for a key of a scene: "film.crop" -> "--crop"; empty where none does.
 std::string_view option_of_key(std::string_view key);
-/// The other way.
+/// The other way: "--crop" -> "film.crop"; empty where it stands for none.
 std::string_view key_of_option(std::string_view option);
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options);

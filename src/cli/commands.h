@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the program can do, a function each.
+// What the program can do, a function each. That standard output took all of it is main's to ask.
 #pragma once
 
 #include "cli/arguments.h"
@@ -15,18 +15,18 @@ void render_command(const RenderArguments& arguments);
 /// error Error{bad_input}: the asset is broken, or is none; Error{run_failed}: the scene file cannot be written
 void import_command(const ImportArguments& arguments);
 
-/// Prints the plan; error run_failed where stdout cannot take it.
+/// Prints the plan.
 void info_command(const InfoArguments& arguments);
 
 /// Prints how far a picture is from its reference, and writes the error picture; the exit code: 0, or 1 where
 /// the error is above the bound or the picture has values that are not finite.
 /// error Error{bad_input}: a file that is no picture, without the layer, or of another size or crop;
-///       Error{run_failed}: stdout or the error picture cannot be written
+///       Error{run_failed}: the error picture cannot be written
 int compare_command(const CompareArguments& arguments);
 
 /// Walks through a medium, prints each model's totals beside the walks', and writes the report.
-/// error Error{bad_input}: no such medium, or a value out of its range; Error{run_failed}: the folder or stdout cannot
-///       be written; Error{interrupted}: the old report stays
+/// error Error{bad_input}: no such medium, or a value out of its range; Error{run_failed}: the folder cannot be
+///       written; Error{interrupted}: the old report stays
 void profile_command(const ProfileArguments& arguments);
 
 /// Serves the scene as a page until Ctrl-C.
@@ -38,7 +38,7 @@ void view_command(const ViewArguments& arguments);
 void precompute_command(const PrecomputeArguments& arguments);
 
 /// Lists, checks or shrinks a folder of stage results; the exit code: 0, or 1 where an entry cannot be used.
-/// error Error{run_failed}: the folder cannot be read or written, or stdout not
+/// error Error{run_failed}: the folder cannot be read or written
 int cache_command(const CacheArguments& arguments);
 
 }  // namespace opaline

@@ -41,9 +41,9 @@ opaline::Log log_of(const opaline::Command& command) {
   return {};
 }
 
-/// Whether what could not be printed is a log alone, of a program that was started without standard output: what was asked
-/// for is in files, or on a page.
-bool is_for_nobody(const opaline::Command& command) {
+/// A log, of which nobody wanted to know: the program was started without standard output, and what it makes is in files or
+/// on a page.
+bool is_unwanted_log(const opaline::Command& command) {
   const bool is_log = std::holds_alternative<opaline::RenderArguments>(command) ||
                       std::holds_alternative<opaline::PrecomputeArguments>(command) ||
                       std::holds_alternative<opaline::ViewArguments>(command);
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
     const opaline::Command command = opaline::parse_arguments(argc, argv);
     log = log_of(command);
     const int code = run(command);
-    if (std::ferror(stdout) != 0 && !is_for_nobody(command))
+    if (std::ferror(stdout) != 0 && !is_unwanted_log(command))
       throw opaline::run_failed("stdout", "cannot write");
     return code;
   } catch (const opaline::Error& failure) {

@@ -58,7 +58,7 @@ CLI::Validator check(const char* expected, const IsGood& is_good) {
 
 /// is_good(share): within its range.
 template <class IsGood>
-CLI::Validator share_below(const char* such_as, const IsGood& is_good) {
+CLI::Validator share_where(const char* such_as, const IsGood& is_good) {
   return CLI::Validator(
       [=](std::string& text) {
         const std::optional<double> share = share_of(text);
@@ -150,11 +150,11 @@ CLI::Validator whole_number(const Range& range) {
 }
 
 CLI::Validator share_check() {
-  return share_below("1% or .01", [](double) { return true; });
+  return share_where("1% or .01", [](double) { return true; });
 }
 
 CLI::Validator positive_share_check() {
-  return share_below("2% or .02", [](double share) { return share > 0 && share <= 1; });
+  return share_where("2% or .02", [](double share) { return share > 0 && share <= 1; });
 }
 
 CLI::Validator seconds_of() {

@@ -224,8 +224,8 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
   if (!chosen.reached)
     print_warning(log, fmt::format("an error of {:.3g} % cannot be reached with {}: {:.2g} % is predicted",
                                    100 * target,
-                                   double(chosen.samples) < .9 * double(settings.max_samples)
-                                       ? "two billion shadow rays to a light"
+                                   chosen.is_short_of_rays
+                                       ? grouped(std::uint64_t(kMostShadowRays)) + " shadow rays to a light"
                                        : fmt::format("settings.max_samples of {}", settings.max_samples),
                                    100 * chosen.predicted));
 }

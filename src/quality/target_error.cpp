@@ -22,7 +22,6 @@ constexpr double kLeastGrowth = 2.5, kBeyond = 1.25, kMostGrowth = 4;
 // Shadow rays grow where their noise alone is more than this share of the target.
 constexpr double kMostNoise = 0.5;
 constexpr int kMostLightSamples = 65536;
-constexpr double kMostShadowRays = 0x1p31;  // of all samples to a light: some minutes; more is not reached
 constexpr int kMostSteps = 12;
 // Of the small pictures: a mean needs no more.
 constexpr double kProbePixels = 64 * 64;
@@ -51,8 +50,8 @@ bool add_light_samples(SettingsSearch& search, double noise, double samples, dou
   return true;
 }
 
-/// Adds samples and shadow rays until the picture's estimate is within the target.
-void approach(SettingsSearch& search, Image picture, double samples, double target) {
+/// Adds samples and shadow rays until the picture's estimate is within the target. Returns the samples.
+double approach(SettingsSearch& search, Image picture, double samples, double target) {
   double safety = kSafety;
   for (int step = 0; step < kMostSteps && safety * search.estimated > target; ++step) {
     const double estimated = search.estimated, noise = std::min(noise_of(search, picture), estimated),
@@ -61,7 +60,7 @@ void approach(SettingsSearch& search, Image picture, double samples, double targ
     const double most_samples =
         std::min(search.most_samples, kMostShadowRays / search.scene.settings.light_samples);
     const bool more_samples = samples < most_samples && (excess > 1 || !more_rays);
-    if (!more_rays && !more_samples) return;
+    if (!more_rays && !more_samples) return samples;
     const double before = samples;
     if (more_samples)
       samples = std::min(most_samples, samples * std::clamp(kBeyond * std::pow(excess, 1 / kSlope),
@@ -73,6 +72,7 @@ void approach(SettingsSearch& search, Image picture, double samples, double targ
     search.estimated =
         std::sqrt(search.estimated * probe_difference(last, picture) * std::pow(before / samples, kSlope));
   }
+  return samples;
 }
 
 /// Keeps a surface cache if the picture is then within the target, too.
@@ -105,10 +105,11 @@ TargetError reach_error(Session& session, Scene scene, double target, Monitor* m
     session.edit(std::move(scene));
     return result;
   }
-  approach(search, std::move(first), start, target);
+  const double samples = approach(search, std::move(first), start, target);
   if (scene.settings.evaluator == EvaluatorKind::automatic) choose_evaluator(search, target);
   result.predicted = search.estimated;
   result.reached = result.predicted <= target;
+  result.is_short_of_rays = !result.reached && samples < search.most_samples;
   result.samples = search.planned_samples();
   session.edit(std::move(search.scene));
   return result;

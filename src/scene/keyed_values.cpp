@@ -56,7 +56,10 @@ class KeyedValue {
   /// Where there is a frame between two keys, it has a value.
   void check_between() const {
     for (std::size_t i = 1; i < keys_.size(); ++i)
-      if (keys_[i].frame - keys_[i - 1].frame > 1) return void(at(keys_[i].frame - 1));
+      if (keys_[i].frame - keys_[i - 1].frame > 1) {
+        at(keys_[i].frame - 1);
+        return;
+      }
   }
 
   [[noreturn]] void fail(const Node& at, const std::string& message, const std::string& expected) const {

@@ -159,8 +159,8 @@ TEST(CliProfile, Mistakes) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-// Claim: Ctrl-C ends the walks with exit code 130 and leaves the old report; another's page is not written over. Source: the help of profile. Fails if: the
-// walks do not look at the monitor, or the page is opened for writing at the start.
+// Claim: Ctrl-C ends the walks with exit code 130 and leaves the old report; another's page is not written over. Source:
+// the help of profile. Fails if: the walks do not look at the monitor, or the page is opened for writing at the start.
 TEST(CliProfile, InterruptLeavesTheOldReport) {
   const ScratchFolder folder;
   put_bytes(folder.file("index.html"), "mine");

@@ -15,10 +15,11 @@ namespace opaline {
 /// relative error of the diffuse light, of the worst channel, against the converged diffusion of the scene:
 /// what Method::direct tends to. Edges of pixels and the diffusion model itself are not in it.
 struct TargetError {
-  double predicted = 0;          ///< error; 0 where nothing translucent is seen
-  std::size_t samples = 0;       ///< asked for, of all groups
-  bool reached = true;           ///< false: settings.max_samples, or the model, does not allow it
-  bool sees_translucent = true;  ///< false: there is nothing to promise
+  double predicted = 0;     ///< error; 0 where nothing translucent is seen
+  std::size_t samples = 0;  ///< asked for, of all groups
+  bool reached = true;      ///< false: settings.max_samples, kMostShadowRays or the model does not allow it
+  bool is_short_of_rays = false;  ///< it was kMostShadowRays
+  bool sees_translucent = true;   ///< false: there is nothing to promise
   /// Of reach_volume_error: the bound of the model's own error, none where a mesh is open or too thin; and the error
   /// that the settings were chosen for, the target or the least that the model allows.
   std::optional<double> model = {};
@@ -47,6 +48,9 @@ TargetError reach_volume_error(Session& session, Scene scene, double target, Mon
 /// The settings that were chosen, by reach_error or for a time, as `--set` takes them; without light_samples.
 /// in    session: whose scene has them; entry_samples: of a direct picture
 std::vector<std::string> chosen_overrides(const Session& session, std::size_t entry_samples = 0);
+
+/// No target is answered with more from all samples to a light: that takes some minutes.
+inline constexpr double kMostShadowRays = 0x1p31;
 
 /// No target is answered with fewer, of all groups together, unless settings.max_samples asks for that.
 inline constexpr double kFewestTargetSamples = 2500;
