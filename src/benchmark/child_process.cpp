@@ -13,14 +13,13 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
+#include "core/progress.h"
 #include "opaline/core/error.h"
-#include "opaline/core/units.h"
 
 namespace opaline {
 namespace {
@@ -103,37 +102,24 @@ double seconds(const timeval& t) {
   return double(t.tv_sec) + 1e-6 * double(t.tv_usec);
 }
 
-/// On a terminal, how far the child is: its last event of progress, on a line that goes again.
+/// On a terminal, how far the child is: its last event of progress.
 class ChildProgress {
  public:
-  ~ChildProgress() {
-    if (!shown_.empty()) std::fputs(kClearLine, stderr);
-  }
-
   void show(std::string_view output) {
-    if (!is_on_terminal_) return;
     const std::size_t end = output.rfind('\n');
-    if (end == std::string_view::npos || end == end_) return;
+    if (!TerminalLine::is_to_be_had() || end == std::string_view::npos || end == end_) return;
     end_ = end;
     const std::size_t before = end == 0 ? std::string_view::npos : output.rfind('\n', end - 1),
                       begin = before == std::string_view::npos ? 0 : before + 1;
     const Json event = Json::parse(output.substr(begin, end - begin), nullptr, /*allow_exceptions=*/false);
     if (!event.is_object() || event.value("event", "") != "progress") return;
-    const double fraction = event.value("fraction", -1.), left = event.value("seconds_left", -1.);
-    std::string line = event.value("stage", "");
-    if (fraction >= 0) line += fmt::format(" {:.0f} %", 100 * fraction);
-    if (left >= 0) line += ", " + short_time(left) + " left";
-    if (line == shown_) return;
-    shown_ = line;
-    std::fputs((kClearLine + line).c_str(), stderr);
-    std::fflush(stderr);
+    line_.show(ProgressState{event.value("stage", ""), event.value("fraction", -1.),
+                             event.value("seconds_left", -1.)});
   }
 
  private:
-  static constexpr const char* kClearLine = "\r\x1b[K";
-  const bool is_on_terminal_ = ::isatty(STDERR_FILENO) != 0;
   std::size_t end_ = std::string::npos;
-  std::string shown_;
+  TerminalLine line_;
 };
 
 /// Reads until the end of the child, or until a cancelled one has had its time.

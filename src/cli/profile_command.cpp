@@ -11,7 +11,7 @@
 #include "benchmark/page.h"
 #include "benchmark/profile_page.h"
 #include "cli/commands.h"
-#include "cli/progress.h"
+#include "core/progress.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/core/interrupt.h"

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "cli/progress.h"
 #include "cli/report.h"
+#include "core/progress.h"
 #include "opaline/core/interrupt.h"
 #include "opaline/core/monitor.h"
 #include "opaline/core/stopwatch.h"

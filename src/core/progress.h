@@ -45,6 +45,18 @@ struct ProgressState {
 /// The line, shorter than `columns` so that no terminal wraps it: the bar goes first, then the end is cut.
 std::string progress_line(const ProgressState& state, std::size_t columns);
 
+/// A line of standard error that is written anew, where that is a terminal; it goes with this object.
+class TerminalLine {
+ public:
+  ~TerminalLine() { show(std::string()); }
+  static bool is_to_be_had();
+  void show(const std::string& line);
+  void show(const ProgressState& state);
+
+ private:
+  std::string shown_;
+};
+
 /// Stages under way inside of what is shown: parts of it, one after the other, or the trials of a search, whose own
 /// progress says nothing about the search's.
 enum class InnerStages { parts, trials };
@@ -70,7 +82,7 @@ class Progress {
   std::string stage_;
   InnerStages inner_;
   Style style_;
-  std::string shown_;    // the terminal's line
+  TerminalLine line_;
   std::jthread thread_;  // last: it uses the others, and its destructor stops and joins it
 };
 

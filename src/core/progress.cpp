@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/progress.h"
+#include "core/progress.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -24,16 +24,6 @@ using std::chrono::duration;
 constexpr std::chrono::milliseconds kPoll{100};
 constexpr double kSecondsBeforeEstimate = 0.5, kSecondsBeforeElapsed = 2;
 constexpr std::string_view kClearLine = "\r\x1b[K";
-
-bool on_terminal() {
-  const char* terminal = std::getenv("TERM");
-  return isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::string_view(terminal) != "dumb";
-}
-
-void write_terminal(std::string_view text) {
-  std::fwrite(text.data(), 1, text.size(), stderr);
-  std::fflush(stderr);
-}
 
 std::size_t terminal_columns() {
   winsize size{};
@@ -105,6 +95,23 @@ std::string progress_line(const ProgressState& state, std::size_t columns) {
   return (label + text).substr(0, room);
 }
 
+bool TerminalLine::is_to_be_had() {
+  const char* terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
+void TerminalLine::show(const std::string& line) {
+  if (line == shown_) return;
+  const std::string text = std::string(kClearLine) + line;
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+  shown_ = line;
+}
+
+void TerminalLine::show(const ProgressState& state) {
+  show(progress_line(state, terminal_columns()));
+}
+
 Progress::Progress(const Log& log, const Monitor& monitor, std::string stage, InnerStages inner)
     : log_(log),
       monitor_(monitor),
@@ -112,7 +119,7 @@ Progress::Progress(const Log& log, const Monitor& monitor, std::string stage, In
       inner_(inner),
       style_(log.quiet                       ? Style::none
              : log.format == LogFormat::json ? Style::json
-             : on_terminal()                 ? Style::terminal
+             : TerminalLine::is_to_be_had()  ? Style::terminal
                                              : Style::lines) {
   if (style_ != Style::none) thread_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
 }
@@ -137,7 +144,7 @@ void Progress::watch(const std::stop_token& stop) {
     show(state_of(estimate, duration<double>(now - start).count()));
     shown = now;
   }
-  if (style_ == Style::terminal) write_terminal(kClearLine);
+  line_.show(std::string());
 }
 
 // seconds: since the stage began
@@ -171,10 +178,7 @@ void Progress::show(const ProgressState& state) {
       members["frames_finished"] = state.frames->finished, members["frames"] = state.frames->count;
     print_event(log_, "progress", members);
   } else if (style_ == Style::terminal) {
-    const std::string line = progress_line(state, terminal_columns());
-    if (line == shown_) return;
-    write_terminal(std::string(kClearLine) + line);
-    shown_ = line;
+    line_.show(state);
   } else {
     const std::string text = stage_text(state);
     write_line(stderr, state.stage + (text.empty() ? "" : ": " + text));
