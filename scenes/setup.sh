@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Sourced by scenes/demo and tests/run: functions that take a Debian 12 from nothing to a built program and the
 # demo's mesh and room. What is already there costs no time. Exit codes are the program's: 2 when the user has something
-# to do first, 3 when a step failed.
+# to do first, 3 when a step failed. The output of apt and of the build goes to a log.
 set -euo pipefail
 
 root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
@@ -22,13 +22,30 @@ test_packages=(libgtest-dev parallel clang-format chromium-headless-shell)
 long_test_packages=(assimp-testmodels python3-venv libvulkan1 libxrender1 libxi6 libxkbcommon0 libsm6 libgl1 libegl1
   libxxf86vm1 libxfixes3)
 
+log=$root/scenes/out/${0##*/}.log
+mkdir -p "${log%/*}"
+: >"$log"
+upgrade=no # whether installed packages may be upgraded: --upgrade
+
 say() { printf 'opaline: %s\n' "$*"; }
+note() { say "$*" >>"$log"; }
 
 fail() {
   local code=$1
   shift
   say "$*" >&2
   exit "$code"
+}
+
+# Runs a command with its output in the log, whose end is shown where the command fails.
+logged() {
+  local code=0
+  "$@" >>"$log" 2>&1 || code=$?
+  ((code == 0)) || {
+    tail -n 25 "$log" >&2
+    say "the lines above end the log $log" >&2
+  }
+  return "$code"
 }
 
 # Never asks: not by debconf, not about configuration files, not on standard input. Waits for another apt to end.
@@ -42,20 +59,32 @@ is_installed() {
   dpkg-query --show --showformat='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed
 }
 
+# The installed packages that apt would upgrade or remove on the way.
+# in    what follows apt-get
+changed_by() { apt_get --simulate "$@" 2>/dev/null | sed -n 's/^\(Inst\|Remv\) \([^ ]*\) \[.*/\2/p'; }
+
+# Names of those that are not installed.
+missing_packages() {
+  local package
+  for package in "$@"; do is_installed "$package" || echo "$package"; done
+}
+
 install_packages() {
-  local package missing=()
+  local missing changed
   [[ -n $(type -P apt-get) ]] || fail 2 "this script sets up Debian 12; elsewhere install what $* bring, then use cmake"
-  for package in "$@"; do
-    is_installed "$package" || missing+=("$package")
-  done
+  readarray -t missing < <(missing_packages "$@")
   ((${#missing[@]} > 0)) || return 0
 
   local install=(install --no-install-recommends "${missing[@]}")
-  ((EUID == 0)) ||
-    fail 2 "packages are missing, run: sudo apt-get update && sudo apt-get -y ${install[*]}"
-  say "installing from Debian: ${missing[*]}"
-  apt_get update || say "apt-get update failed for some sources (above), going on with what is known" >&2
-  apt_get "${install[@]}" || fail 3 "could not install ${missing[*]}: apt's reason is above; is the network there?"
+  ((EUID == 0)) || fail 2 "packages are missing, run: sudo apt-get update && sudo apt-get ${install[*]}"
+  note "installing from Debian: ${missing[*]}"
+  logged apt_get update || say "apt-get update failed for some sources, going on with what is known" >&2
+  readarray -t changed < <(changed_by "${install[@]}")
+  if ((${#changed[@]} > 0)) && [[ $upgrade == no ]]; then
+    fail 2 "the missing packages need newer versions of installed ones: ${changed[*]}; nothing was installed;" \
+      "to let apt upgrade these, add --upgrade"
+  fi
+  logged apt_get "${install[@]}" || fail 3 "could not install ${missing[*]}; is the network there?"
 }
 
 # A file of a Debian package that is not installed, into scenes/assets/. In a subshell, so that the trap and the folder
@@ -66,15 +95,15 @@ fetch() (
   file=$root/scenes/assets/${path##*/}
   is_right() { [[ -f $1 ]] && sha256sum --status --check <<<"$sha256  $1"; }
   if is_right "$file"; then exit 0; fi
-  say "fetching scenes/assets/${file##*/} from Debian's package $package ($size, not installed)"
+  note "fetching scenes/assets/${file##*/} from Debian's package $package ($size, not installed)"
   mkdir -p "${file%/*}"
   scratch=$(mktemp -d "${file%/*}/fetch.XXXXXX") # beside the file, so that mv is atomic
   trap 'rm -rf "$scratch"' EXIT
   cd "$scratch"
-  if ! apt_get -q download "$package"; then
+  if ! apt_get -q download "$package" >>"$log" 2>&1; then
     ((EUID == 0)) || fail 2 "$package could not be fetched; with the network there, run: sudo apt-get update"
-    apt_get update || true
-    apt_get -q download "$package" || fail 3 "$package could not be fetched; is the network there?"
+    apt_get update >>"$log" 2>&1 || true
+    logged apt_get -q download "$package" || fail 3 "$package could not be fetched; is the network there?"
   fi
   dpkg-deb --fsys-tarfile "$package"_*.deb | tar -xO "$path" >fetched
   is_right fetched || fail 3 "${file##*/} of $package is not the one the scenes were made for (sha256)"
@@ -166,12 +195,12 @@ configure() {
     rm -rf "$cache" "$folder/CMakeFiles"
   fi
   [[ -f $cache ]] || generator=(-G Ninja)
-  cmake -S "$root" -B "$folder" "${generator[@]}" --log-level=NOTICE "$@" || fail 3 "cmake could not configure $folder"
+  logged cmake -S "$root" -B "$folder" "${generator[@]}" --log-level=NOTICE "$@" || fail 3 "cmake could not configure $folder"
 }
 
 # in    a build folder, then options for cmake --build
 build() {
   local folder=$1
   shift
-  cmake --build "$folder" --parallel "$(job_count)" "$@" || fail 3 "the build in $folder failed"
+  logged cmake --build "$folder" --parallel "$(job_count)" "$@" || fail 3 "the build in $folder failed"
 }
