@@ -14,10 +14,12 @@ namespace opaline {
 
 BlobCache::BlobCache(std::string folder, std::uint64_t most_bytes)
     : folder_(std::move(folder)), most_bytes_(most_bytes) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder_, failure);
-  if (!std::filesystem::is_directory(folder_))
-    throw run_failed(folder_, "cannot make the cache's folder" + (failure ? ": " + failure.message() : ""));
+  std::error_code making, looking;
+  std::filesystem::create_directories(folder_, making);
+  const bool is_there = std::filesystem::is_directory(folder_, looking);
+  if (looking) throw run_failed(folder_, "cannot be looked at for the cache: " + looking.message());
+  if (!is_there)
+    throw run_failed(folder_, "cannot make the cache's folder" + (making ? ": " + making.message() : ""));
 }
 
 std::optional<BlobReader> BlobCache::find(const char* stage, const StageKey& key, std::uint64_t most_bytes) {

@@ -192,20 +192,45 @@ Error unknown_command(const CLI::App& parent, const std::string& name) {
                      near.empty() ? "one of " + join(names) : "");
 }
 
-Error unknown_option(const CLI::App& command, const std::string& text) {
-  const std::string name = text.substr(0, text.find('='));
+/// How the command is given a value of the scene that is called almost like this option: "--spp N", or by --set.
+std::vector<std::string> ways_to_set(const CLI::App& command, std::string key) {
+  std::vector<std::string> ways;
+  if (command.get_option_no_throw("--set") == nullptr) return ways;
+  key.erase(0, key.find_first_not_of('-'));
+  std::ranges::replace(key, '-', '_');
+  for (const std::string& path : similar_key_paths(key)) {
+    const std::string option(option_of_key(path));
+    const CLI::Option* own = option.empty() ? nullptr : command.get_option_no_throw(option);
+    const std::size_t dot = path.find('.');
+    const ValueType type = key_info(path.substr(0, dot), path.substr(dot + 1)).type;
+    const bool is_number = type == ValueType::number || type == ValueType::whole_number;
+    ways.push_back(own != nullptr ? option + ' ' + own->get_type_name()
+                                  : "--set " + path + (is_number ? "=N" : "=VALUE"));
+  }
+  return ways;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& word : option->get_lnames()) names.push_back("--" + word);
     for (const std::string& letter : option->get_snames()) names.push_back("-" + letter);
   }
+  return names;
+}
+
+Error unknown_option(const CLI::App& command, const std::string& text) {
+  const std::string name = text.substr(0, text.find('='));
+  const std::vector<std::string> names = option_names(command);
   // A beginning stands for its words, and a letter that is none for those that begin with it.
   const bool is_letter = name.size() == 2;
   const std::string beginning = is_letter ? '-' + name : name;
-  std::vector<std::string_view> begun, views(names.begin(), names.end());
-  std::ranges::copy_if(names, std::back_inserter(begun),
-                       [&](const std::string& word) { return word.starts_with(beginning); });
-  const std::string near = !begun.empty() ? fmt::format(" (did you mean '{}'?)", fmt::join(begun, "' or '"))
+  std::vector<std::string> meant = is_letter ? std::vector<std::string>{} : ways_to_set(command, name);
+  if (meant.empty())
+    std::ranges::copy_if(names, std::back_inserter(meant),
+                         [&](const std::string& word) { return word.starts_with(beginning); });
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const std::string near = !meant.empty() ? fmt::format(" (did you mean '{}'?)", fmt::join(meant, "' or '"))
                            : is_letter    ? ""
                                           : did_you_mean(name, views);
   return usage_error("unknown option '" + printable(name) + "'" + near + hint(command));

@@ -140,8 +140,9 @@ RenderArguments arguments_of_frame(const RenderArguments& arguments, int frame) 
 bool is_rendered(const RenderArguments& arguments, const std::string& hash, int frame) {
   std::vector<std::string> others = arguments.outputs;
   if (!arguments.samples_ply.empty()) others.push_back(arguments.samples_ply);
+  std::error_code unknown;  // writing says so
   for (const std::string& path : others)
-    if (!std::filesystem::exists(path)) return false;
+    if (!std::filesystem::exists(path, unknown)) return false;
   for (const std::string& path : arguments.outputs) {
     try {
       const Metadata stated = read_image(path).metadata;

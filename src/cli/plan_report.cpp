@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cli/report.h"
 #include "opaline/core/units.h"
@@ -15,6 +17,17 @@ namespace {
 /// The labels make a column.
 void print_row(const std::string& label, const std::string& text) {
   write_line(stdout, fmt::format("{:<12}{}", label, text));
+}
+
+using Paragraphs = std::vector<std::string>;
+
+/// A row with a label begins a paragraph, one without belongs to the last.
+void add_row(Paragraphs& paragraphs, const std::string& label, const std::string& text) {
+  const std::string row = fmt::format("{:<12}{}", label, text);
+  if (label.empty())
+    paragraphs.back() += '\n' + row;
+  else
+    paragraphs.push_back(row);
 }
 
 std::string counted(std::size_t count, const std::string& noun) {
@@ -43,25 +56,27 @@ std::string lights_text(const std::vector<Light>& lights) {
 }
 
 /// With methods that have one: profile and error, a row each.
-void print_model(const GroupPlan& group, double across_air) {
-  if (!has_cells(group.method)) print_row("", "profile " + model_text(group.model));
+void add_model(Paragraphs& plan, const GroupPlan& group, double across_air) {
+  if (!has_cells(group.method)) add_row(plan, "", "profile " + model_text(group.model));
   const std::string error = model_error_text(group.model, group.method);
-  if (!error.empty()) print_row("", error);
+  if (!error.empty()) add_row(plan, "", error);
   constexpr double kWorthSaying = .02;
   if (across_air > kWorthSaying)
-    print_row("", fmt::format("light jumps across the air between parts that face each other, {:.0f} % of "
-                              "what the profile carries; with --method volume_diffusion it does not",
-                              100 * across_air));
+    add_row(plan, "",
+            fmt::format("light jumps across the air between parts that face each other, {:.0f} % of "
+                        "what the profile carries; with --method volume_diffusion it does not",
+                        100 * across_air));
 }
 
-void print_group(const Scene& scene, const World& world, const GroupPlan& group) {
-  print_row("translucent",
-            fmt::format("{} in {}: {:.4g} mm^2, mean free path {:.4g} mm (its smallest channel)", group.name,
-                        scene.media[group.medium].name, group.area, group.smallest_mean_free_path));
-  print_model(group, share_across_air(scene, world, group));
+void add_group(Paragraphs& plan, const Scene& scene, const World& world, const GroupPlan& group) {
+  add_row(plan, "translucent",
+          fmt::format("{} in {}: {:.4g} mm^2, mean free path {:.4g} mm (its smallest channel)", group.name,
+                      scene.media[group.medium].name, group.area, group.smallest_mean_free_path));
+  add_model(plan, group, share_across_air(scene, world, group));
   if (!has_samples(scene.settings.method)) return;
-  print_row("", fmt::format("{}, {:.4g} mm apart: {}", counted(group.samples, "sample"), group.spacing,
-                            group.reason));
+  add_row(
+      plan, "",
+      fmt::format("{}, {:.4g} mm apart: {}", counted(group.samples, "sample"), group.spacing, group.reason));
 }
 
 /// How an asset without a translucent material gets one: few formats can name it.
@@ -78,17 +93,20 @@ std::string marble_text(const Scene& scene, const World& world) {
       shape.reflectance_texture ? " and not of its texture" : "");
 }
 
-void print_text(const Scene& scene, const World& world, const Plan& plan) {
-  print_row("scene", fmt::format("{}: {}, {}", scene.file, counted(scene.shapes.size(), "shape"),
-                                 counted(plan.triangles, "triangle")));
-  if (!scene.translation.empty()) print_row("asset", scene.translation);
-  print_row("picture", picture_text(scene.film));
-  print_row("lights", lights_text(scene.lights));
-  for (const GroupPlan& group : plan.groups) print_group(scene, world, group);
+Paragraphs paragraphs_of(const Scene& scene, const World& world, const Plan& plan) {
+  Paragraphs text;
+  add_row(text, "scene",
+          fmt::format("{}: {}, {}", scene.file, counted(scene.shapes.size(), "shape"),
+                      counted(plan.triangles, "triangle")));
+  if (!scene.translation.empty()) add_row(text, "asset", scene.translation);
+  add_row(text, "picture", picture_text(scene.film));
+  add_row(text, "lights", lights_text(scene.lights));
+  for (const GroupPlan& group : plan.groups) add_group(text, scene, world, group);
   if (plan.groups.empty())
-    print_row("translucent", "nothing: no samples are needed" + marble_text(scene, world));
-  for (std::size_t i = 0; i < plan.stages.size(); ++i) print_row(i == 0 ? "stages" : "", plan.stages[i]);
-  print_row("memory", "about " + short_bytes(plan.bytes) + " at the peak");
+    add_row(text, "translucent", "nothing: no samples are needed" + marble_text(scene, world));
+  for (std::size_t i = 0; i < plan.stages.size(); ++i) add_row(text, i == 0 ? "stages" : "", plan.stages[i]);
+  add_row(text, "memory", "about " + short_bytes(plan.bytes) + " at the peak");
+  return text;
 }
 
 Json model_json(const BodyModel& model) {
@@ -192,10 +210,20 @@ void print_plates(const Log& log, const std::vector<PlateModel>& plates) {
       print_plate(plate);
 }
 
-void print_plan(const Log& log, const Scene& scene, const World& world, const Plan& plan) {
+void print_plan(const Log& log, const Scene& scene, const World& world, const Plan& plan,
+                std::vector<std::string>* last) {
   if (!log.quiet && log.format == LogFormat::json) print_event(log, "plan", plan_json(scene, world, plan));
-  if (!log.quiet && log.format == LogFormat::text) print_text(scene, world, plan);
-  for (const std::string& warning : plan.warnings) print_warning(log, warning);
+  const bool is_text = log.format == LogFormat::text;
+  const auto is_known = [&](const std::string& text) {
+    return is_text && last != nullptr && std::ranges::find(*last, text) != last->end();
+  };
+  Paragraphs said = is_text ? paragraphs_of(scene, world, plan) : Paragraphs{};
+  for (const std::string& paragraph : said)
+    if (!log.quiet && !is_known(paragraph)) write_line(stdout, paragraph);
+  for (const std::string& warning : plan.warnings)
+    if (!is_known(warning)) print_warning(log, warning);
+  said.insert(said.end(), plan.warnings.begin(), plan.warnings.end());
+  if (last != nullptr) *last = std::move(said);
 }
 
 void print_decisions(const Log& log, const std::vector<std::string>& decisions, const std::string& warning) {

@@ -189,6 +189,7 @@ RenderArguments repeating(const RenderArguments& arguments, const Session& sessi
 struct Shared {
   const StageCache* cache = nullptr;
   DisplayServer* viewer = nullptr;
+  std::vector<std::string>* last_plan = nullptr;
 };
 
 /// error Error{bad_input}: an option that the method has no use for
@@ -222,7 +223,8 @@ std::optional<std::string> load(StageRunner& stages, const RenderArguments& argu
 
 /// Chooses settings that are left open, and says what will be done.
 /// error Error{bad_input}: what is asked for does not go together, or does not fit into memory
-KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session& session) {
+KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session& session,
+                 const Shared& shared) {
   const Scene& scene = session.scene();
   check_method_options(arguments, scene.settings.method);
   check_layers(arguments.layers, scene);
@@ -230,7 +232,7 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   const std::size_t layer_bytes = asked_layer_bytes(arguments.layers, scene);
   check_memory(scene, session.plan(), layer_bytes);
   KnownErrors errors = choose_settings(stages, arguments, session);
-  print_plan(arguments.log, scene, session.world(), announced_plan(arguments, session));
+  print_plan(arguments.log, scene, session.world(), announced_plan(arguments, session), shared.last_plan);
   check_memory(scene, session.plan(), layer_bytes);  // of the settings that were chosen
   return errors;
 }
@@ -305,7 +307,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
     return false;
   }
   const Scene& scene = session.scene();
-  KnownErrors errors = plan(stages, arguments, session);
+  KnownErrors errors = plan(stages, arguments, session, shared);
   Shading shading = make_shown_picture(stages, arguments, session, shared, frame.has_value());
   std::optional<Error> stopped;  // by Ctrl-C while the error was measured; the picture is there
   try {
@@ -347,7 +349,8 @@ void render_command(const RenderArguments& arguments) {
     for (const int frame : arguments.frames) check_writable(arguments_of_frame(arguments, frame));
   std::optional<DisplayServer> viewer;
   if (arguments.display_server) viewer.emplace(*arguments.display_server, arguments.log);
-  const Shared shared{cache ? &*cache : nullptr, viewer ? &*viewer : nullptr};
+  std::vector<std::string> last_plan;
+  const Shared shared{cache ? &*cache : nullptr, viewer ? &*viewer : nullptr, &last_plan};
   if (arguments.frames.empty()) {
     render_scene(arguments, session, shared, {});
     return;

@@ -18,7 +18,9 @@
 namespace opaline {
 
 /// What the scene requires and why, then the plan's warnings; nothing but the warnings with --quiet.
-void print_plan(const Log& log, const Scene& scene, const World& world, const Plan& plan);
+/// last: null, or the texts of the frame before, which are not repeated as text, and then of this one
+void print_plan(const Log& log, const Scene& scene, const World& world, const Plan& plan,
+                std::vector<std::string>* last = nullptr);
 
 /// The model's own error in thin plates, three lines each.
 void print_plates(const Log& log, const std::vector<PlateModel>& plates);

@@ -66,11 +66,12 @@ void require_replaceable(const std::string& path) {
 std::string create_beside(const fs::path& path) {
   const fs::path folder = folder_of(path);
   const std::string stem = ".opaline-" + std::to_string(::getpid()) + '-';
+  std::error_code unknown;
   for (int counter = 0;; ++counter) {
     const fs::path name = folder / (stem + std::to_string(counter) + path.extension().string());
     Descriptor file{::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
     if (file.number >= 0) return name.string();
-    if (errno == ENOENT && !fs::exists(folder))
+    if (errno == ENOENT && !fs::exists(folder, unknown))
       throw run_failed(path.string(), "there is no folder '" + folder.string() + "'");
     if (errno != EEXIST)
       throw run_failed(path.string(), "cannot write in the folder '" + folder.string() + "': " + reason());

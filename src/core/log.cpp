@@ -2,6 +2,7 @@
 #include "core/log.h"
 
 #include <cerrno>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <system_error>
@@ -30,6 +31,14 @@ bool is_out_of_memory(const std::exception& failure) {
   return dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ||
          dynamic_cast<const std::length_error*>(&failure) != nullptr ||
          (system != nullptr && system->code() == std::errc::resource_unavailable_try_again);
+}
+
+/// What ended the run, of a library's exception, too.
+std::string text_of(const std::exception& failure) {
+  if (is_out_of_memory(failure)) return "out of memory";
+  if (const auto* files = dynamic_cast<const std::filesystem::filesystem_error*>(&failure))
+    return files->path1().string() + ": " + files->code().message();
+  return failure.what();
 }
 
 }  // namespace
@@ -61,7 +70,7 @@ void print_warning(const Log& log, const std::string& text) {
 int print_failure(const Log& log, const std::exception& failure) {
   const auto* error = dynamic_cast<const Error*>(&failure);
   const ErrorKind kind = error != nullptr ? error->kind : ErrorKind::run_failed;
-  const std::string text = is_out_of_memory(failure) ? "out of memory" : failure.what();
+  const std::string text = text_of(failure);
   Json members{{"kind", name_of(kind)}, {"exit_code", int(kind)}, {"message", text}};
   if (error != nullptr && !error->file.empty()) members["file"] = error->file;
   if (error != nullptr && error->line > 0) members["line"] = error->line;

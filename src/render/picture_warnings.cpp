@@ -157,11 +157,11 @@ std::string unit_text(const Scene& scene, double brightest) {
       scene.mm_per_unit, factor);
 }
 
-/// "; --exposure 7 shows it"
+/// "; use --exposure 7"
 std::string exposure_text(const Scene& scene, double brightest) {
   const double stops =
       std::clamp(scene.film.exposure + std::round(std::log2(kWellExposed / brightest)), -100.0, 100.0);
-  return fmt::format("; --exposure {:g} shows it in a PNG", stops);
+  return fmt::format("; use --exposure {:g}", stops);
 }
 
 /// Of which the plan has said so.
@@ -175,7 +175,7 @@ std::string too_dark(const Scene& scene, const World& world, double brightest) {
   const std::vector<std::string> causes = weak_lights(scene, world);
   std::string text = "black";
   if (brightest > 0)
-    text = fmt::format("almost black: what is seen is {:.2g} of white{}{}", brightest,
+    text = fmt::format("almost black: the object is at most {:.2g} x white{}{}", brightest,
                        exposure_text(scene, brightest), unit_text(scene, brightest));
   else if (causes.empty() && lamps_turned_away(scene, world).empty() && !has_black_medium(scene))
     text += ": no light reaches what is seen; is every light behind it, inside a shape or in its shadow?";
@@ -208,8 +208,8 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
   const double brightest = quantile(.99), usual = quantile(.5);
   if (brightest < double(kAlmostBlack)) return {too_dark(scene, world, brightest)};
   if (usual > double(kWhite))
-    return {fmt::format("the picture is too bright: half of what is seen is {:.2g} of white or more{}{}",
-                        usual, exposure_text(scene, usual), unit_text(scene, usual))};
+    return {fmt::format("half of the object is overexposed ({:.2g} x white){}{}", usual,
+                        exposure_text(scene, usual), unit_text(scene, usual))};
   return {};
 }
 

@@ -32,49 +32,153 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-std::string suggestion(std::string_view name) {
-  return name.empty() ? "" : " (did you mean '" + printable(name) + "'?)";
+using Names = std::vector<std::string>;
+
+std::string suggestion(const Names& names) {
+  if (names.empty()) return {};
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : " or '") + printable(name) + '\'';
+  return " (did you mean " + text + "?)";
 }
 
-// What other programs call it.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOtherWords{
-    {{"rect", "quad"},
-     {"rectangle", "quad"},
-     {"area", "quad"},
-     {"sun", "directional"},
-     {"distant", "directional"},
-     {"dome", "environment"},
-     {"hdri", "environment"},
-     {"infinite", "environment"}}};
+struct OtherWord {
+  std::string_view word;
+  std::array<std::string_view, 7> own = {};
+};
 
-/// The candidate that is spelt almost alike or that another program calls so, or empty.
-std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
-  for (const auto& [other, own] : kOtherWords)
-    if (name == other && std::ranges::find(candidates, own) != candidates.end()) return own;
+// Words of other programs for keys and choices.
+constexpr OtherWord kOtherWords[] = {
+    {"absorption", {"sigma_a"}},
+    {"albedo", {"subsurface_color", "base_color", "reflectance"}},
+    {"area", {"quad"}},
+    {"background", {"surroundings"}},
+    {"base_color", {"reflectance"}},
+    {"brightness", {"intensity", "radiance", "irradiance", "strength"}},
+    {"burley", {"normalized_diffusion"}},
+    {"color",
+     {"subsurface_color", "base_color", "reflectance", "intensity", "radiance", "irradiance", "strength"}},
+    {"colour",
+     {"subsurface_color", "base_color", "reflectance", "intensity", "radiance", "irradiance", "strength"}},
+    {"diffuse", {"base_color", "reflectance"}},
+    {"distant", {"directional"}},
+    {"dome", {"environment"}},
+    {"emission", {"radiance"}},
+    {"eye", {"position"}},
+    {"filename", {"file"}},
+    {"filmic", {"agx"}},
+    {"fov", {"field_of_view"}},
+    {"hdri", {"environment"}},
+    {"height", {"resolution"}},
+    {"infinite", {"environment"}},
+    {"integrator", {"method"}},
+    {"intensity", {"radiance", "irradiance", "strength"}},
+    {"ior", {"specular_ior"}},
+    {"jensen", {"dipole"}},
+    {"location", {"position"}},
+    {"material", {"medium"}},
+    {"materials", {"media"}},
+    {"mean_free_path", {"subsurface_radius"}},
+    {"mesh", {"file"}},
+    {"metallic", {"metalness"}},
+    {"mfp", {"subsurface_radius"}},
+    {"objects", {"shapes"}},
+    {"origin", {"position"}},
+    {"path", {"volume"}},
+    {"position", {"center"}},
+    {"power", {"intensity", "radiance", "irradiance", "strength"}},
+    {"radiance", {"intensity", "irradiance", "strength"}},
+    {"random_walk", {"volume"}},
+    {"rect", {"quad"}},
+    {"rectangle", {"quad"}},
+    {"reflectance", {"base_color", "subsurface_color"}},
+    {"rotate", {"transform"}},
+    {"rotation", {"transform"}},
+    {"samples", {"samples_per_pixel"}},
+    {"scale", {"transform"}},
+    {"scattering", {"sigma_s"}},
+    {"size", {"resolution"}},
+    {"spp", {"samples_per_pixel"}},
+    {"strength", {"intensity", "radiance", "irradiance"}},
+    {"sun", {"directional"}},
+    {"target", {"look_at"}},
+    {"tonemap", {"view"}},
+    {"translate", {"transform"}},
+    {"width", {"resolution"}},
+    {"world", {"surroundings"}},
+};
+
+/// The candidates that another program calls so.
+Names named_otherwise(std::string_view name, std::span<const std::string_view> candidates) {
+  Names found;
+  for (const auto& [word, own] : kOtherWords)
+    for (const std::string_view key : own)
+      if (name == word && std::ranges::find(candidates, key) != candidates.end()) found.emplace_back(key);
+  return found;
+}
+
+/// The one candidate that is spelt almost alike, or none.
+Names nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
   constexpr std::size_t longest = 64;  // a name may be megabytes long; then nothing is near it
-  std::string_view nearest;
+  Names nearest;
   std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
   for (const std::string_view candidate : candidates) {
     if (name.size() > longest || candidate.size() > longest) continue;
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < least && distance < candidate.size()) {
       least = distance;
-      nearest = candidate;
+      nearest = {std::string(candidate)};
     }
   }
   return nearest;
 }
 
+/// The candidates that end with this word, `specular_roughness` for `roughness`, unless they are many.
+Names longer_names(std::string_view name, std::span<const std::string_view> candidates) {
+  constexpr std::size_t most = 3;
+  Names found;
+  for (const std::string_view candidate : candidates)
+    if (!name.empty() && candidate.ends_with('_' + std::string(name))) found.emplace_back(candidate);
+  return found.size() <= most ? found : Names{};
+}
+
+Names similar_names(std::string_view name, std::span<const std::string_view> candidates) {
+  for (const auto& look : {named_otherwise, nearest_name, longer_names})
+    if (Names found = look(name, candidates); !found.empty()) return found;
+  return {};
+}
+
 /// The sections that stand once in a scene, so that their keys have one path.
 constexpr std::array<std::string_view, 3> kSingleSections{"camera", "film", "settings"};
 
-/// Path of a key in one of them that is called like this, or, if `almost`, spelt almost alike; or empty.
-std::string path_elsewhere(std::string_view key, bool almost) {
+/// Paths of the keys that are called like this, there or by another program.
+Names paths_of(std::string_view key) {
+  Names paths;
   for (const std::string_view section : kSingleSections) {
     const std::span<const std::string_view> keys = section_keys(section);
     const bool is_there = std::ranges::find(keys, key) != keys.end();
-    const std::string_view found = is_there ? key : almost ? nearest_name(key, keys) : std::string_view();
-    if (!found.empty()) return std::string(section) + '.' + std::string(found);
+    for (const std::string& name : is_there ? Names{std::string(key)} : named_otherwise(key, keys))
+      paths.push_back(std::string(section) + '.' + name);
+  }
+  return paths;
+}
+
+/// The path of a key that is spelt almost alike, or none.
+Names nearest_path(std::string_view key) {
+  for (const std::string_view section : kSingleSections)
+    for (const std::string& name : nearest_name(key, section_keys(section)))
+      return {std::string(section) + '.' + name};
+  return {};
+}
+
+/// Paths of the keys of media and shapes that a name at the scene's top may mean.
+Names paths_in_lists(std::string_view key) {
+  for (const auto& [section, list] :
+       {std::pair("medium", "media.NAME."), std::pair("shape", "shapes.NAME.")}) {
+    const std::span<const std::string_view> keys = section_keys(section);
+    const bool is_there = std::ranges::find(keys, key) != keys.end();
+    Names found = is_there ? Names{std::string(key)} : similar_names(key, keys);
+    for (std::string& name : found) name.insert(0, list);
+    if (!found.empty()) return found;
   }
   return {};
 }
@@ -82,7 +186,7 @@ std::string path_elsewhere(std::string_view key, bool almost) {
 }  // namespace
 
 std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates) {
-  return suggestion(nearest_name(name, candidates));
+  return suggestion(similar_names(name, candidates));
 }
 
 std::string did_you_mean_key(std::string_view name, std::string_view section) {
@@ -91,10 +195,14 @@ std::string did_you_mean_key(std::string_view name, std::string_view section) {
   const bool may_be_elsewhere =
       section == "scene" || std::ranges::find(kSingleSections, section) != kSingleSections.end();
   if (!may_be_elsewhere) return did_you_mean(name, keys);
-  const std::string exact = path_elsewhere(name, false);
-  if (!exact.empty()) return suggestion(exact);
-  const std::string_view near = nearest_name(name, keys);
-  return near.empty() ? suggestion(path_elsewhere(name, true)) : suggestion(near);
+  for (const Names& found : {paths_of(name), similar_names(name, keys), nearest_path(name)})
+    if (!found.empty()) return suggestion(found);
+  return section == "scene" ? suggestion(paths_in_lists(name)) : "";
+}
+
+std::vector<std::string> similar_key_paths(std::string_view name) {
+  const Names paths = paths_of(name);
+  return paths.empty() ? nearest_path(name) : paths;
 }
 
 std::string did_you_mean_file(const std::string& path) {
@@ -109,12 +217,12 @@ std::string did_you_mean_file(const std::string& path) {
   }
   std::ranges::sort(names);  // folders list their files in no order
   const std::vector<std::string_view> views(names.begin(), names.end());
-  const std::string near(nearest_name(given.filename().string(), views));
+  const Names near = nearest_name(given.filename().string(), views);
   // The project's own scenes have a script beside them that fetches their assets.
   const std::filesystem::path script = folder.parent_path() / "gallery";
   if (near.empty() && folder.filename() == "assets" && std::filesystem::is_regular_file(script, failure))
     return " (" + printable(script.string()) + " fetches the assets of the scenes beside it)";
-  return suggestion(near.empty() ? near : (folder / near).string());
+  return near.empty() ? "" : suggestion({(folder / near.front()).string()});
 }
 
 }  // namespace opaline

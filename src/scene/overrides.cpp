@@ -8,6 +8,7 @@
 #include <set>
 
 #include "opaline/scene/nearest_name.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline {
 namespace {
@@ -88,9 +89,22 @@ class Override {
       names.push_back(element_name(list, i));
       if (names.back() == name) return list.children[i];
     }
-    const std::vector<std::string_view> views(names.begin(), names.end());
-    fail("no element '" + printable(name) + "' in '" + printable(so_far) + "'" + did_you_mean(name, views),
-         "an index below " + std::to_string(list.children.size()) + " or a name");
+    if (so_far == "shapes" || so_far == "lights") fail_name(name, so_far.substr(0, so_far.size() - 1), names);
+    fail("no element '" + printable(name) + "' in '" + printable(so_far) + "'",
+         names.empty() ? "none: it is empty" : "an index below " + std::to_string(names.size()));
+  }
+
+  /// No shape or light is called so.
+  [[noreturn]] void fail_name(std::string_view name, std::string_view kind,
+                              const std::vector<std::string>& names) const {
+    constexpr std::size_t most = 8;
+    std::vector<std::string_view> views(names.begin(), names.end());
+    const std::string hint = did_you_mean(name, views);
+    views.resize(std::min(views.size(), most));
+    const std::string more =
+        names.size() > most ? " and " + std::to_string(names.size() - most) + " more" : "";
+    fail("no " + std::string(kind) + " '" + printable(name) + '\'' + hint +
+         (names.empty() ? "; there is none" : "; there is: " + printable(join(views)) + more));
   }
 
   void replace(Node& node, std::string_view value) const {

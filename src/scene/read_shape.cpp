@@ -83,11 +83,14 @@ std::size_t find_medium(const Value& value, const std::vector<Medium>& media) {
     if (media[i].name == name) return i;
     names.push_back(media[i].name);
   }
-  std::string hint = did_you_mean(name, names);
-  for (const Preset& preset : presets())
-    if (preset.name == name)
-      hint = " (a preset: say \"media\": {\"" + name + "\": {\"preset\": \"" + name + "\"}})";
-  value.fail("names no medium of this scene" + hint,
+  const bool is_preset = std::ranges::any_of(presets(), [&](const Preset& p) { return p.name == name; });
+  if (is_preset && value.node().override_index >= 0)
+    value.fail("names no medium of this scene: there is no '" + name + "' yet; add --set media." + name +
+               ".preset=" + name);
+  if (is_preset)
+    value.fail("names no medium of this scene: '" + name + "' is a preset: say \"media\": {\"" + name +
+               "\": {\"preset\": \"" + name + "\"}}");
+  value.fail("names no medium of this scene" + did_you_mean(name, names),
              names.empty() ? "a name from 'media', which is empty" : "one of " + printable(join(names)));
 }
 

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <pty.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -116,6 +117,15 @@ class Child {
 inline Outcome run_program(const std::vector<std::string>& arguments, const std::string& folder = ".",
                            const Limits& limits = {}) {
   return Child(arguments, folder, limits).wait();
+}
+
+/// Not in a root without /dev/pts.
+inline bool has_terminals() {
+  int terminal = -1, program = -1;
+  if (::openpty(&terminal, &program, nullptr, nullptr, nullptr) != 0) return false;
+  ::close(terminal);
+  ::close(program);
+  return true;
 }
 
 inline bool contains(const std::string& text, const std::string& part) {

@@ -240,6 +240,29 @@ TEST(CliFrames, OneFrameUnderAnyName) {
   EXPECT_TRUE(read_image(shot.file("a.exr")).pixels == read_image(shot.picture(2)).pixels);
 }
 
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+// Claim: frames print their plan once, and of later frames the paragraphs that differ. Source: print_plan. Fails if: each
+// frame prints all of it.
+TEST(CliFrames, PlanIsPrintedOnce) {
+  const Shot shot;
+  const auto text_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"render", shot.scene, "-o", shot.file("a.##.exr"), "--frames", "1-3"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words).out;
+  };
+  const std::string bent = text_of({});
+  EXPECT_EQ(count_of(bent, "\nframe "), 3u) << bent;
+  EXPECT_EQ(count_of(bent, "\nlights "), 1u) << bent;
+  EXPECT_EQ(count_of(bent, "\ntranslucent "), 3u) << bent;  // three areas
+  const std::string still = text_of({"--set", "shapes.blob.file=blob.01.obj"});
+  EXPECT_EQ(count_of(still, "\ntranslucent "), 1u) << still;
+}
+
 /// Runs a script of scenes/ with the program under test.
 int run_script(const std::string& variables, const std::string& script, const std::string& words) {
   const std::string command = "OPALINE='" OPALINE_PROGRAM "' " + variables + ' ' + OPALINE_SCENES_DIR + '/' +
@@ -265,6 +288,36 @@ TEST(CliFrames, Scripts) {
   EXPECT_TRUE(shot.pictures("slurm") == shot.pictures("one"));
   EXPECT_NE(run_script("", "frames.sbatch", words("slurm")), 0);
   EXPECT_NE(run_script("", "frames-parallel", ""), 0);
+}
+
+// Claim: frames.sbatch finds the program of its clone where Slurm runs a copy of it, and frames-parallel names the frames that
+// failed. `scontrol` here prints what Slurm 22.05 does. Source: the scripts. Fails if: the copy's own folder is looked at,
+// or the failed frames' numbers are lost.
+TEST(CliFrames, ScriptsInOtherPlaces) {
+  const Shot shot;
+  namespace fs = std::filesystem;
+  const fs::path clone = shot.path / "a clone";
+  fs::create_directories(clone / "scenes");
+  fs::create_directories(clone / "build/src");
+  fs::create_directories(shot.path / "spool");
+  fs::copy_file(OPALINE_SCENES_DIR "/frames.sbatch", clone / "scenes/frames.sbatch");
+  fs::copy_file(OPALINE_SCENES_DIR "/frames.sbatch", shot.path / "spool/slurm_script");
+  fs::create_symlink(OPALINE_PROGRAM, clone / "build/src/opaline");
+  put_bytes(shot.file("spool/scontrol"), "#!/bin/sh\necho 'JobId=7 JobName=opaline'\necho '   Command=" +
+                                             (clone / "scenes/frames.sbatch").string() + " a.json b c'\n");
+  fs::permissions(shot.file("spool/scontrol"), fs::perms::owner_all);
+  const std::string slurm = "SLURM_JOB_ID=7 SLURM_ARRAY_TASK_ID=2 PATH=" + shot.file("spool") + ":$PATH " +
+                            shot.file("spool/slurm_script") + ' ';
+  EXPECT_EQ(std::system(
+                (slurm + shot.scene + ' ' + shot.file("slurm.####.exr") + ' ' + shot.file("cache")).c_str()),
+            0);
+  EXPECT_TRUE(fs::exists(shot.picture(2, "slurm")));
+
+  fs::remove(shot.mesh(3));
+  const std::string words = "2 1-4 " + shot.scene + ' ' + shot.file("p.####.exr") + ' ' + shot.file("cache") +
+                            " 2>" + shot.file("err");
+  EXPECT_NE(run_script("", "frames-parallel", words), 0);
+  EXPECT_TRUE(contains(bytes_of(shot.file("err")), "failed frames: 3;")) << bytes_of(shot.file("err"));
 }
 
 std::set<std::string> names_in(const std::string& folder) {

@@ -39,15 +39,6 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// Not in a root without /dev/pts.
-  static bool is_to_be_had() {
-    int terminal = -1, program = -1;
-    if (::openpty(&terminal, &program, nullptr, nullptr, nullptr) != 0) return false;
-    ::close(terminal);
-    ::close(program);
-    return true;
-  }
-
   void resize(unsigned short columns) const {
     winsize size{40, columns, 0, 0};
     ::ioctl(terminal_, TIOCSWINSZ, &size);
@@ -97,7 +88,7 @@ std::vector<std::string> endless(const SceneFolder& folder) {
 // that nothing was kept without --resume. Source: progress.h. Fails if: a line is as long as the terminal is
 // wide or longer (it would wrap, and stay).
 TEST(CliProgress, FitsTheTerminal) {
-  if (!Terminal::is_to_be_had()) GTEST_SKIP() << "no pseudo terminals here";
+  if (!has_terminals()) GTEST_SKIP() << "no pseudo terminals here";
   const SceneFolder folder;
   Terminal terminal(endless(folder), 60);
   const std::string wide = terminal.read_until(" left", 60);
@@ -134,7 +125,7 @@ TEST(CliProgress, IsQuietInALog) {
 // Claim: over a range of frames the terminal's line is about all of it: which frame of how many. Source:
 // progress.h. Fails if: each frame starts from 0 %.
 TEST(CliProgress, OneLineForAllFrames) {
-  if (!Terminal::is_to_be_had()) GTEST_SKIP() << "no pseudo terminals here";
+  if (!has_terminals()) GTEST_SKIP() << "no pseudo terminals here";
   const SceneFolder folder;
   Terminal terminal(
       {"render", folder.scene, "-o", folder.file("a.##.exr"), "--frames", "1-4", "--resolution", "256x256"},
@@ -148,7 +139,7 @@ TEST(CliProgress, OneLineForAllFrames) {
 // Claim: a blank stands behind the longest name of a stage, and a bench shows how far a reference is. Source: progress.h.
 // Fails if: a name of more than eleven letters runs into its bar, or a child's progress goes nowhere.
 TEST(CliProgress, ProfilesAndReferences) {
-  if (!Terminal::is_to_be_had()) GTEST_SKIP() << "no pseudo terminals here";
+  if (!has_terminals()) GTEST_SKIP() << "no pseudo terminals here";
   const SceneFolder folder;
   Terminal profile({"profile", "spectralon", "--walks", "100000000"}, 80);
   EXPECT_TRUE(contains(profile.read_until("diffuse [", 20), "walks R, diffuse ["));

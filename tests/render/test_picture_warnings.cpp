@@ -126,7 +126,7 @@ TEST(PictureWarnings, TooDarkOrTooBrightForTheExposure) {
   EXPECT_TRUE(warnings_of(scene).empty());
   scene.lights = {point_light({30, 40, 80}, Rgb(2e4 * 16))};
   scene.film.exposure = 0;
-  expect_warning(scene, {"too bright", "--exposure -"});
+  expect_warning(scene, {"half of the object is overexposed (", "x white); use --exposure -"});
 
   scene = lit_ball();
   scene.mm_per_unit = 1000;

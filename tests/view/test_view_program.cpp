@@ -115,6 +115,7 @@ struct FakeDesktop : ScratchFolder {
 // Claim: the URL is opened where a person at a desktop, X11's or Wayland's, reads it on a terminal, unless --no-open says
 // not to, and nowhere else. Source: the help of view. Fails if: any of the conditions is not looked at.
 TEST(ViewProgram, OpensItsUrlOnADesktop) {
+  if (!has_terminals()) GTEST_SKIP() << "no pseudo terminals here";
   constexpr int kLong = 20000, kMoment = 300;  // ms
   const ViewFolder folder;
   const FakeDesktop desktop;
