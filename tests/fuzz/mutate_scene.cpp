@@ -58,6 +58,9 @@ const std::vector<std::string>* names_of(const std::string& key) {
       {"type", {"point", "directional", "sphere", "quad"}},
       {"medium", {"a", "b"}},
       {"group", {"one", "two"}},
+      {"channel", {"r", "g", "b", "a"}},
+      {"color_space", {"automatic", "srgb", "linear"}},
+      {"texture_mix", {"pre", "post", "both"}},
   };
   const auto found = names.find(key);
   return found == names.end() ? nullptr : &found->second;
@@ -89,6 +92,7 @@ Json value_of(const std::string& key, Random& random) {
     if (key == color) return amounts(random);
   if (key == "reflectance" || key == "subsurface_color")
     return Json{uniform(random, 0, 1), uniform(random, 0, 1), double(below(random, 2))};
+  if (key == "uv_scale" || key == "uv_offset") return Json{signed_number(random), signed_number(random)};
   if (key == "near_field" || key == "fill_holes") return random() % 2 == 0;
   if (key == "rotate") return object_of("shape.transform.rotate", random);
   if (key == "transform") return Json{transform_of(random), transform_of(random)};
@@ -122,6 +126,7 @@ Json light_of(Random& random) {
 /// The section of the schema that an object is of, by the keys that lead to it.
 std::string section_at(const std::vector<std::string>& path, const Json& object) {
   if (path.empty()) return "scene";
+  if (object.contains("texture")) return "texture";
   const std::string& first = path[0];
   if (first == "media") return path.size() == 2 ? "medium" : "";
   if (first == "lights") return path.size() == 2 ? "light." + object.value("type", Json("point")).dump() : "";
@@ -182,7 +187,7 @@ void add_key(Json& scene, Random& random) {
   const auto keys = section_keys(section);
   if (keys.empty()) return;
   const std::string key(any_of(keys, random));
-  if (key != "name" && key != "file") (*place.value)[key] = value_of(key, random);
+  if (key != "name" && key != "file" && key != "texture") (*place.value)[key] = value_of(key, random);
 }
 
 void remove_something(Json& scene, Random& random) {

@@ -158,6 +158,16 @@ bool look_at_end(Progress& progress, int status) {
   return true;
 }
 
+/// Files of meshes and pictures as they are found from anywhere.
+void make_absolute(Json& value, const std::filesystem::path& folder) {
+  if (!value.is_structured()) return;
+  for (auto& [key, child] : value.items())
+    if ((key == "file" || key == "texture") && child.is_string())
+      child = (folder / child.get<std::string>()).string();
+    else
+      make_absolute(child, folder);
+}
+
 int run(const Options& options) {
   void* const memory = ::mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE,
                               MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -167,8 +177,7 @@ int run(const Options& options) {
   for (const std::string& path : options.scenes) {
     const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
     scenes.push_back(Json::parse(file_bytes(path), nullptr, true, true));
-    for (Json& shape : scenes.back()["shapes"])
-      if (shape.contains("file")) shape["file"] = (folder / shape["file"].get<std::string>()).string();
+    make_absolute(scenes.back(), folder);
   }
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(std::min(options.seconds, 1e6)));

@@ -5,6 +5,34 @@
 
 namespace opaline::fuzz {
 
+namespace {
+
+/// The cube on two joints, below a node whose transform a skinned mesh ignores.
+void add_skin(asset_test::Asset& asset) {
+  using namespace asset_test;
+  const std::size_t vertices = asset.json["accessors"][0]["count"];
+  std::vector<std::uint8_t> joints(4 * vertices);
+  std::vector<float> weights(4 * vertices), bind(32);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    joints[4 * v + 1] = 1;
+    weights[4 * v] = .25f, weights[4 * v + 1] = .75f;
+  }
+  for (std::size_t i = 0; i < 8; ++i) bind[16 * (i / 4) + 5 * (i % 4)] = 1;
+  nlohmann::json& primitive = asset.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["JOINTS_0"] = asset.accessor("VEC4", kUnsignedByte, joints);
+  primitive["attributes"]["WEIGHTS_0"] = asset.accessor("VEC4", kFloat, weights);
+  const int matrices = asset.accessor("SCALAR", kFloat, bind);
+  asset.json["accessors"][std::size_t(matrices)]["type"] = "MAT4";
+  asset.json["accessors"][std::size_t(matrices)]["count"] = 2;
+  const int tip = asset.node({{"translation", {0, 1, 0}}, {"rotation", {0, 0, .6, .8}}});
+  const int base = asset.node({{"children", {tip}}});
+  asset.json["skins"] = {{{"joints", {base, tip}}, {"inverseBindMatrices", matrices}, {"skeleton", base}}};
+  asset.root(base);
+  asset.root(asset.node({{"mesh", 0}, {"skin", 0}, {"scale", {100, 100, 100}}}));
+}
+
+}  // namespace
+
 std::vector<std::string> seeds() {
   asset_test::Asset asset = asset_test::cube_asset();
   asset.material(
@@ -21,7 +49,9 @@ std::vector<std::string> seeds() {
                                                                {{"type", "directional"}}};
   asset.root(asset.node(
       {{"camera", 0}, {"scale", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
-  return {asset.gltf(), asset.glb()};
+  asset_test::Asset skinned = asset_test::cube_asset();
+  add_skin(skinned);
+  return {asset.gltf(), asset.glb(), skinned.gltf(), skinned.glb()};
 }
 
 std::vector<std::string> words() {
@@ -36,6 +66,12 @@ std::vector<std::string> words() {
           "\"children\":[",
           "\"mesh\":",
           "\"matrix\":[",
+          "\"skin\":0",
+          "\"joints\":[",
+          "\"inverseBindMatrices\":",
+          "\"JOINTS_0\":",
+          "\"WEIGHTS_0\":",
+          "\"MAT4\"",
           "\"rotation\":[",
           "\"uri\":\"",
           "data:application/octet-stream;base64,",

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reader of EXR and PNG files, alone and as the sums of a direct rendering are read.
+// The reader of EXR and PNG files: as pictures, layer by layer as they are compared, and as the sums of a direct rendering.
 #include "fuzz_target.h"
 #include "opaline/image/image.h"
+#include "opaline/image/metrics.h"
 #include "opaline/render/direct.h"
 
 namespace opaline::fuzz {
@@ -35,6 +36,11 @@ std::vector<std::string> seeds() {
   Image cropped = picture({"R"});
   cropped.crop_x = 7, cropped.crop_y = 5, cropped.full_width = cropped.full_height = 20;
   write_exr(exr.path(), cropped, false);
+  keep(exr.path());
+  Image layered = picture({"R", "G", "B", "A", "Z", "diffuse.R", "diffuse.G", "diffuse.B", "N.X", "N.Y",
+                           "N.Z", "error.R", "light_key.R", "CryptoObject00.R", "CryptoObject00.G"});
+  layered.metadata.emplace_back("cryptomatte/0000000/manifest", R"({"ball":"3f8a6c11"})");
+  write_exr(exr.path(), layered, true);
   keep(exr.path());
   DirectState state;
   state.passes = 3;
@@ -70,6 +76,10 @@ std::vector<std::string> words() {
           "string",
           "deepscanline",
           "multiView",
+          "diffuse.R",
+          "diffuse.",
+          ".R",
+          "A",
           "type"};
 }
 
@@ -86,6 +96,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::expect(
         image.pixels.size() == std::size_t(image.width) * std::size_t(image.height) * image.channels.size(),
         "a value a pixel and channel");
+    const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
+    fuzz::expect(object_pixels(image).size() == pixels, "a mark for each pixel");
+    for (const char* name : {"", "diffuse", "Z", "N", "error", "CryptoObject00"}) {
+      const Layer layer = extract_layer(image, name);
+      for (const auto& channel : layer.channels)
+        fuzz::expect(channel.size() == pixels, "a value for each pixel");
+      fuzz::expect(layer.names.size() == layer.channels.size(), "a name for each channel");
+      count_non_finite(layer);
+    }
   });
   fuzz::try_input([&] { read_direct_state(file.path(), scene, fuzz::kScene); });
   return 0;
