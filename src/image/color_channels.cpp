@@ -51,7 +51,8 @@ ChannelPlaces places_in(std::string_view layer, const std::vector<std::string>& 
 std::string listed(const std::vector<std::string>& channels) {
   constexpr std::size_t kMost = 12;
   std::string text;
-  for (std::size_t c = 0; c < std::min(channels.size(), kMost); ++c) text += (c > 0 ? ", " : "") + channels[c];
+  for (std::size_t c = 0; c < std::min(channels.size(), kMost); ++c)
+    text += (c > 0 ? ", " : "") + channels[c];
   return text + (channels.size() > kMost ? ", ..." : "");
 }
 
@@ -72,7 +73,8 @@ ChannelPlaces channel_places(const std::vector<std::string>& channels, const std
     places = of_layer;
   }
   if (layers.size() == 1) return places;
-  throw bad_file(path, layers.empty() ? "has no colours" : "has several layers of colours and none without a name",
+  throw bad_file(path,
+                 layers.empty() ? "has no colours" : "has several layers of colours and none without a name",
                  expected, listed(channels));
 }
 

@@ -102,7 +102,8 @@ bool LinearInput::decode() {
   const bool is_direct = !layout_->is_windowed && layout_->is_plain();
   std::vector<unsigned char> values(std::size_t(file.image_pixels()) *
                                     std::size_t(layout_->end - layout_->begin) * native_.size());
-  if (!opened_.input->read_image(0, 0, layout_->begin, layout_->end, native_, values.data())) return complain();
+  if (!opened_.input->read_image(0, 0, layout_->begin, layout_->end, native_, values.data()))
+    return complain();
   if (is_direct)
     whole_ = std::move(values);
   else
@@ -121,7 +122,8 @@ void LinearInput::place(const std::vector<unsigned char>& values) {
             y_end = std::min(file.y + file.height, file.full_y + file.full_height);
   whole_.assign(std::size_t(m_spec.width) * std::size_t(m_spec.height) * to, 0);
   for (int y = y_begin; y < y_end; ++y) {
-    const std::size_t source = std::size_t(y - file.y) * std::size_t(file.width) + std::size_t(x_begin - file.x);
+    const std::size_t source =
+        std::size_t(y - file.y) * std::size_t(file.width) + std::size_t(x_begin - file.x);
     const std::size_t target =
         std::size_t(y - file.full_y) * std::size_t(m_spec.width) + std::size_t(x_begin - file.full_x);
     layout_->take(&values[source * from], std::size_t(x_end - x_begin), bytes, &whole_[target * to]);

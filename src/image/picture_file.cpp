@@ -47,6 +47,12 @@ void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::strin
   if (claimed > densest(spec, format) * static_cast<double>(file_size) + always_allowed)
     throw bad_file(path, "the file is too short for the size it claims", {},
                    std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels");
+  // A small file may claim any size honestly: equal pixels take almost no bytes, and decoding them takes time and memory.
+  constexpr double most_pixels = 1 << 29;
+  const int width = std::max(spec.width, spec.full_width), height = std::max(spec.height, spec.full_height);
+  if (double(width) * height > most_pixels)
+    throw bad_file(path, "the picture is too large", "at most 2^29 pixels, such as 32768 x 16384",
+                   std::to_string(width) + " x " + std::to_string(height));
 }
 
 // libjpeg takes a missing end for an end, and greys what is not there.

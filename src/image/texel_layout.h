@@ -13,11 +13,11 @@ namespace opaline {
 /// Texels fill the file's display window; outside of its data window they are 0. They have the channels Y, Y A, R G B or
 /// R G B A; one of R, G and B that the file lacks is 0.
 struct TexelLayout {
-  ChannelPlaces places{};     ///< of red, green, blue and alpha in the file
-  int channels = 0;           ///< of a texel
-  ChannelPlaces sources{};    ///< of a texel's channels in the file
-  int begin = 0, end = 0;     ///< the channels of the file that hold them all
-  bool is_windowed = false;   ///< the two windows differ
+  ChannelPlaces places{};    ///< of red, green, blue and alpha in the file
+  int channels = 0;          ///< of a texel
+  ChannelPlaces sources{};   ///< of a texel's channels in the file
+  int begin = 0, end = 0;    ///< the channels of the file that hold them all
+  bool is_windowed = false;  ///< the two windows differ
 
   /// error Error{bad_input} naming the file: as channel_places; the windows have no pixel in common
   TexelLayout(const OIIO::ImageSpec& file, const std::string& path);

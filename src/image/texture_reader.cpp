@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 #include "image/cached_picture.h"
 #include "image/linear_input.h"
@@ -40,6 +41,42 @@ OIIO::TextureSystem& texture_system() {
   return *system;
 }
 
+/// Rows of the data window; where a file has tiles, rows of whole tiles.
+void read_rows(OIIO::ImageInput& input, const TexelLayout& layout, int begin, int end, OIIO::TypeDesc type,
+               void* values, const std::string& path) {
+  const OIIO::ImageSpec& spec = input.spec();
+  const bool good =
+      spec.tile_width > 0
+          ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, begin, end, spec.z, spec.z + 1, layout.begin,
+                             layout.end, type, values)
+          : input.read_scanlines(0, 0, begin, end, spec.z, layout.begin, layout.end, type, values);
+  if (!good) throw bad_file(path, "the picture is damaged: " + complaint_of(&input));
+}
+
+int rows_at_once(const OIIO::ImageSpec& spec) {
+  return spec.tile_height > 0 ? spec.tile_height : kRows;
+}
+
+/// Whether all pixels of the data window have the same bytes.
+bool is_even(const PictureSource& source) {
+  const OpenPicture opened = open_picture(source, kTextureFormats);
+  const OIIO::ImageSpec spec = opened.input->spec();
+  const TexelLayout layout(spec, source.path);
+  const std::size_t pixel = std::size_t(layout.end - layout.begin) * spec.format.size();
+  const int rows = rows_at_once(spec);
+  std::vector<unsigned char> values(pixel * std::size_t(spec.width) * std::size_t(rows)), first;
+  for (int y = spec.y; y < spec.y + spec.height; y += rows) {
+    const int end = std::min(y + rows, spec.y + spec.height);
+    read_rows(*opened.input, layout, y, end, spec.format, values.data(), source.path);
+    if (first.empty()) first.assign(values.begin(), values.begin() + std::ptrdiff_t(pixel));
+    const std::size_t others = pixel * (std::size_t(spec.width) * std::size_t(end - y) - 1);
+    if (std::memcmp(values.data(), first.data(), pixel) != 0 ||
+        std::memcmp(values.data(), values.data() + pixel, others) != 0)
+      return false;
+  }
+  return true;
+}
+
 /// Calls visit(texel, how many there are) for all texels as they stand in the file, while it returns true.
 template <class Visit>
 void for_each_texel(const PictureSource& source, bool to_linear, const Visit& visit) {
@@ -49,7 +86,7 @@ void for_each_texel(const PictureSource& source, bool to_linear, const Visit& vi
   const TexelLayout layout(spec, source.path);
   const auto channels = std::size_t(layout.end - layout.begin), width = std::size_t(spec.width);
   const bool is_bytes = spec.format == OIIO::TypeUInt8;
-  const int rows = spec.tile_height > 0 ? spec.tile_height : kRows;
+  const int rows = rows_at_once(spec);
   std::vector<float> values(width * std::size_t(rows) * channels);
   const auto value = [&](std::size_t i, std::size_t c, double otherwise) {
     if (layout.places[c] < 0) return otherwise;
@@ -62,12 +99,7 @@ void for_each_texel(const PictureSource& source, bool to_linear, const Visit& vi
   std::size_t visited = 0;
   for (int y = spec.y; y < spec.y + spec.height; y += rows) {
     const int end = std::min(y + rows, spec.y + spec.height);
-    const bool read = spec.tile_width > 0
-                          ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, end, spec.z, spec.z + 1,
-                                             layout.begin, layout.end, OIIO::TypeFloat, values.data())
-                          : input.read_scanlines(0, 0, y, end, spec.z, layout.begin, layout.end,
-                                                 OIIO::TypeFloat, values.data());
-    if (!read) throw bad_file(source.path, "the picture is damaged: " + complaint_of(&input));
+    read_rows(input, layout, y, end, OIIO::TypeFloat, values.data(), source.path);
     for (int row = std::max(y, spec.full_y); row < std::min(end, spec.full_y + spec.full_height); ++row)
       for (int x = x_begin; x < x_end; ++x, ++visited) {
         const std::size_t i = std::size_t(row - y) * width + std::size_t(x - spec.x);
@@ -91,6 +123,7 @@ class OiioPicture : public CachedPicture {
     const TexelLayout layout(opened.input->spec(), source_->path);
     const OIIO::ImageSpec spec = layout.spec(opened.input->spec());
     channels_ = layout.channels;
+    is_windowed_ = layout.is_windowed;
     for (std::size_t c = 0; c < 4; ++c) has_channel_[c] = layout.places[c] >= 0;
     const auto values = std::size_t(spec.image_pixels()) * std::size_t(spec.nchannels);
     const std::size_t cached = to_linear ? 2 : spec.format.size();
@@ -135,11 +168,14 @@ class OiioPicture : public CachedPicture {
   }
 
   std::optional<Texel> constant() const override {
+    // Bytes are compared far faster than texels, but not in windows.
+    if (!is_windowed_ && !is_even(*source_)) return {};
     std::optional<Texel> first;
     bool is_constant = true;
     for_each_texel(*source_, to_linear_, [&](const Texel& texel, std::size_t) {
       if (!first) first = texel;
-      return is_constant = texel == *first;
+      is_constant = texel == *first;
+      return is_constant && is_windowed_;
     });
     return is_constant ? first : std::nullopt;
   }
@@ -170,6 +206,7 @@ class OiioPicture : public CachedPicture {
   bool to_linear_;
   int channels_ = 0;  // of a texel
   std::array<bool, 4> has_channel_{};
+  bool is_windowed_ = false;
   TextureMemory memory_;
   std::string name_;
   OIIO::TextureSystem::TextureHandle* handle_ = nullptr;

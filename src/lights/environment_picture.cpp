@@ -118,13 +118,13 @@ std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::st
     throw bad_file(path, "is no picture of an environment", "a lat-long picture, twice as wide as high",
                    std::to_string(image.full_width) + " x " + std::to_string(image.full_height));
   NegativePixels negative;
-  const auto picture =
-      std::make_shared<EnvironmentPicture>(std::size_t(image.full_width), std::size_t(image.full_height),
-                                           colours_of(path, image, negative));
+  const auto picture = std::make_shared<EnvironmentPicture>(
+      std::size_t(image.full_width), std::size_t(image.full_height), colours_of(path, image, negative));
   if (negative.count > 0)
-    picture->warning_ = fmt::format("{}: {} of {} pixels have a negative radiance, taken as 0; the lowest is {:.3g} at {}",
-                                    path, negative.count, picture->pixels_.size(), negative.lowest,
-                                    place_text(negative.lowest_at, picture->width_));
+    picture->warning_ =
+        fmt::format("{}: {} of {} pixels have a negative radiance, taken as 0; the lowest is {:.3g} at {}",
+                    path, negative.count, picture->pixels_.size(), negative.lowest,
+                    place_text(negative.lowest_at, picture->width_));
   entry = {time, bytes, picture};
   return picture;
 }

@@ -263,7 +263,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   const std::vector<const EnvironmentPicture*> environments = environments_of(scene);
   for (const EnvironmentPicture* environment : environments)
     if (!environment->warning().empty()) plan.warnings.push_back(environment->warning());
-  for (std::string& text : lamps_turned_away(scene, world)) plan.warnings.push_back(std::move(text));
+  for (std::string& text : lights_that_miss(scene, world)) plan.warnings.push_back(std::move(text));
   // Measured: the libraries; for pixels that are not empty 26 floats of layers, and 15 to 23 bytes on their
   // way into the layers and to the file.
   const std::size_t seen = seen_pixels(scene, world);

@@ -40,9 +40,11 @@ void check_channels(const Value& file, const std::optional<Value>& channel, cons
   }
   if (missing.empty()) return;
   const std::string expected = "a channel of the image: " + there;
-  if (part == TexturePart::number && channel) channel->fail("is not in " + printable(texture.file->path()), expected);
+  if (part == TexturePart::number && channel)
+    channel->fail("is not in " + printable(texture.file->path()), expected);
   file.fail("is an image without the channel " + missing.substr(0, 1),
-            part == TexturePart::number ? "\"channel\": " + expected : "the channels R, G and B, or Y, or one alone");
+            part == TexturePart::number ? "\"channel\": " + expected
+                                        : "the channels R, G and B, or Y, or one alone");
 }
 
 Texture read_texture(const Value& value, TexturePart part) {
@@ -90,8 +92,7 @@ std::optional<Vec3d> constant_of(const Value& value, const Texture& texture) {
 ColorReading read_color(const Value& value) {
   if (!is_texture(value)) return {value.color(), {}};
   Texture texture = read_texture(value, TexturePart::color);
-  if (const std::optional<Vec3d> constant = constant_of(value, texture))
-    return {Rgb(*constant), {}};
+  if (const std::optional<Vec3d> constant = constant_of(value, texture)) return {Rgb(*constant), {}};
   return {Rgb(1), std::move(texture)};
 }
 
@@ -106,8 +107,7 @@ NumberReading read_number(const Value& value) {
 TripleReading read_triple(const Value& value) {
   if (!is_texture(value)) return {value.number_or_triple(), {}};
   Texture texture = read_texture(value, TexturePart::triple);
-  if (const std::optional<Vec3d> constant = constant_of(value, texture))
-    return {*constant, {}};
+  if (const std::optional<Vec3d> constant = constant_of(value, texture)) return {*constant, {}};
   return {Vec3d(1), std::move(texture)};
 }
 

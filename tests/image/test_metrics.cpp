@@ -339,7 +339,8 @@ TEST(Metrics, AllMeasuresAreRelativeToTheReference) {
   const std::vector<std::uint8_t> all = everywhere(reference);
   for (const auto& [right, error] : {std::pair{2., .35355}, std::pair{6., 1.45774}}) {
     const Layer picture = make_layer(20, 20, [right = right](int x, int, int) { return x < 10 ? 1 : right; });
-    EXPECT_NEAR(std::sqrt(error_statistics(relative_errors(picture, reference, all)).mean_square), error, 1e-4);
+    EXPECT_NEAR(std::sqrt(error_statistics(relative_errors(picture, reference, all)).mean_square), error,
+                1e-4);
     EXPECT_NEAR(compare_with_halves(picture, reference, reference, all).all.error, error, 1e-4);
     EXPECT_NEAR(error_beyond_noise(picture, reference, no_noise, all), error, 1e-4);
   }

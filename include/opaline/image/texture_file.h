@@ -27,7 +27,8 @@ struct TextureMemory {
   std::size_t cached = 0;   ///< at all sizes; all textures together take no more than cache_limit
 };
 
-using Texel = std::array<double, 4>;  ///< red, green, blue, alpha; a grey picture has three alike; no alpha: 1
+using Texel =
+    std::array<double, 4>;  ///< red, green, blue, alpha; a grey picture has three alike; no alpha: 1
 
 class CachedPicture;
 
