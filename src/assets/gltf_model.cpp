@@ -43,10 +43,10 @@ struct Neighbours {
 std::string existing(const Neighbours& beside, const std::string& name) {
   if (!name.starts_with(beside.folder)) return {};
   std::error_code ignored;
-  if (fs::is_regular_file(name, ignored)) return name;
+  if (fs::exists(name, ignored)) return name;
   std::string plus = name;
   std::ranges::replace(plus, ' ', '+');
-  return fs::is_regular_file(plus, ignored) ? plus : std::string();
+  return fs::exists(plus, ignored) ? plus : std::string();
 }
 
 bool file_exists(const std::string& name, void* user_data) {

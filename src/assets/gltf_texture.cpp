@@ -3,12 +3,12 @@
 
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <optional>
 #include <string_view>
 
 #include "opaline/assets/gltf_image.h"
+#include "opaline/core/input_file.h"
 
 namespace opaline {
 namespace {
@@ -100,12 +100,7 @@ GltfImage image_at(const GltfModel& gltf, std::size_t index) {
 void check_image(const GltfModel& gltf, std::size_t index) {
   const GltfImage image = image_at(gltf, index);
   std::string start = image.bytes.substr(0, 8);
-  if (!image.path.empty()) {
-    std::ifstream file(image.path, std::ios::binary);
-    if (!file) throw bad_file(image.path, "no such file");
-    start.resize(8);
-    file.read(start.data(), std::streamsize(start.size()));
-  }
+  if (!image.path.empty()) start = InputFile(image.path).read(0, 8);
   if (!start.starts_with("\x89PNG") && !start.starts_with("\xff\xd8\xff"))
     fail_at(gltf.path, record_name("images", index), "is no picture that is read", "PNG or JPEG");
 }

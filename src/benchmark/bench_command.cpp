@@ -7,10 +7,8 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <span>
-#include <sstream>
 
 #include "benchmark/bench_folder.h"
 #include "benchmark/bench_pictures.h"
@@ -24,6 +22,7 @@
 #include "benchmark/results_json.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/core/input_file.h"
 #include "opaline/core/interrupt.h"
 
 namespace opaline {
@@ -101,10 +100,7 @@ void add_notes(const BenchArguments& arguments, const std::vector<BenchScene>& s
 /// What an earlier benchmark found; read before the work.
 std::vector<WatchedRung> read_before(const BenchArguments& arguments) {
   if (arguments.against.empty()) return {};
-  std::ifstream file(arguments.against, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw bad_file(arguments.against, "cannot be read");
-  return parse_results(text.str(), arguments.against);
+  return parse_results(InputFile(arguments.against).read_all(), arguments.against);
 }
 
 /// The page last: what it shows is there then.

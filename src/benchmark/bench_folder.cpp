@@ -4,14 +4,13 @@
 #include <stdlib.h>
 
 #include <filesystem>
-#include <fstream>
 #include <optional>
-#include <sstream>
 
 #include "benchmark/machine.h"
 #include "benchmark/page.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/core/input_file.h"
 
 namespace opaline {
 namespace {
@@ -29,10 +28,7 @@ Json key_of(const KeptRun& run) {
 }
 
 std::string text_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  return fs::is_regular_file(path) ? InputFile(path).read_all() : "";
 }
 
 /// Nothing where the record is missing, damaged or of another run.

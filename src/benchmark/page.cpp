@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
+#include <filesystem>
 #include <string>
 
 #include "benchmark/figures.h"
 #include "benchmark/html.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/core/input_file.h"
 #include "opaline/image/error_picture.h"
 
 namespace opaline {
@@ -163,11 +164,9 @@ std::vector<std::string> to_charts(const BenchReport& report) {
 
 void check_page_file(const std::string& path) {
   const AtomicFile checked(path);
-  constexpr std::streamsize kHead = 4096;  // has the title
-  std::ifstream file(path, std::ios::binary);
-  std::string head(kHead, ' ');
-  file.read(head.data(), kHead);
-  if (file.gcount() > 0 && head.find("opaline") == std::string::npos)
+  constexpr std::uintmax_t kHead = 4096;  // has the title
+  const std::string head = std::filesystem::exists(path) ? InputFile(path).read(0, kHead) : "";
+  if (!head.empty() && head.find("opaline") == std::string::npos)
     throw bad_file(path, "is there already and is no page of opaline's", "another folder");
 }
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include "geometry/formats/mesh_format.h"
 #include "opaline/core/error.h"
+#include "opaline/core/input_file.h"
 #include "opaline/core/machine_memory.h"
 #include "opaline/geometry/mesh_file.h"
 #include "opaline/scene/nearest_name.h"
@@ -28,13 +28,13 @@ std::string known_extensions() {
 }
 
 /// Refuses a file that is far longer than its mesh, or than memory, before it is read.
-void check_size(const std::string& path, std::ifstream& file, std::uintmax_t size) {
+void check_size(const std::string& path, const InputFile& file) {
   constexpr std::uintmax_t spare = 1 << 20;  // programs append notes of their own
+  constexpr std::uintmax_t header = 1 << 12;
+  const std::uintmax_t size = file.size();
   const MeshFormat* format = find_mesh_format(path);
   const bool may_announce = format != nullptr && format->announced_length != nullptr;
-  const std::uintmax_t announced = may_announce ? format->announced_length(file) : 0;
-  file.clear();
-  file.seekg(0);
+  const std::uintmax_t announced = may_announce ? format->announced_length(file.read(0, header)) : 0;
   if (announced > 0 && size > 2 * announced + spare)
     throw bad_file(path, "the file is far longer than its header says", std::to_string(announced) + " bytes",
                    std::to_string(size));
@@ -53,22 +53,10 @@ void require_indexable(const std::string& path, const SourceMesh& mesh) {
 }  // namespace
 
 std::string read_mesh_bytes(const std::string& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found)
-    throw bad_file(path, "no such mesh file" + did_you_mean_file(path));
-  if (!fs::is_regular_file(status))
-    throw bad_file(path, "cannot read the mesh", "a file",
-                   fs::is_directory(status) ? "a directory" : "something else");
-  std::ifstream file(path, std::ios::binary);
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (!file || error) throw bad_file(path, "cannot open the mesh file");
-  if (size == 0) throw bad_file(path, "the mesh file is empty");
-  check_size(path, file, size);
-  std::string bytes(size, '\0');
-  file.read(bytes.data(), std::streamsize(size));
-  if (std::uintmax_t(file.gcount()) != size) throw run_failed(path, "reading the mesh file failed");
-  return bytes;
+  const InputFile file(path, "mesh file", did_you_mean_file);
+  if (file.size() == 0) throw bad_file(path, "the mesh file is empty");
+  check_size(path, file);
+  return file.read_all();
 }
 
 bool is_mesh_file_name(const std::string& path) {

@@ -6,16 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "image/picture_bytes.h"
 #include "opaline/image/texture_file.h"
 
 namespace opaline {
-
-/// A picture's bytes: a file, or in memory.
-struct PictureSource {
-  std::string path;   ///< for messages, and to read unless there are bytes
-  std::string bytes;  ///< of the file
-  bool repeats = true;
-};
 
 /// One picture in the texture cache.
 class CachedPicture {
@@ -26,7 +20,8 @@ class CachedPicture {
   /// The first texel, if all others are like it.
   virtual std::optional<Texel> constant() const = 0;
   virtual Texel mean() const = 0;
-  virtual int channels() const = 0;
+  /// Which of red, green, blue and alpha the picture has.
+  virtual std::array<bool, 4> channels() const = 0;
   virtual TextureMemory memory() const = 0;
 };
 

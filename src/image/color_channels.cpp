@@ -3,8 +3,80 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+
+#include "opaline/core/error.h"
 
 namespace opaline {
+namespace {
+
+constexpr std::array<std::string_view, 4> kColorWords{"red", "green", "blue", "alpha"};
+
+/// The part of a channel's name behind its layer, in lower case.
+std::string component_of(std::string_view channel) {
+  std::string component(channel.substr(channel.rfind('.') + 1));
+  for (char& c : component)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  return component;
+}
+
+/// With its point; empty: none.
+std::string_view layer_of(std::string_view channel) {
+  return channel.substr(0, channel.rfind('.') + 1);
+}
+
+bool is_color_word(const std::string& component, std::size_t k) {
+  return component == kColorWords[k] || component == kColorWords[k].substr(0, 1);
+}
+
+bool has_color(const ChannelPlaces& places) {
+  return std::max({places[0], places[1], places[2]}) >= 0;
+}
+
+/// Of one layer.
+ChannelPlaces places_in(std::string_view layer, const std::vector<std::string>& channels) {
+  ChannelPlaces places{-1, -1, -1, -1};
+  int grey = -1;
+  for (int c = 0; c < int(channels.size()); ++c) {
+    if (layer_of(channels[std::size_t(c)]) != layer) continue;
+    const std::string component = component_of(channels[std::size_t(c)]);
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (is_color_word(component, k)) places[k] = c;
+    if (component == "y") grey = c;
+  }
+  if (grey >= 0 && !has_color(places)) places = {grey, grey, grey, places[3]};
+  return places;
+}
+
+std::string listed(const std::vector<std::string>& channels) {
+  constexpr std::size_t kMost = 12;
+  std::string text;
+  for (std::size_t c = 0; c < std::min(channels.size(), kMost); ++c)
+    text += (c > 0 ? ", " : "") + channels[c];
+  return text + (channels.size() > kMost ? ", ..." : "");
+}
+
+}  // namespace
+
+ChannelPlaces channel_places(const std::vector<std::string>& channels, const std::string& path) {
+  constexpr const char* expected = "the channels R, G and B, or Y, or one alone";
+  if (channels.size() == 1) return {0, 0, 0, is_color_word(component_of(channels[0]), 3) ? 0 : -1};
+  if (std::ranges::any_of(channels, [](const std::string& c) { return component_of(c) == "ry"; }))
+    throw bad_file(path, "has its colours as luminance and chroma", expected, listed(channels));
+  ChannelPlaces places = places_in("", channels);
+  if (has_color(places)) return places;
+  std::set<std::string_view> layers;
+  for (const std::string& channel : channels) {
+    const ChannelPlaces of_layer = places_in(layer_of(channel), channels);
+    if (!has_color(of_layer) || is_matte_channel(channel)) continue;
+    layers.insert(layer_of(channel));
+    places = of_layer;
+  }
+  if (layers.size() == 1) return places;
+  throw bad_file(path,
+                 layers.empty() ? "has no colours" : "has several layers of colours and none without a name",
+                 expected, listed(channels));
+}
 
 bool is_matte_channel(std::string_view channel) {
   return channel.starts_with("Crypto");

@@ -21,6 +21,16 @@ struct ColorChannels {
 /// R, G, B and the same of every layer that has them. N, P and Cryptomatte's are none.
 std::vector<ColorChannels> color_channels(const std::vector<std::string>& channels);
 
+/// Indices of red, green, blue and alpha among an image's channels, -1 where it has none. The first three of a grey image
+/// are alike.
+using ChannelPlaces = std::array<int, 4>;
+
+/// The channels that textures and environments take: R, G, B or Y, and A, in upper or lower case or in full ("red"),
+/// plain or of the only layer that has them ("diffuse.R"); a single channel is grey whatever its name.
+/// in    path: for messages
+/// error Error{bad_input} naming the file: no such channels, several layers, luminance and chroma (RY, BY)
+ChannelPlaces channel_places(const std::vector<std::string>& channels, const std::string& path);
+
 /// Of Cryptomatte: names and coverages, not colours.
 bool is_matte_channel(std::string_view channel);
 /// Whether a layer is what one light adds: "diffuse_NAME", "specular_NAME", "emission_NAME".

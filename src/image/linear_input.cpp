@@ -4,12 +4,9 @@
 #include <OpenImageIO/color.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <mutex>
-#include <string_view>
 
-#include "image/picture_file.h"
 #include "opaline/core/error.h"
 
 namespace opaline {
@@ -43,27 +40,8 @@ void LinearInput::forget_source(const std::string& name) {
   registry().sources.erase(name);
 }
 
-LinearInput::Opened LinearInput::open_source(const PictureSource& source) {
-  const std::string start = source.bytes.empty() ? first_bytes(source.path) : source.bytes.substr(0, 8);
-  constexpr const char* readable = "an EXR, HDR, PNG, JPEG or TIFF picture";
-  if (start.empty()) throw bad_file(source.path, "the file is empty", readable);
-  const char* const format = picture_format(start);
-  if (format == nullptr) throw bad_file(source.path, "not a picture that can be read", readable);
-  Opened opened;
-  opened.input = OIIO::ImageInput::create(format);
-  OIIO::ImageSpec spec, config;
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  if (!source.bytes.empty() && opened.input) {
-    opened.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(source.bytes.data(), source.bytes.size());
-    if (!opened.input->set_ioproxy(opened.memory.get()))
-      throw bad_file(source.path, "cannot be read from within an asset", "a PNG or JPEG picture", format);
-  }
-  if (!opened.input || !opened.input->open(source.path, spec, config))
-    throw bad_file(source.path, "not a picture that can be read: " + complaint_of(opened.input.get()));
-  if (spec.deep) throw bad_file(source.path, "deep pictures are not supported");
-  check_picture_size(source.path, spec, format,
-                     source.bytes.empty() ? std::filesystem::file_size(source.path) : source.bytes.size());
-  return opened;
+bool LinearInput::is_held(const OpenPicture& picture, const TexelLayout& layout) {
+  return layout.is_windowed || picture.format == "png" || picture.format == "jpeg" || picture.format == "hdr";
 }
 
 bool LinearInput::open(const std::string& name, OIIO::ImageSpec& spec) {
@@ -75,17 +53,15 @@ bool LinearInput::open(const std::string& name, OIIO::ImageSpec& spec) {
     to_linear_ = found->second.to_linear;
   }
   if (!reopen()) return false;
+  is_held_ = is_held(opened_, *layout_);
   take_spec();
-  const std::string_view format = opened_.input->format_name();
-  is_sequential_ = format == "png" || format == "jpeg" || format == "hdr";
   spec = m_spec;
   return true;
 }
 
 void LinearInput::take_spec() {
-  m_spec = opened_.input->spec();
+  m_spec = layout_->spec(opened_.input->spec());
   native_ = m_spec.format;
-  m_spec.channelformats.clear();
   if (to_linear_) m_spec.set_format(OIIO::TypeHalf);
 }
 
@@ -97,7 +73,8 @@ bool LinearInput::close() {
 }
 
 bool LinearInput::seek_subimage(int subimage, int miplevel) {
-  if (is_sequential_) return subimage == 0 && miplevel == 0;
+  if (subimage != 0 || (is_held_ && miplevel != 0)) return false;
+  if (is_held_) return true;
   if (!opened_.input->seek_subimage(subimage, miplevel)) return false;
   take_spec();
   return true;
@@ -110,7 +87,8 @@ bool LinearInput::complain() {
 
 bool LinearInput::reopen() {
   try {
-    opened_ = open_source(*source_);
+    opened_ = open_picture(*source_, kTextureFormats);
+    layout_.emplace(opened_.input->spec(), source_->path);
     return true;
   } catch (const Error& failure) {
     errorfmt("{}", failure.what());
@@ -120,14 +98,47 @@ bool LinearInput::reopen() {
 
 bool LinearInput::decode() {
   if (opened_.input == nullptr && !reopen()) return false;
-  whole_.resize(std::size_t(m_spec.image_pixels()) * std::size_t(m_spec.nchannels) * native_.size());
-  if (!opened_.input->read_image(0, 0, 0, m_spec.nchannels, native_, whole_.data())) {
-    whole_ = {};
+  const OIIO::ImageSpec& file = opened_.input->spec();
+  const bool is_direct = !layout_->is_windowed && layout_->is_plain();
+  std::vector<unsigned char> values(std::size_t(file.image_pixels()) *
+                                    std::size_t(layout_->end - layout_->begin) * native_.size());
+  if (!opened_.input->read_image(0, 0, layout_->begin, layout_->end, native_, values.data()))
     return complain();
-  }
+  if (is_direct)
+    whole_ = std::move(values);
+  else
+    place(values);
   opened_ = {};
   is_given_.assign(std::size_t(m_spec.height), false);
   return true;
+}
+
+void LinearInput::place(const std::vector<unsigned char>& values) {
+  const OIIO::ImageSpec& file = opened_.input->spec();
+  const std::size_t bytes = native_.size(), from = bytes * std::size_t(layout_->end - layout_->begin),
+                    to = bytes * std::size_t(layout_->channels);
+  const int x_begin = std::max(file.x, file.full_x), y_begin = std::max(file.y, file.full_y);
+  const int x_end = std::min(file.x + file.width, file.full_x + file.full_width),
+            y_end = std::min(file.y + file.height, file.full_y + file.full_height);
+  whole_.assign(std::size_t(m_spec.width) * std::size_t(m_spec.height) * to, 0);
+  for (int y = y_begin; y < y_end; ++y) {
+    const std::size_t source =
+        std::size_t(y - file.y) * std::size_t(file.width) + std::size_t(x_begin - file.x);
+    const std::size_t target =
+        std::size_t(y - file.full_y) * std::size_t(m_spec.width) + std::size_t(x_begin - file.full_x);
+    layout_->take(&values[source * from], std::size_t(x_end - x_begin), bytes, &whole_[target * to]);
+  }
+}
+
+void* LinearInput::buffer_for(void* texels, std::size_t pixels, OIIO::TypeDesc type) {
+  if (layout_->is_plain()) return texels;
+  read_.resize(pixels * std::size_t(layout_->end - layout_->begin) * type.size());
+  return read_.data();
+}
+
+void LinearInput::finish(void* texels, std::size_t pixels, OIIO::TypeDesc type) {
+  if (!layout_->is_plain())
+    layout_->take(read_.data(), pixels, type.size(), static_cast<unsigned char*>(texels));
 }
 
 bool LinearInput::make_linear(std::size_t pixels, void* data) {
@@ -151,15 +162,17 @@ bool LinearInput::read_native_scanlines(int subimage, int miplevel, int y_begin,
   if (to_linear_) values_.resize(values);
   void* const target = to_linear_ ? static_cast<void*>(values_.data()) : data;
   const OIIO::TypeDesc type = to_linear_ ? OIIO::TypeFloat : m_spec.format;
-  if (is_sequential_) {
+  if (is_held_) {
     if (whole_.empty() && !decode()) return false;
     const unsigned char* const first = whole_.data() + std::size_t(y_begin - m_spec.y) * row * native_.size();
     OIIO::convert_pixel_values(native_, first, type, target, int(values));
     std::fill(is_given_.begin() + (y_begin - m_spec.y), is_given_.begin() + (y_end - m_spec.y), true);
     if (std::ranges::find(is_given_, false) == is_given_.end()) whole_ = {};
-  } else if (!opened_.input->read_scanlines(subimage, miplevel, y_begin, y_end, z, 0, m_spec.nchannels, type,
-                                            target)) {
-    return complain();
+  } else {
+    if (!opened_.input->read_scanlines(subimage, miplevel, y_begin, y_end, z, layout_->begin, layout_->end,
+                                       type, buffer_for(target, pixels, type)))
+      return complain();
+    finish(target, pixels, type);
   }
   return !to_linear_ || make_linear(pixels, data);
 }
@@ -168,11 +181,13 @@ bool LinearInput::read_native_tile(int subimage, int miplevel, int x, int y, int
   const std::lock_guard lock(mutex_);
   const auto pixels = std::size_t(m_spec.tile_pixels());
   if (to_linear_) values_.resize(pixels * std::size_t(m_spec.nchannels));
+  void* const target = to_linear_ ? static_cast<void*>(values_.data()) : data;
+  const OIIO::TypeDesc type = to_linear_ ? OIIO::TypeFloat : m_spec.format;
   if (!opened_.input->read_tiles(subimage, miplevel, x, x + m_spec.tile_width, y, y + m_spec.tile_height, z,
-                                 z + std::max(1, m_spec.tile_depth), 0, m_spec.nchannels,
-                                 to_linear_ ? OIIO::TypeFloat : m_spec.format,
-                                 to_linear_ ? static_cast<void*>(values_.data()) : data))
+                                 z + std::max(1, m_spec.tile_depth), layout_->begin, layout_->end, type,
+                                 buffer_for(target, pixels, type)))
     return complain();
+  finish(target, pixels, type);
   return !to_linear_ || make_linear(pixels, data);
 }
 

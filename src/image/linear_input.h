@@ -1,23 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture as the texture cache is to see it: from a file or from memory, its colours linear. Of the module
+// A picture as the texture cache is to see it: from a file or from memory, its texels linear. Of the module
 // (picture_reader.h).
 #pragma once
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/cached_picture.h"
+#include "image/picture_file.h"
+#include "image/texel_layout.h"
 
 namespace opaline {
 
-/// Decodes another input. sRGB becomes linear halves, whose rounding is below that of 8 bits; alpha stays as it is.
-/// Formats that are read from their beginning alone are decoded at once and held until each row was asked for: the cache
-/// asks for rows in any order, and OpenImageIO 2.4 goes back by opening the file anew, which a picture in memory does not survive.
+/// The formats of textures.
+inline constexpr std::string_view kTextureFormats[] = {"exr", "hdr", "png", "jpeg", "tiff"};
+
+/// Decodes another input, its first part alone. sRGB becomes linear halves, whose rounding is below that of 8 bits; alpha
+/// stays as it is. Formats that are read from their beginning alone are decoded at once and held until each row was asked
+/// for: the cache asks for rows in any order, and OpenImageIO 2.4 goes back by opening the file anew, which a picture in
+/// memory does not survive. So are pictures whose data window is not their display window: OpenImageIO 2.4 puts the
+/// texture's tiles in the wrong places if it lies within.
 class LinearInput : public OIIO::ImageInput {
  public:
   /// What inputs of this name, of none of a file, read.
@@ -26,13 +35,8 @@ class LinearInput : public OIIO::ImageInput {
   static void forget_source(const std::string& name);
   static OIIO::ImageInput* create() { return new LinearInput; }
 
-  /// The input of a source as it is.
-  /// error Error{bad_input} naming the file
-  struct Opened {
-    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
-    OIIO::ImageInput::unique_ptr input;  ///< destroyed first
-  };
-  static Opened open_source(const PictureSource& source);
+  /// Whether an opened picture is held.
+  static bool is_held(const OpenPicture& picture, const TexelLayout& layout);
 
   const char* format_name() const override { return "opaline linear"; }
   int supports(OIIO::string_view feature) const override {
@@ -40,8 +44,8 @@ class LinearInput : public OIIO::ImageInput {
   }
   bool open(const std::string& name, OIIO::ImageSpec& spec) override;
   bool close() override;
-  int current_subimage() const override { return is_sequential_ ? 0 : opened_.input->current_subimage(); }
-  int current_miplevel() const override { return is_sequential_ ? 0 : opened_.input->current_miplevel(); }
+  int current_subimage() const override { return is_held_ ? 0 : opened_.input->current_subimage(); }
+  int current_miplevel() const override { return is_held_ ? 0 : opened_.input->current_miplevel(); }
   bool seek_subimage(int subimage, int miplevel) override;
   bool read_native_scanline(int subimage, int miplevel, int y, int z, void* data) override;
   bool read_native_scanlines(int subimage, int miplevel, int y_begin, int y_end, int z, void* data) override;
@@ -51,16 +55,22 @@ class LinearInput : public OIIO::ImageInput {
   void take_spec();
   bool reopen();
   bool decode();
+  /// From the file's values to texels, in the display window.
+  void place(const std::vector<unsigned char>& values);
+  /// Where to read into what shall become texels at `texels`, and make them of it.
+  void* buffer_for(void* texels, std::size_t pixels, OIIO::TypeDesc type);
+  void finish(void* texels, std::size_t pixels, OIIO::TypeDesc type);
   bool complain();
   /// From values_ to what the cache gets.
   bool make_linear(std::size_t pixels, void* data);
 
   std::shared_ptr<const PictureSource> source_;
-  bool to_linear_ = false, is_sequential_ = false;
-  Opened opened_;
+  bool to_linear_ = false, is_held_ = false;
+  OpenPicture opened_;
+  std::optional<TexelLayout> layout_;
   OIIO::TypeDesc native_;  // of the values in the file
   std::mutex mutex_;       // of all below
-  std::vector<unsigned char> whole_;
+  std::vector<unsigned char> whole_, read_;
   std::vector<bool> is_given_;  // each row of it
   std::vector<float> values_;
 };

@@ -148,6 +148,69 @@ HalvesChannel halves_channel(const std::vector<float>& h, const std::vector<floa
   return channel;
 }
 
+/// One channel against a noisy reference, see error_beyond_noise.
+class NoisyChannel {
+ public:
+  NoisyChannel(const Layer& h, const Layer& d, const Layer& variance, std::size_t channel,
+               const std::vector<std::uint8_t>& object)
+      : width_(h.width),
+        height_(h.height),
+        h_(h.channels[channel]),
+        d_(d.channels[channel]),
+        variance_(variance.channels[channel]),
+        object_(object) {}
+
+  double error() const {
+    double largest = 0, sum = 0;
+    std::size_t pixels = 0;
+    for (std::size_t i = 0; i < object_.size(); ++i)
+      if (compared(i)) largest = std::max(largest, double(d_[i]));
+    for (std::size_t i = 0; i < object_.size(); ++i) {
+      if (!compared(i)) continue;
+      const double difference = double(h_[i]) - double(d_[i]);
+      const double scale = squared_reference(i) + 1e-4 * largest * largest;
+      if (scale > 0) sum += (difference * difference - double(variance_[i])) / scale;
+      ++pixels;
+    }
+    return pixels > 0 ? std::sqrt(std::max(0.0, sum / double(pixels))) : 0;
+  }
+
+ private:
+  bool compared(std::size_t i) const {
+    return object_[i] != 0 && std::isfinite(h_[i]) && std::isfinite(d_[i]) && std::isfinite(variance_[i]);
+  }
+
+  /// The pixel's own where its noise is small. Else its neighbours', whose noise is independent of the difference that is
+  /// divided.
+  double squared_reference(std::size_t i) const {
+    constexpr double kSmallNoise = 0.05;
+    const double own = double(d_[i]) * double(d_[i]), noise = double(variance_[i]);
+    if (noise <= 0) return own;
+    const double around = mean_square_around(i);
+    const double share = std::min(1.0, noise / (kSmallNoise * kSmallNoise * around));
+    return own + (around - own) * share;
+  }
+
+  /// The mean of d^2 - v over the neighbours, or of the pixel where there are none; at least a tenth of the pixel's variance.
+  double mean_square_around(std::size_t i) const {
+    constexpr int kReach = 2;
+    const int x = int(i) % width_, y = int(i) / width_;
+    Moments squares;
+    for (int row = std::max(0, y - kReach); row <= std::min(height_ - 1, y + kReach); ++row)
+      for (int column = std::max(0, x - kReach); column <= std::min(width_ - 1, x + kReach); ++column) {
+        const auto k = std::size_t(row) * std::size_t(width_) + std::size_t(column);
+        if (k != i && compared(k)) squares.add(double(d_[k]) * double(d_[k]) - double(variance_[k]));
+      }
+    const double noise = double(variance_[i]);
+    const double mean = squares.count() > 0 ? squares.mean() : double(d_[i]) * double(d_[i]) - noise;
+    return std::max(mean, noise / 10);
+  }
+
+  int width_, height_;
+  const std::vector<float>&h_, &d_, &variance_;
+  const std::vector<std::uint8_t>& object_;
+};
+
 }  // namespace
 
 Layer extract_layer(const Image& image, const std::string& name) {
@@ -286,24 +349,8 @@ double error_beyond_noise(const Layer& h, const Layer& d, const Layer& variance,
   require_alike(h, d, object);
   require_alike(h, variance, object);
   double worst = 0;
-  for (std::size_t c = 0; c < h.channels.size(); ++c) {
-    const auto is_counted = [&](std::size_t i) {
-      return object[i] != 0 && std::isfinite(h.channels[c][i]) && std::isfinite(d.channels[c][i]) &&
-             std::isfinite(variance.channels[c][i]);
-    };
-    double largest = 0, sum = 0;
-    for (std::size_t i = 0; i < object.size(); ++i)
-      if (is_counted(i)) largest = std::max(largest, double(h.channels[c][i]));
-    std::size_t pixels = 0;
-    for (std::size_t i = 0; i < object.size(); ++i) {
-      if (!is_counted(i)) continue;
-      const double value = double(h.channels[c][i]), off = value - double(d.channels[c][i]);
-      const double scale = value * value + 1e-4 * largest * largest;
-      if (scale > 0) sum += (off * off - double(variance.channels[c][i])) / scale;
-      ++pixels;
-    }
-    if (pixels > 0) worst = std::max(worst, std::sqrt(std::max(0.0, sum / double(pixels))));
-  }
+  for (std::size_t c = 0; c < h.channels.size(); ++c)
+    worst = std::max(worst, NoisyChannel(h, d, variance, c, object).error());
   return worst;
 }
 

@@ -2,11 +2,8 @@
 #include "image/picture_file.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 
+#include "image/png_chunks.h"
 #include "opaline/core/error.h"
 
 namespace opaline {
@@ -27,46 +24,90 @@ std::string one_line(std::string message) {
   return message;
 }
 
-}  // namespace
-
-std::string first_bytes(const std::string& path) {
-  std::error_code failure;
-  const std::filesystem::file_status status = std::filesystem::status(path, failure);
-  if (!std::filesystem::exists(status)) throw bad_file(path, "cannot read: " + failure.message());
-  if (!std::filesystem::is_regular_file(status)) throw bad_file(path, "cannot read: not a regular file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw bad_file(path, std::string("cannot read: ") + std::strerror(errno));
-  char bytes[8] = {};
-  file.read(bytes, sizeof bytes);
-  return {bytes, static_cast<std::size_t>(file.gcount())};
-}
-
-const char* picture_format(std::string_view start) {
-  start = start.substr(0, 8);
+/// By the first bytes, empty: none of them. OpenImageIO would try every format it knows, and finds a Targa in noise.
+std::string_view format_of(const PictureBytes& bytes) {
+  const std::string begin = bytes.read(0, 8);
+  const std::string_view start = begin;
   if (start.starts_with("\x76\x2f\x31\x01")) return "exr";
   if (start == "\x89PNG\r\n\x1a\n") return "png";
   if (start.starts_with("#?RADIAN") || start.starts_with("#?RGBE")) return "hdr";
   if (start.starts_with("\xff\xd8\xff")) return "jpeg";
   const std::string_view tiffs[] = {{"II*\0", 4}, {"MM\0*", 4}, {"II+\0", 4}, {"MM\0+", 4}};
   return std::ranges::any_of(tiffs, [&](std::string_view tiff) { return start.starts_with(tiff); }) ? "tiff"
-                                                                                                    : nullptr;
-}
-
-std::string complaint_of(const OIIO::ImageInput* input) {
-  const std::string complaint = input ? input->geterror() : OIIO::geterror();
-  return one_line(complaint.empty() ? "no reason given" : complaint);
+                                                                                                    : "";
 }
 
 // Beside the picture the libraries hold rows: OpenImageIO 256, however few there are, OpenEXR 32 a thread (traced on a
 // picture of 55555 x 2: 850 MB for 2.6).
-void check_picture_size(const std::string& path, const OIIO::ImageSpec& spec, std::string_view format,
-                        std::uintmax_t file_size) {
+void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::string_view format,
+                std::uintmax_t file_size) {
   constexpr double always_allowed = 512 << 20, rows_beside = 1024;
   const double claimed =
       sizeof(float) * static_cast<double>(spec.width) * (spec.height + rows_beside) * spec.nchannels;
   if (claimed > densest(spec, format) * static_cast<double>(file_size) + always_allowed)
     throw bad_file(path, "the file is too short for the size it claims", {},
                    std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels");
+  // A small file may claim any size honestly: equal pixels take almost no bytes, and decoding them takes time and memory.
+  constexpr double most_pixels = 1 << 29;
+  const int width = std::max(spec.width, spec.full_width), height = std::max(spec.height, spec.full_height);
+  if (double(width) * height > most_pixels)
+    throw bad_file(path, "the picture is too large", "at most 2^29 pixels, such as 32768 x 16384",
+                   std::to_string(width) + " x " + std::to_string(height));
+}
+
+// libjpeg takes a missing end for an end, and greys what is not there.
+void check_jpeg_end(const PictureBytes& bytes, const std::string& path) {
+  constexpr std::uintmax_t kTail = 1 << 16;  // programs append notes of their own
+  const std::string tail = bytes.read(bytes.size() - std::min(kTail, bytes.size()), kTail);
+  if (tail.rfind("\xff\xd9") == tail.npos) throw bad_file(path, "the picture is truncated");
+}
+
+/// "EXR, HDR or PNG"
+std::string in_words(std::span<const std::string_view> formats) {
+  std::string words;
+  for (std::size_t i = 0; i < formats.size(); ++i) {
+    words += i == 0 ? "" : i + 1 < formats.size() ? ", " : " or ";
+    for (const char c : formats[i]) words += char(c - 'a' + 'A');
+  }
+  return words;
+}
+
+}  // namespace
+
+std::string complaint_of(const OIIO::ImageInput* input) {
+  const std::string complaint = input ? input->geterror() : OIIO::geterror();
+  return one_line(complaint.empty() ? "no reason given" : complaint);
+}
+
+OpenPicture open_picture(const PictureSource& source, std::span<const std::string_view> formats) {
+  const PictureBytes bytes(source);
+  const std::string readable = "an image file: " + in_words(formats);
+  if (bytes.size() == 0) throw bad_file(source.path, "the file is empty", readable);
+  OpenPicture picture{format_of(bytes), {}, {}};
+  if (std::ranges::find(formats, picture.format) == formats.end())
+    throw bad_file(source.path, "not a picture that can be read", readable);
+  picture.input = OIIO::ImageInput::create(picture.format);
+  OIIO::ImageSpec spec, config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  if (!source.bytes.empty() && picture.input) {
+    picture.memory =
+        std::make_unique<OIIO::Filesystem::IOMemReader>(source.bytes.data(), source.bytes.size());
+    if (!picture.input->set_ioproxy(picture.memory.get()))
+      throw bad_file(source.path, "cannot be read from within an asset", "a PNG or JPEG picture",
+                     std::string(picture.format));
+  }
+  if (!picture.input || !picture.input->open(source.path, spec, config))
+    throw bad_file(source.path, "not a picture that can be read: " + complaint_of(picture.input.get()));
+  if (spec.deep) throw bad_file(source.path, "deep pictures are not supported");
+  check_size(source.path, spec, picture.format, bytes.size());
+  return picture;
+}
+
+void check_is_whole(const PictureSource& source) {
+  const PictureBytes bytes(source);
+  const std::string_view format = format_of(bytes);
+  if (format == "png") check_png_chunks(bytes, source.path);
+  if (format == "jpeg") check_jpeg_end(bytes, source.path);
 }
 
 }  // namespace opaline

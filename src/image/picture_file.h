@@ -1,27 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What picture files tell before they are decoded, and how OpenImageIO complains. Of the module (picture_reader.h).
+// Picture files as OpenImageIO opens them, after what can be checked before they are decoded. Of the module
+// (picture_reader.h).
 #pragma once
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "image/picture_bytes.h"
+
 namespace opaline {
 
-/// Enough of a file to know its format.
-/// error Error{bad_input} naming the file: missing, not a file
-std::string first_bytes(const std::string& path);
+/// A picture that OpenImageIO has opened, to be read with alpha not multiplied in.
+struct OpenPicture {
+  std::string_view format;  ///< "exr", "hdr", "png", "jpeg" or "tiff"
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
+  OIIO::ImageInput::unique_ptr input;  ///< destroyed first
+};
 
-/// "exr", "hdr", "png", "jpeg" or "tiff" by the first bytes; null: none of them. OpenImageIO would try every format it
-/// knows, and finds a Targa in noise.
-const char* picture_format(std::string_view start);
+/// Opens a source, which outlives it, if it is of one of the formats. Memory stays bounded by the file's own length: a
+/// damaged header can claim any size.
+/// error Error{bad_input} naming the file: missing, no regular file, not of the formats, deep, too large
+OpenPicture open_picture(const PictureSource& source, std::span<const std::string_view> formats);
 
-/// A damaged header can claim any size: memory stays bounded by the file's own.
-/// error Error{bad_input} naming the file
-void check_picture_size(const std::string& path, const OIIO::ImageSpec& spec, std::string_view format,
-                        std::uintmax_t file_size);
+/// Checks a PNG's chunks and a JPEG's end, which their decoders do not.
+/// error Error{bad_input} naming the file: truncated, damaged
+void check_is_whole(const PictureSource& source);
 
 /// The pending message; not fetched, OpenImageIO 2.5 and later print it at exit.
 std::string complaint_of(const OIIO::ImageInput* input);

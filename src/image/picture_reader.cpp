@@ -7,28 +7,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <memory>
 #include <string_view>
 
 #include "image/color_channels.h"
 #include "image/picture_file.h"
-#include "image/png_chunks.h"
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
 
 namespace opaline {
 namespace {
-
-const char* readable_format_of(const std::string& path) {
-  constexpr const char* readable = "an EXR, HDR or PNG picture";
-  const std::string start = first_bytes(path);
-  if (start.empty()) throw bad_file(path, "the file is empty", readable);
-  const char* const format = picture_format(start);
-  for (const char* const known : {"exr", "hdr", "png"})
-    if (format != nullptr && std::string_view(format) == known) return format;
-  throw bad_file(path, "not a picture that can be read", readable);
-}
 
 /// Text that describes the picture, without what describes the file.
 void copy_metadata(const OIIO::ImageSpec& spec, Image& image) {
@@ -73,23 +60,19 @@ bool has_ap1_primaries(const OIIO::ImageSpec& spec) {
 }  // namespace
 
 Image read_picture(const std::string& path) {
-  const std::string format = readable_format_of(path);
-  if (format == "png") check_png_chunks(path);
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
-  OIIO::ImageSpec spec, config;
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  if (!input || !input->open(path, spec, config))
-    throw bad_file(path, "not a picture that can be read: " + complaint_of(input.get()));
-  if (spec.deep) throw bad_file(path, "deep pictures are not supported");
-  check_picture_size(path, spec, format, std::filesystem::file_size(path));
-
+  constexpr std::string_view formats[] = {"exr", "hdr", "png"};
+  const PictureSource source{path, {}};
+  check_is_whole(source);
+  const OpenPicture picture = open_picture(source, formats);
+  OIIO::ImageInput& input = *picture.input;
+  const OIIO::ImageSpec& spec = input.spec();
   Image image = describe(spec);
   image.pixels.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
                       image.channels.size());
   // A truncated EXR opens, and is found out here.
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
-    throw bad_file(path, "the picture is damaged: " + complaint_of(input.get()));
-  if (format == "png") linearize(image, spec.alpha_channel);
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
+    throw bad_file(path, "the picture is damaged: " + complaint_of(&input));
+  if (picture.format == "png") linearize(image, spec.alpha_channel);
   if (has_ap1_primaries(spec))
     convert_colors(image.pixels, image.channels.size(), color_channels(image.channels), from_acescg());
   return image;

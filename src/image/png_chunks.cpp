@@ -3,8 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <string_view>
 
 #include "opaline/core/error.h"
@@ -56,23 +54,13 @@ std::string with_png_texts(const std::string& bytes,
   return result.append(bytes, header_end);
 }
 
-void check_png_chunks(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  check_png_chunks(file, std::filesystem::file_size(path), path);
-}
-
-void check_png_chunks(std::istream& file, std::uintmax_t size, const std::string& path) {
+void check_png_chunks(const PictureBytes& bytes, const std::string& path) {
   std::uintmax_t at = 8;  // after the signature
   std::string chunk;      // its type and data, then its CRC
   while (!chunk.starts_with("IEND")) {
-    char length[4] = {};
-    file.seekg(static_cast<std::streamoff>(at));
-    file.read(length, sizeof length);
-    const std::uintmax_t data = big_endian({length, sizeof length});
-    if (at + 12 + data > size) throw bad_file(path, "the picture is truncated");
-    chunk.resize(4 + data + 4);
-    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
-    if (!file) throw bad_file(path, "cannot read");
+    const std::uintmax_t data = big_endian(bytes.read(at, 4));
+    chunk = bytes.read(at + 4, 4 + data + 4);
+    if (chunk.size() < 4 + data + 4) throw bad_file(path, "the picture is truncated");
     if (crc_of({chunk.data(), 4 + data}) != big_endian({chunk.data() + 4 + data, 4}))
       throw bad_file(path, "the picture is damaged: wrong CRC of the chunk at byte " + std::to_string(at));
     at += 12 + data;

@@ -4,21 +4,19 @@
 // made it: libpng's simple encoder writes none.
 #pragma once
 
-#include <cstdint>
-#include <istream>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "image/picture_bytes.h"
+
 namespace opaline {
 
 /// Walks the chunks to IEND and checks each one's CRC; a byte changed or missing anywhere is found.
-/// in    path: of a file that starts with the PNG signature
+/// in    bytes: start with the PNG signature; path: for messages
 /// error Error{bad_input} naming the file: truncated, damaged
 /// from  PNG specification (ISO/IEC 15948), sections 5.3 and annex D
-void check_png_chunks(const std::string& path);
-/// The same of a file's bytes in memory. name: for messages
-void check_png_chunks(std::istream& file, std::uintmax_t size, const std::string& name);
+void check_png_chunks(const PictureBytes& bytes, const std::string& path);
 
 /// A PNG with texts behind its header, each a chunk iTXt.
 /// in    bytes: a whole PNG; texts: keywords of 1 to 79 ASCII characters, and UTF-8

@@ -7,15 +7,25 @@
 #include "opaline/image/image.h"
 
 namespace opaline {
+namespace {
+
+constexpr const char* kModule = "opaline_picture_reader.so";
+
+}  // namespace
 
 // Looked for along the run path of the program.
 void* picture_module_function(const char* name) {
-  constexpr const char* file = "opaline_picture_reader.so";
-  void* const module = ::dlopen(file, RTLD_NOW | RTLD_LOCAL);
+  void* const module = ::dlopen(kModule, RTLD_NOW | RTLD_LOCAL);
   void* const function = module != nullptr ? ::dlsym(module, name) : nullptr;
   if (function == nullptr)
-    throw run_failed(file, std::string("cannot load what reads pictures: ") + ::dlerror());
+    throw run_failed(kModule, std::string("cannot load what reads pictures: ") + ::dlerror());
   return function;
+}
+
+bool picture_module_is_loaded() {
+  void* const module = ::dlopen(kModule, RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
+  if (module != nullptr) ::dlclose(module);
+  return module != nullptr;
 }
 
 Image read_image(const std::string& path) {

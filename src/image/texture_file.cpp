@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
 #include <string_view>
 #include <utility>
@@ -68,14 +67,10 @@ bool is_tiled(const std::string& path) {
   return fs::path(path).filename().string().find(kTileWord) != std::string::npos;
 }
 
-/// 0 of what is no file: opening it says so.
+/// error as PictureBytes
 std::uint64_t content_hash(const PictureSource& source) {
-  if (!source.bytes.empty()) return XXH3_64bits(source.bytes.data(), source.bytes.size());
-  std::error_code failure;
-  if (!fs::is_regular_file(source.path, failure)) return 0;
-  std::ifstream file(source.path, std::ios::binary | std::ios::ate);
-  std::string bytes(file ? std::size_t(file.tellg()) : 0, '\0');
-  file.seekg(0).read(bytes.data(), std::streamsize(bytes.size()));
+  const PictureBytes file(source);
+  const std::string bytes = file.read(0, file.size());
   return XXH3_64bits(bytes.data(), bytes.size());
 }
 
@@ -111,13 +106,14 @@ TextureFile::~TextureFile() = default;
 
 void TextureFile::add_picture(int tile, const std::string& path, ColorSpace space) {
   PictureSource source = source_of(path, tile == 0);
-  const std::array<std::uint64_t, 4> parts{hash_, std::uint64_t(tile), std::uint64_t(space),
+  constexpr std::uint64_t kVersion = 2;  // of the texels that a file's bytes stand for
+  const std::array<std::uint64_t, 5> parts{kVersion, hash_, std::uint64_t(tile), std::uint64_t(space),
                                            content_hash(source)};
   hash_ = XXH3_64bits(parts.data(), sizeof parts);
   std::unique_ptr<const CachedPicture> picture = reader().open(std::move(source), space == ColorSpace::srgb);
   const std::optional<Texel> constant = picture->constant();
   constant_ = pictures_.empty() || constant == constant_ ? constant : std::nullopt;
-  channels_ = pictures_.empty() ? picture->channels() : std::min(channels_, picture->channels());
+  for (std::size_t c = 0; c < 4; ++c) has_channel_[c] = has_channel_[c] && picture->channels()[c];
   pictures_[tile] = std::move(picture);
 }
 

@@ -7,14 +7,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <cstring>
 
 #include "image/cached_picture.h"
 #include "image/linear_input.h"
 #include "image/picture_file.h"
-#include "image/png_chunks.h"
+#include "image/texel_layout.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
 #include "opaline/core/srgb.h"
@@ -38,68 +36,81 @@ OIIO::TextureSystem& texture_system() {
     made->attribute("max_memory_MB", float(cache_limit() >> 20));
     made->attribute("automip", 1);
     made->attribute("autotile", kRows);
-    made->attribute("gray_to_rgb", 1);
     return made;
   }();
   return *system;
 }
 
-// libjpeg takes a missing end for an end, and greys what is not there.
-void check_jpeg_end(const PictureSource& source) {
-  constexpr std::streamoff kTail = 1 << 16;  // programs append notes of their own
-  std::string tail = source.bytes;
-  if (tail.empty()) {
-    std::ifstream file(source.path, std::ios::binary | std::ios::ate);
-    file.seekg(-std::min(kTail, std::streamoff(file.tellg())), std::ios::end);
-    tail.assign(std::istreambuf_iterator<char>(file), {});
-  }
-  if (tail.rfind("\xff\xd9") == tail.npos) throw bad_file(source.path, "the picture is truncated");
+/// Rows of the data window; where a file has tiles, rows of whole tiles.
+void read_rows(OIIO::ImageInput& input, const TexelLayout& layout, int begin, int end, OIIO::TypeDesc type,
+               void* values, const std::string& path) {
+  const OIIO::ImageSpec& spec = input.spec();
+  const bool good =
+      spec.tile_width > 0
+          ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, begin, end, spec.z, spec.z + 1, layout.begin,
+                             layout.end, type, values)
+          : input.read_scanlines(0, 0, begin, end, spec.z, layout.begin, layout.end, type, values);
+  if (!good) throw bad_file(path, "the picture is damaged: " + complaint_of(&input));
 }
 
-void check_whole(const PictureSource& source) {
-  const std::string start = source.bytes.empty() ? first_bytes(source.path) : source.bytes.substr(0, 8);
-  const char* const format = picture_format(start);
-  if (format == nullptr) return;  // the reader says so
-  if (std::string_view(format) == "jpeg") check_jpeg_end(source);
-  if (std::string_view(format) != "png") return;
-  if (source.bytes.empty()) return check_png_chunks(source.path);
-  std::istringstream bytes(source.bytes);
-  check_png_chunks(bytes, source.bytes.size(), source.path);
+int rows_at_once(const OIIO::ImageSpec& spec) {
+  return spec.tile_height > 0 ? spec.tile_height : kRows;
 }
 
-/// Calls visit(red, green, blue, alpha) for all texels as they stand in the file, while it returns true.
-template <class Visit>
-void for_each_texel(const PictureSource& source, bool to_linear, const Visit& visit) {
-  const LinearInput::Opened opened = LinearInput::open_source(source);
-  OIIO::ImageInput& input = *opened.input;
-  const OIIO::ImageSpec spec = input.spec();
-  const auto channels = std::size_t(spec.nchannels), width = std::size_t(spec.width);
-  const bool is_bytes = spec.format == OIIO::TypeUInt8;
-  const int rows = spec.tile_height > 0 ? spec.tile_height : kRows;
-  std::vector<float> values(width * std::size_t(rows) * channels);
-  const auto value = [&](std::size_t i, std::size_t c) {
-    double v = double(values[i * channels + c]);
-    if (is_bytes) v = std::round(v * 255) / 255;  // exactly what colours of a scene file are
-    return to_linear && int(c) != spec.alpha_channel ? srgb_to_linear(v) : v;
-  };
-  const bool is_grey = channels < 3;
+/// Whether all pixels of the data window have the same bytes.
+bool is_even(const PictureSource& source) {
+  const OpenPicture opened = open_picture(source, kTextureFormats);
+  const OIIO::ImageSpec spec = opened.input->spec();
+  const TexelLayout layout(spec, source.path);
+  const std::size_t pixel = std::size_t(layout.end - layout.begin) * spec.format.size();
+  const int rows = rows_at_once(spec);
+  std::vector<unsigned char> values(pixel * std::size_t(spec.width) * std::size_t(rows)), first;
   for (int y = spec.y; y < spec.y + spec.height; y += rows) {
     const int end = std::min(y + rows, spec.y + spec.height);
-    const bool read =
-        spec.tile_width > 0
-            ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, end, spec.z, spec.z + 1, 0,
-                               spec.nchannels, OIIO::TypeFloat, values.data())
-            : input.read_scanlines(0, 0, y, end, spec.z, 0, spec.nchannels, OIIO::TypeFloat, values.data());
-    if (!read) throw bad_file(source.path, "the picture is damaged: " + complaint_of(&input));
-    for (std::size_t i = 0; i < width * std::size_t(end - y); ++i) {
-      const double first = value(i, 0);
-      const Texel texel{first, is_grey ? first : value(i, 1), is_grey ? first : value(i, 2),
-                        channels == 2 || channels > 3 ? value(i, channels == 2 ? 1 : 3) : 1};
-      for (const double v : texel)
-        if (!std::isfinite(v)) throw bad_file(source.path, "has a texel that is not finite");
-      if (!visit(texel)) return;
-    }
+    read_rows(*opened.input, layout, y, end, spec.format, values.data(), source.path);
+    if (first.empty()) first.assign(values.begin(), values.begin() + std::ptrdiff_t(pixel));
+    const std::size_t others = pixel * (std::size_t(spec.width) * std::size_t(end - y) - 1);
+    if (std::memcmp(values.data(), first.data(), pixel) != 0 ||
+        std::memcmp(values.data(), values.data() + pixel, others) != 0)
+      return false;
   }
+  return true;
+}
+
+/// Calls visit(texel, how many there are) for all texels as they stand in the file, while it returns true.
+template <class Visit>
+void for_each_texel(const PictureSource& source, bool to_linear, const Visit& visit) {
+  const OpenPicture opened = open_picture(source, kTextureFormats);
+  OIIO::ImageInput& input = *opened.input;
+  const OIIO::ImageSpec spec = input.spec();
+  const TexelLayout layout(spec, source.path);
+  const auto channels = std::size_t(layout.end - layout.begin), width = std::size_t(spec.width);
+  const bool is_bytes = spec.format == OIIO::TypeUInt8;
+  const int rows = rows_at_once(spec);
+  std::vector<float> values(width * std::size_t(rows) * channels);
+  const auto value = [&](std::size_t i, std::size_t c, double otherwise) {
+    if (layout.places[c] < 0) return otherwise;
+    double v = double(values[i * channels + std::size_t(layout.places[c] - layout.begin)]);
+    if (is_bytes) v = std::round(v * 255) / 255;  // exactly what colours of a scene file are
+    return to_linear && c < 3 ? srgb_to_linear(v) : v;
+  };
+  const int x_begin = std::max(spec.x, spec.full_x),
+            x_end = std::min(spec.x + spec.width, spec.full_x + spec.full_width);
+  std::size_t visited = 0;
+  for (int y = spec.y; y < spec.y + spec.height; y += rows) {
+    const int end = std::min(y + rows, spec.y + spec.height);
+    read_rows(input, layout, y, end, OIIO::TypeFloat, values.data(), source.path);
+    for (int row = std::max(y, spec.full_y); row < std::min(end, spec.full_y + spec.full_height); ++row)
+      for (int x = x_begin; x < x_end; ++x, ++visited) {
+        const std::size_t i = std::size_t(row - y) * width + std::size_t(x - spec.x);
+        const Texel texel{value(i, 0, 0), value(i, 1, 0), value(i, 2, 0), value(i, 3, 1)};
+        for (const double v : texel)
+          if (!std::isfinite(v)) throw bad_file(source.path, "has a texel that is not finite");
+        if (!visit(texel, std::size_t(1))) return;
+      }
+  }
+  const std::size_t outside = std::size_t(spec.full_width) * std::size_t(spec.full_height) - visited;
+  if (outside > 0) visit(Texel{0, 0, 0, layout.places[3] < 0 ? 1. : 0.}, outside);
 }
 
 class OiioPicture : public CachedPicture {
@@ -107,9 +118,13 @@ class OiioPicture : public CachedPicture {
   OiioPicture(PictureSource source, bool to_linear)
       : source_(std::make_shared<const PictureSource>(std::move(source))), to_linear_(to_linear) {
     static std::atomic<std::uint64_t> count{0};
-    check_whole(*source_);
-    const OIIO::ImageSpec spec = LinearInput::open_source(*source_).input->spec();
-    channels_ = spec.nchannels;
+    check_is_whole(*source_);
+    const OpenPicture opened = open_picture(*source_, kTextureFormats);
+    const TexelLayout layout(opened.input->spec(), source_->path);
+    const OIIO::ImageSpec spec = layout.spec(opened.input->spec());
+    channels_ = layout.channels;
+    is_windowed_ = layout.is_windowed;
+    for (std::size_t c = 0; c < 4; ++c) has_channel_[c] = layout.places[c] >= 0;
     const auto values = std::size_t(spec.image_pixels()) * std::size_t(spec.nchannels);
     const std::size_t cached = to_linear ? 2 : spec.format.size();
     memory_ = {values * spec.format.size(), values * cached * 4 / 3};
@@ -122,7 +137,6 @@ class OiioPicture : public CachedPicture {
     const auto wrap = source_->repeats ? OIIO::TextureOpt::WrapPeriodic : OIIO::TextureOpt::WrapClamp;
     options_.swrap = options_.twrap = wrap;
     options_.interpmode = OIIO::TextureOpt::InterpBilinear;
-    options_.fill = 1;  // alpha of a file without
   }
   ~OiioPicture() override {
     texture_system().invalidate(OIIO::ustring(name_));
@@ -131,12 +145,13 @@ class OiioPicture : public CachedPicture {
 
   std::array<float, 4> at(const TexturePlace& place) const override {
     OIIO::TextureOpt options = options_;
-    std::array<float, 4> texel{0, 0, 0, 1};
+    std::array<float, 4> texel{};
     if (!texture_system().texture(handle_, texture_system().get_perthread_info(), options, place.u, place.v,
                                   place.side_x[0], place.side_x[1], place.side_y[0], place.side_y[1],
-                                  std::max(3, std::min(channels_, 4)), texel.data()))
+                                  channels_, texel.data()))
       fail();
-    return texel;
+    if (channels_ < 3) return {texel[0], texel[0], texel[0], channels_ == 2 ? texel[1] : 1};
+    return {texel[0], texel[1], texel[2], channels_ == 4 ? texel[3] : 1};
   }
 
   // Cubic splines between the texels of every size, for slopes without steps.
@@ -146,18 +161,21 @@ class OiioPicture : public CachedPicture {
     std::array<float, 4> texel{}, along_u{}, along_v{};
     if (!texture_system().texture(handle_, texture_system().get_perthread_info(), options, place.u, place.v,
                                   place.side_x[0], place.side_x[1], place.side_y[0], place.side_y[1],
-                                  std::max(3, std::min(channels_, 4)), texel.data(), along_u.data(),
-                                  along_v.data()))
+                                  channels_, texel.data(), along_u.data(), along_v.data()))
       fail();
-    return {along_u[channel], along_v[channel]};
+    const std::size_t at = channels_ > 2 ? channel : channel == 3 ? 1 : 0;
+    return {along_u[at], along_v[at]};
   }
 
   std::optional<Texel> constant() const override {
+    // Bytes are compared far faster than texels, but not in windows.
+    if (!is_windowed_ && !is_even(*source_)) return {};
     std::optional<Texel> first;
     bool is_constant = true;
-    for_each_texel(*source_, to_linear_, [&](const Texel& texel) {
+    for_each_texel(*source_, to_linear_, [&](const Texel& texel, std::size_t) {
       if (!first) first = texel;
-      return is_constant = texel == *first;
+      is_constant = texel == *first;
+      return is_constant && is_windowed_;
     });
     return is_constant ? first : std::nullopt;
   }
@@ -165,16 +183,16 @@ class OiioPicture : public CachedPicture {
   Texel mean() const override {
     Texel sum{};
     double count = 0;
-    for_each_texel(*source_, to_linear_, [&](const Texel& texel) {
-      for (std::size_t c = 0; c < 4; ++c) sum[c] += texel[c];
-      ++count;
+    for_each_texel(*source_, to_linear_, [&](const Texel& texel, std::size_t times) {
+      for (std::size_t c = 0; c < 4; ++c) sum[c] += texel[c] * double(times);
+      count += double(times);
       return true;
     });
     for (double& value : sum) value /= count;
     return sum;
   }
 
-  int channels() const override { return channels_; }
+  std::array<bool, 4> channels() const override { return has_channel_; }
   TextureMemory memory() const override { return memory_; }
 
  private:
@@ -186,24 +204,26 @@ class OiioPicture : public CachedPicture {
 
   std::shared_ptr<const PictureSource> source_;
   bool to_linear_;
-  int channels_ = 0;
+  int channels_ = 0;  // of a texel
+  std::array<bool, 4> has_channel_{};
+  bool is_windowed_ = false;
   TextureMemory memory_;
   std::string name_;
   OIIO::TextureSystem::TextureHandle* handle_ = nullptr;
   OIIO::TextureOpt options_;
 };
 
-std::unique_ptr<CachedPicture> open_picture(PictureSource source, bool to_linear) {
+std::unique_ptr<CachedPicture> open_cached(PictureSource source, bool to_linear) {
   return std::make_unique<OiioPicture>(std::move(source), to_linear);
 }
 
 bool holds_floats(const PictureSource& source) {
-  return LinearInput::open_source(source).input->spec().format.is_floating_point();
+  return open_picture(source, kTextureFormats).input->spec().format.is_floating_point();
 }
 
 }  // namespace
 }  // namespace opaline
 
 opaline::TextureReader opaline_texture_reader() {
-  return {opaline::open_picture, opaline::holds_floats, opaline::cache_limit};
+  return {opaline::open_cached, opaline::holds_floats, opaline::cache_limit};
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/lights/environment_picture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -12,6 +14,7 @@
 #include <numeric>
 #include <utility>
 
+#include "image/color_channels.h"
 #include "lights/cumulative_shares.h"
 #include "opaline/core/error.h"
 #include "opaline/core/random.h"
@@ -40,22 +43,39 @@ std::string place_text(std::size_t pixel, std::size_t width) {
   return "pixel (" + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + ")";
 }
 
-std::vector<RgbF> colours_of(const std::string& path, const Image& image) {
-  const auto channel = [&](const char* name) {
-    return std::size_t(std::ranges::find(image.channels, name) - image.channels.begin());
-  };
-  std::array<std::size_t, 3> rgb{channel("R"), channel("G"), channel("B")};
-  if (image.channels.size() == 1) rgb = {0, 0, 0};
-  if (std::ranges::max(rgb) >= image.channels.size())
-    throw bad_file(path, "has no colours for an environment", "the channels R, G and B, or one alone");
-  std::vector<RgbF> pixels(std::size_t(image.width) * std::size_t(image.height));
+/// Pixels below zero, as sharp filters leave them beside what is bright: 0 in their place is nearest to what was meant.
+struct NegativePixels {
+  std::size_t count = 0, lowest_at = 0;
+  float lowest = 0;
+
+  void add(std::size_t pixel, float value) {
+    ++count;
+    if (value >= lowest) return;
+    lowest = value;
+    lowest_at = pixel;
+  }
+};
+
+/// The colours of the display window, 0 beside the data window.
+std::vector<RgbF> colours_of(const std::string& path, const Image& image, NegativePixels& negative) {
+  const ChannelPlaces places = channel_places(image.channels, path);
+  if (std::min({places[0], places[1], places[2]}) < 0)
+    throw bad_file(path, "has no colours for an environment", "the channels R, G and B, or Y, or one alone");
+  const auto width = std::size_t(image.full_width);
+  std::vector<RgbF> pixels(width * std::size_t(image.full_height));
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const float* const values = &image.pixels[i * image.channels.size()];
-    pixels[i] = {values[rgb[0]], values[rgb[1]], values[rgb[2]]};
-    // Lat-long pictures that were resampled with a sharp filter have pixels a little below zero.
-    for (float* const value : {&pixels[i].x, &pixels[i].y, &pixels[i].z})
-      if (!std::isfinite(*value = std::max(*value, 0.0f)))
-        throw bad_file(path, place_text(i, std::size_t(image.width)) + " is not finite", "radiance >= 0");
+    const int x = int(i % width) - image.crop_x, y = int(i / width) - image.crop_y;
+    if (x < 0 || x >= image.width || y < 0 || y >= image.height) continue;
+    const float* const values =
+        &image.pixels[(std::size_t(y) * std::size_t(image.width) + std::size_t(x)) * image.channels.size()];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float value = values[places[c]];
+      if (!std::isfinite(value))
+        throw bad_file(path, place_text(i, width) + " is not finite", "radiance >= 0", std::to_string(value));
+      pixels[i][c] = std::max(value, 0.0f);
+    }
+    const float lowest = std::min({values[places[0]], values[places[1]], values[places[2]]});
+    if (lowest < 0) negative.add(i, lowest);
   }
   return pixels;
 }
@@ -94,11 +114,17 @@ std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::st
   if (auto picture = entry.picture.lock(); picture && !missing && entry.time == time && entry.bytes == bytes)
     return picture;
   const Image image = read_image(path);
-  if (image.width != 2 * image.height)
+  if (image.full_width != 2 * image.full_height)
     throw bad_file(path, "is no picture of an environment", "a lat-long picture, twice as wide as high",
-                   std::to_string(image.width) + " x " + std::to_string(image.height));
-  const auto picture = std::make_shared<const EnvironmentPicture>(
-      std::size_t(image.width), std::size_t(image.height), colours_of(path, image));
+                   std::to_string(image.full_width) + " x " + std::to_string(image.full_height));
+  NegativePixels negative;
+  const auto picture = std::make_shared<EnvironmentPicture>(
+      std::size_t(image.full_width), std::size_t(image.full_height), colours_of(path, image, negative));
+  if (negative.count > 0)
+    picture->warning_ =
+        fmt::format("{}: {} of {} pixels have a negative radiance, taken as 0; the lowest is {:.3g} at {}",
+                    path, negative.count, picture->pixels_.size(), negative.lowest,
+                    place_text(negative.lowest_at, picture->width_));
   entry = {time, bytes, picture};
   return picture;
 }

@@ -15,8 +15,8 @@
 namespace opaline {
 namespace {
 
-// In units of white, after the exposure. Darker than the first is below 16 of a PNG's 255 levels.
-constexpr float kAlmostBlack = 0.005f, kWhite = 1;
+// In units of white, after the exposure: below 16, below 64 and at 255 of a PNG's 255 levels.
+constexpr float kAlmostBlack = 0.005f, kDark = 0.05f, kWhite = 1;
 constexpr double kWellExposed = 0.5;  // what the brightest of a picture may be
 constexpr double kFarAway = 30;       // diagonals of all shapes
 
@@ -177,18 +177,67 @@ std::string too_dark(const Scene& scene, const World& world, double brightest) {
   if (brightest > 0)
     text = fmt::format("almost black: the object is at most {:.2g} x white{}{}", brightest,
                        exposure_text(scene, brightest), unit_text(scene, brightest));
-  else if (causes.empty() && lamps_turned_away(scene, world).empty() && !has_black_medium(scene))
+  else if (causes.empty() && lights_that_miss(scene, world).empty() && !has_black_medium(scene))
     text += ": no light reaches what is seen; is every light behind it, inside a shape or in its shadow?";
   for (const std::string& cause : causes) text += "; " + cause;
   return "the picture is " + text;
 }
 
-/// What to do about a lamp that turns its back.
-std::string way_to_turn(const Scene& scene, const World& world, const Light& light, const Vec3d& center) {
-  if (!is_delta(light)) return "it shines where u x v points, so exchange u and v";
+using Corners = std::array<Vec3d, 3>;
+
+/// The largest cosine between an axis and the directions from zero to points of an edge, where one is positive. axis: unit
+double largest_cosine(const Vec3d& a, const Vec3d& b, const Vec3d& axis) {
+  const Vec3d edge = b - a;
+  const double along = dot(edge, axis), start = dot(a, axis), both = dot(a, edge);
+  const double place = (along * dot(a, a) - start * both) / (start * dot(edge, edge) - along * both);
+  double largest = -1;
+  for (const double t : {0., std::isfinite(place) ? std::clamp(place, 0., 1.) : 0., 1.}) {
+    const Vec3d point = a + edge * t;
+    largest = std::max(largest, dot(point, axis) / length(point));
+  }
+  return largest;
+}
+
+/// Whether a cone from zero and a triangle meet: an edge is in it, or its axis passes through the triangle.
+bool meets_cone(const Corners& corners, const Vec3d& axis, double least_cosine) {
+  const auto& [a, b, c] = corners;
+  for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
+    if (largest_cosine(from, to, axis) > least_cosine) return true;
+  const double sides[3] = {dot(axis, cross(a, b)), dot(axis, cross(b, c)), dot(axis, cross(c, a))};
+  const bool is_within =
+      (sides[0] > 0 && sides[1] > 0 && sides[2] > 0) || (sides[0] < 0 && sides[1] < 0 && sides[2] < 0);
+  const Vec3d normal = cross(b - a, c - a);
+  return is_within && dot(axis, normal) * dot(a, normal) > 0;
+}
+
+/// Whether the side or the cone that a light shines into has a surface in it, in shadow or not.
+bool reaches_a_surface(const Light& light, const World& world) {
+  constexpr double kGrazing = 1e-6;  // diagonals
+  const LightExtent lamp = extent(light);
+  if (!lamp.facing) return true;
+  const Vec3d center = into_world(world, *lamp.center), axis = *lamp.facing;
+  const auto* const spot = std::get_if<SpotLight>(&light.source);
+  const auto is_met = [&](const Corners& corners) {
+    if (spot != nullptr)
+      return meets_cone(corners, axis, std::cos(spot->outer_angle * std::numbers::pi / 180));
+    return std::ranges::any_of(
+        corners, [&](const Vec3d& corner) { return dot(axis, corner) > kGrazing * world.diagonal; });
+  };
+  return std::ranges::any_of(world.meshes, [&](const Mesh& mesh) {
+    return std::ranges::any_of(mesh.triangles, [&](const auto& t) {
+      return is_met(
+          {mesh.positions[t[0]] - center, mesh.positions[t[1]] - center, mesh.positions[t[2]] - center});
+    });
+  });
+}
+
+/// What to do about a light that reaches no surface.
+std::string way_to_turn(const Scene& scene, const World& world, const Light& light) {
+  if (!is_delta(light)) return "it shines where u x v points; exchange u and v";
   const Bounds box = box_of(world);
-  return fmt::format("--set lights.{}.direction={} points it at their middle", light.name,
-                     point_text(.5 * (box.low + box.high) - center, scene.mm_per_unit));
+  return fmt::format("its cone misses all shapes; --set lights.{}.direction={} points it at their middle",
+                     light.name,
+                     point_text(.5 * (box.low + box.high) - *extent(light).center, scene.mm_per_unit));
 }
 
 }  // namespace
@@ -207,28 +256,22 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
   };
   const double brightest = quantile(.99), usual = quantile(.5);
   if (brightest < double(kAlmostBlack)) return {too_dark(scene, world, brightest)};
+  if (brightest < double(kDark))
+    return {fmt::format("the image is dark: 99 % of what is seen is {:.2g} of white or less{}{}", brightest,
+                        exposure_text(scene, brightest), unit_text(scene, brightest))};
   if (usual > double(kWhite))
     return {fmt::format("half of the object is overexposed ({:.2g} x white){}{}", usual,
                         exposure_text(scene, usual), unit_text(scene, usual))};
   return {};
 }
 
-std::vector<std::string> lamps_turned_away(const Scene& scene, const World& world) {
+std::vector<std::string> lights_that_miss(const Scene& scene, const World& world) {
   std::vector<std::string> texts;
-  for (const Light& light : scene.lights) {
-    const LightExtent lamp = extent(light);
-    if (!lamp.facing || world.boxes.empty()) continue;
-    const Vec3d normal = *lamp.facing;
-    const bool is_behind = std::ranges::all_of(world.boxes, [&](const Bounds& box) {
-      const Vec3d farthest{normal.x > 0 ? box.high.x : box.low.x, normal.y > 0 ? box.high.y : box.low.y,
-                           normal.z > 0 ? box.high.z : box.low.z};
-      return dot(normal, farthest - *lamp.center) <= 0;
-    });
-    if (is_behind)
-      texts.push_back(
-          text_at(light.place, fmt::format("the light {} turns its back to every shape: {}", light.name,
-                                           way_to_turn(scene, world, light, *lamp.center))));
-  }
+  if (world.meshes.empty()) return texts;
+  for (const Light& light : scene.lights)
+    if (!reaches_a_surface(light, world))
+      texts.push_back(text_at(light.place, fmt::format("the light {} reaches no surface: {}", light.name,
+                                                       way_to_turn(scene, world, light))));
   return texts;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "image/picture_module.h"
 #include "opaline/image/texture_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/lights/light.h"
@@ -216,24 +217,30 @@ RayBuild cheaper_build(const Scene& scene, std::span<const Light> lights, const 
 // Measured: the library that reads pictures, with all that it loads.
 constexpr std::size_t kBytesOfPictureReader = 105'000'000;
 
-/// Of environments, and of all textures at their full sizes: a camera may look at less.
-std::size_t picture_bytes(const Scene& scene) {
-  std::set<const EnvironmentPicture*> environments;
+/// Each once, in the order of the lights.
+std::vector<const EnvironmentPicture*> environments_of(const Scene& scene) {
+  std::vector<const EnvironmentPicture*> environments;
   for (const Light& light : scene.lights)
     if (const auto* environment = std::get_if<EnvironmentLight>(&light.source))
-      environments.insert(environment->picture.get());
+      if (std::ranges::find(environments, environment->picture.get()) == environments.end())
+        environments.push_back(environment->picture.get());
+  return environments;
+}
+
+/// Of environments, and of all textures at their full sizes: a camera may look at less.
+std::size_t picture_bytes(const Scene& scene, const std::vector<const EnvironmentPicture*>& environments) {
   std::set<const TextureFile*> files;
   for (const Shape& shape : scene.shapes)
     for (const Texture* texture : textures_of(scene, shape)) files.insert(texture->file.get());
-  if (files.empty() && environments.empty()) return 0;
-  std::size_t decoded = 0, cached = 0, held = kBytesOfPictureReader;
+  // Loaded, too, where all textures turned out to be constant, or no shape uses them.
+  std::size_t decoded = 0, cached = 0, held = picture_module_is_loaded() ? kBytesOfPictureReader : 0;
   for (const EnvironmentPicture* environment : environments) held += environment->memory();
   for (const TextureFile* file : files) {
     const TextureMemory memory = file->memory();
     decoded = std::max(decoded, memory.decoded);
     cached += memory.cached;
   }
-  return held + decoded + std::min(cached, TextureFile::cache_limit());
+  return held + decoded + (files.empty() ? 0 : std::min(cached, TextureFile::cache_limit()));
 }
 
 }  // namespace
@@ -253,7 +260,10 @@ Plan make_plan(const Scene& scene, const World& world) {
   if (scene.shapes.empty())
     plan.warnings.push_back("the scene has no shapes: the picture shows its surroundings");
   if (scene.lights.empty()) plan.warnings.push_back("the scene has no lights: the picture is black");
-  for (std::string& text : lamps_turned_away(scene, world)) plan.warnings.push_back(std::move(text));
+  const std::vector<const EnvironmentPicture*> environments = environments_of(scene);
+  for (const EnvironmentPicture* environment : environments)
+    if (!environment->warning().empty()) plan.warnings.push_back(environment->warning());
+  for (std::string& text : lights_that_miss(scene, world)) plan.warnings.push_back(std::move(text));
   // Measured: the libraries; for pixels that are not empty 26 floats of layers, and 15 to 23 bytes on their
   // way into the layers and to the file.
   const std::size_t seen = seen_pixels(scene, world);
@@ -264,7 +274,7 @@ Plan make_plan(const Scene& scene, const World& world) {
     plan.bytes +=                                                            // as read, and mended
         2 * (mesh.uvs.size() * sizeof(CornerUvs) + mesh.tangents.size() * sizeof(CornerTangents));
   }
-  plan.bytes += picture_bytes(scene);
+  plan.bytes += picture_bytes(scene, environments);
   std::size_t samples = 0;
   for (GroupPlan& group : plan.groups) {
     group.method = scene.settings.method;

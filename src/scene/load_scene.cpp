@@ -3,15 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <vector>
 
 #include "opaline/assets/import_asset.h"
+#include "opaline/core/input_file.h"
 #include "opaline/geometry/mesh_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/scene/nearest_name.h"
@@ -26,19 +24,9 @@ namespace {
 constexpr std::size_t largest_file = std::size_t{64} << 20;  // bytes
 
 std::string read_text(const std::string& path) {
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (!std::filesystem::exists(status)) throw bad_file(path, "no such scene file" + did_you_mean_file(path));
-  if (std::filesystem::is_directory(status)) throw bad_file(path, "is a folder", "a scene file");
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw bad_file(path, std::string("cannot be read: ") + std::strerror(errno));
-  std::string text;
-  std::vector<char> chunk(1 << 16);
-  while (text.size() <= largest_file && (in.read(chunk.data(), std::ssize(chunk)) || in.gcount() > 0))
-    text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
-  if (in.bad()) throw bad_file(path, "cannot be read");
-  if (text.size() > largest_file) throw bad_file(path, "too large for a scene file", "at most 64 MiB");
-  return text;
+  const InputFile file(path, "scene file", did_you_mean_file);
+  if (file.size() > largest_file) throw bad_file(path, "too large for a scene file", "at most 64 MiB");
+  return file.read_all();
 }
 
 /// A mesh needs a light and a camera to be seen.

@@ -4,12 +4,12 @@
 #include <OpenImageIO/hash.h>
 
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <string_view>
 
 #include "opaline/assets/import_asset.h"
 #include "opaline/core/error.h"
+#include "opaline/core/input_file.h"
 #include "opaline/geometry/mesh_file.h"
 #include "opaline/image/texture_file.h"
 #include "opaline/lights/environment_picture.h"
@@ -18,14 +18,6 @@ namespace opaline {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string read_again(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  std::string bytes(file ? std::size_t(file.tellg()) : 0, '\0');
-  file.seekg(0).read(bytes.data(), std::streamsize(bytes.size()));
-  if (!file) throw bad_file(path, "cannot be read again");
-  return bytes;
-}
 
 std::string contents_of(const Shape& shape, const std::string& path) {
   try {
@@ -48,7 +40,7 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
     hash.append(length.data(), length.size());
     hash.append(part.data(), part.size());
   };
-  add(is_asset_name(path) ? import_asset(path, "").text : read_again(path));
+  add(is_asset_name(path) ? import_asset(path, "").text : InputFile(path, "scene file").read_all());
   for (const std::string& text : overrides) add(text);
   std::set<std::string> seen;
   for (const Shape& shape : scene.shapes)

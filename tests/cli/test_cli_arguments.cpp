@@ -163,7 +163,7 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"compare", out, out, "--fail-above", "%"}, "1% or .01"},
       {{"compare", out, out, "--exposure", "nan"}, "nan"},
       {{"compare", out, out, "--error-picture", "error.jpg"}, "error.jpg"},
-      {{"compare", out, out}, "cannot read"},
+      {{"compare", out, out}, "no such image file"},
   };
   for (const auto& c : cases) {
     std::vector<std::string> arguments = c.arguments;

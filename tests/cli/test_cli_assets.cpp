@@ -147,7 +147,7 @@ TEST(CliAssets, EnvironmentInPlaceOfLights) {
   const Outcome gone =
       run_program({"render", "cubes.glb", "-o", "a.exr", "--environment", "gone.exr"}, folder.path);
   EXPECT_EQ(gone.exit_code, 2);
-  EXPECT_TRUE(contains(gone.err, "gone.exr: cannot read")) << gone.err;
+  EXPECT_TRUE(contains(gone.err, "gone.exr: no such image file")) << gone.err;
 }
 
 // Claim: what an asset names and has not is a warning with file and line, and the picture is made. Fails if it is only
@@ -182,7 +182,7 @@ TEST(CliAssets, BrokenAssetsAreNamed) {
       {{"render", "bad.gltf", "-o", "a.png"}, "bad.gltf: cannot be read as glTF 2.0"},
       {{"render", "wax.glb", "-o", "a.png"}, "cannot be read as glTF 2.0: parse error at line 1, column 1"},
       {{"render", "wax.txt", "-o", "a.png"}, "wax.txt: does not begin as a scene does"},
-      {{"render", "dusk.json", "-o", "a.png"}, "dusk.json:3:9: gone.exr: cannot read"},
+      {{"render", "dusk.json", "-o", "a.png"}, "dusk.json:3:9: gone.exr: no such image file"},
       {{"import", "gone.glb", "-o", "a.json"}, "gone.glb: no such file"},
       {{"import", "cubes.glb", "--material", "gone.mtlx", "-o", "a.json"}, "gone.mtlx: no such file"},
       {{"import", "wax.txt", "-o", "a.json"}, "wax.txt: is no asset that can be imported"},

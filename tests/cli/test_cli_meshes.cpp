@@ -36,8 +36,8 @@ TEST(CliMeshes, WhatIsNoMeshIsNamedBeforeItIsRead) {
   std::filesystem::resize_file(folder.file("sparse.stl"), std::uintmax_t(3) << 30);
   const struct {
     const char *mesh, *said;
-  } cases[] = {{"folder.obj", "folder.obj: cannot read the mesh (expected a file, got a directory)"},
-               {"pipe.ply", "pipe.ply: cannot read the mesh (expected a file, got something else)"},
+  } cases[] = {{"folder.obj", "folder.obj: is a folder (expected a regular file)"},
+               {"pipe.ply", "pipe.ply: is a pipe (expected a regular file)"},
                {"missing.obj", "missing.obj: no such mesh file"},
                {"sparse.stl", "sparse.stl: the file is far longer than its header says (expected 134 bytes"}};
   for (const char* command : {"render", "info"})
@@ -46,6 +46,39 @@ TEST(CliMeshes, WhatIsNoMeshIsNamedBeforeItIsRead) {
       EXPECT_EQ(outcome.exit_code, 2) << command << ' ' << c.mesh << " signal " << outcome.signal;
       EXPECT_TRUE(contains(outcome.err, c.said)) << outcome.err;
     }
+}
+
+// Claim: a pipe that nobody writes to is named, whatever file it stands for, and nothing waits for it. Fails if: one of the
+// files is opened by itself.
+TEST(CliInputs, PipesAreRefused) {
+  const SceneFolder folder;
+  for (const char* name :
+       {"pipe.json", "pipe.glb", "pipe.mtlx", "pipe.png", "pipe.exr", "pipe.bin", "pipe.obj"})
+    ASSERT_EQ(::mkfifo(folder.file(name).c_str(), 0600), 0);
+  put_bytes(folder.file("texture.json"),
+            R"({"shapes": [{"sphere": {"radius": 1}, "reflectance": {"texture": "pipe.png"}}]})");
+  put_bytes(folder.file("room.json"), R"({"lights": [{"type": "environment", "file": "pipe.exr"}]})");
+  put_bytes(folder.file("buffer.gltf"),
+            R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "pipe.bin", "byteLength": 36}]})");
+  put_bytes(folder.file("wax.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string out = folder.file("a.exr");
+  const struct {
+    std::vector<std::string> words;
+    const char* pipe;
+  } cases[] = {{{"render", "pipe.json", "-o", out}, "pipe.json"},
+               {{"info", "pipe.glb"}, "pipe.glb"},
+               {{"render", "pipe.obj", "-o", out}, "pipe.obj"},
+               {{"render", "texture.json", "-o", out}, "pipe.png"},
+               {{"render", "room.json", "-o", out}, "pipe.exr"},
+               {{"render", "buffer.gltf", "-o", out}, "pipe.bin"},
+               {{"import", "wax.obj", "--material", "pipe.mtlx", "-o", "b.json"}, "pipe.mtlx"},
+               {{"compare", "pipe.exr", "pipe.exr"}, "pipe.exr"}};
+  for (const auto& c : cases) {
+    const Outcome outcome = Child(c.words, folder.path.string(), {}).wait(20);
+    EXPECT_EQ(outcome.exit_code, 2) << c.pipe << " signal " << outcome.signal;
+    EXPECT_TRUE(contains(outcome.err, std::string(c.pipe) + ": is a pipe (expected a regular file)"))
+        << outcome.err;
+  }
 }
 
 }  // namespace

@@ -162,7 +162,7 @@ TEST(BadMesh, MissingFileAndFolder) {
   const std::string path = scratch.file("mesh.obj");
   EXPECT_NE(error(path).find("no such mesh file"), std::string::npos);
   std::filesystem::create_directory(path);
-  EXPECT_NE(error(path).find("got a directory"), std::string::npos);
+  EXPECT_NE(error(path).find("is a folder"), std::string::npos);
 }
 
 // Claim: a PLY that claims four billion vertices or faces is refused at once, in memory that its few bytes

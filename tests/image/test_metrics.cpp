@@ -330,10 +330,27 @@ TEST(ErrorPicture, ShowsTheErrors) {
   EXPECT_EQ(values.pixels[6], 0);
 }
 
-// Claim: error_beyond_noise is the error, not the noise of the reference: a picture that is 5 % too bright is .05 / 1.05
-// off a reference with 20 % noise a pixel, and a right one less than .035. Source: the expectation of (h - d)^2 is
+// Claim: all measures divide by the reference. By hand: the left half of the picture has half of the reference's light,
+// which is an error of 0.5 there and of sqrt(0.5^2 / 2) = 0.35355 in the whole; three times the light on the right makes it
+// sqrt((0.5^2 + 2^2) / 2) = 1.45774. Tolerance: the floor (0.01 m)^2, a part of 1e-4. Fails if: the tested picture stands in
+// a divisor (0.70711 and 0.84984).
+TEST(Metrics, AllMeasuresAreRelativeToTheReference) {
+  const Layer reference = grey(20, 20, 2), no_noise = grey(20, 20, 0);
+  const std::vector<std::uint8_t> all = everywhere(reference);
+  for (const auto& [right, error] : {std::pair{2., .35355}, std::pair{6., 1.45774}}) {
+    const Layer picture = make_layer(20, 20, [right = right](int x, int, int) { return x < 10 ? 1 : right; });
+    EXPECT_NEAR(std::sqrt(error_statistics(relative_errors(picture, reference, all)).mean_square), error,
+                1e-4);
+    EXPECT_NEAR(compare_with_halves(picture, reference, reference, all).all.error, error, 1e-4);
+    EXPECT_NEAR(error_beyond_noise(picture, reference, no_noise, all), error, 1e-4);
+  }
+}
+
+// Claim: error_beyond_noise is the error, not the noise of the reference: a picture that is 5 % too bright has an error of
+// 0.05 against a reference with 20 % noise a pixel, and a right one less than 0.035. Source: the expectation of (h - d)^2 is
 // error^2 + v. Tolerance: four standard errors; over 40,000 pixels the noise's square is known to .2^2 sqrt(2 / 40,000) =
-// 2.8e-4. Fails if: the variance is not taken out (.2), or d stands in the divisor (.1 for the right picture).
+// 2.8e-4. Fails if: the variance is not taken out (.2), or a pixel's own noise stands in its divisor (.1 for the right
+// picture).
 TEST(Metrics, ErrorBeyondTheNoiseOfAReference) {
   constexpr double kNoise = .2;
   std::mt19937 random(3);
@@ -341,9 +358,9 @@ TEST(Metrics, ErrorBeyondTheNoiseOfAReference) {
   const Layer reference = make_layer(200, 200, [&](int, int, int) { return 1 + kNoise * normal(random); });
   const Layer variance = grey(200, 200, kNoise * kNoise);
   const std::vector<std::uint8_t> all = everywhere(reference);
-  EXPECT_NEAR(error_beyond_noise(grey(200, 200, 1.05), reference, variance, all), .05 / 1.05, .013);
+  EXPECT_NEAR(error_beyond_noise(grey(200, 200, 1.05), reference, variance, all), .05, .013);
   EXPECT_LT(error_beyond_noise(grey(200, 200, 1), reference, variance, all), .035);
-  EXPECT_NEAR(error_beyond_noise(grey(200, 200, 1.5), reference, variance, all), .5 / 1.5, .003);
+  EXPECT_NEAR(error_beyond_noise(grey(200, 200, 1.5), reference, variance, all), .5, .005);
 }
 
 }  // namespace

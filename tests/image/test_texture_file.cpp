@@ -2,6 +2,7 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "../core/scratch_folder.h"
@@ -82,6 +83,156 @@ TEST(TextureFile, ReadsJpegAndTiff) {
   }
 }
 
+/// A picture of floats or bytes with these channels: the values of the left half, then of the right.
+void put_channels(const std::string& path, OIIO::ImageSpec spec, const std::vector<std::string>& names,
+                  const std::array<std::vector<float>, 2>& values) {
+  spec.nchannels = int(names.size());
+  spec.channelnames = names;
+  spec.alpha_channel = int(std::ranges::find(names, "A") - names.begin());
+  if (spec.alpha_channel == spec.nchannels) spec.alpha_channel = -1;
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  const auto output = OIIO::ImageOutput::create(path);
+  std::vector<float> pixels;
+  for (int y = 0; y < spec.height; ++y)
+    for (int x = 0; x < spec.width; ++x)
+      for (const float value : values[2 * x < spec.width ? 0 : 1]) pixels.push_back(value);
+  ASSERT_TRUE(output->open(path, spec)) << path << output->geterror();
+  const bool is_written = spec.tile_width > 0 ? output->write_tiles(0, spec.width, 0, spec.height, 0, 1,
+                                                                    OIIO::TypeFloat, pixels.data())
+                                              : output->write_image(OIIO::TypeFloat, pixels.data());
+  ASSERT_TRUE(is_written && output->close()) << path << output->geterror();
+}
+
+// Claim: pictures of all counts of channels give red, green, blue and alpha, and say which of them they have; channels go by
+// their names. Tolerance: a byte, 1 / 255; JPEG's 2 of 255. Fails if: channels go by their places (grey and alpha become cyan),
+// alpha is linearized, or a missing channel is taken for 0 or 1 without a word.
+TEST(TextureFile, TakesChannelsByTheirNames) {
+  using Names = std::vector<std::string>;
+  const ScratchFolder folder;
+  const float none = -1;
+  struct Case {
+    const char* file;
+    Names names;
+    std::vector<float> left;     // by the file's channels; the right half has 1 minus them
+    std::array<float, 4> texel;  // none: there is no such channel
+  };
+  const Case cases[] = {
+      {"y.png", {"Y"}, {.2f}, {.2f, .2f, .2f, none}},
+      {"ya.png", {"Y", "A"}, {.2f, .6f}, {.2f, .2f, .2f, .6f}},
+      {"rgb.png", {"R", "G", "B"}, {.2f, .4f, .6f}, {.2f, .4f, .6f, none}},
+      {"rgba.png", {"R", "G", "B", "A"}, {.2f, .4f, .6f, .8f}, {.2f, .4f, .6f, .8f}},
+      {"y.tif", {"Y"}, {.2f}, {.2f, .2f, .2f, none}},
+      {"ya.tif", {"Y", "A"}, {.2f, .6f}, {.2f, .2f, .2f, .6f}},
+      {"rgb.tif", {"R", "G", "B"}, {.2f, .4f, .6f}, {.2f, .4f, .6f, none}},
+      {"rgba.tif", {"R", "G", "B", "A"}, {.2f, .4f, .6f, .8f}, {.2f, .4f, .6f, .8f}},
+      {"y.jpg", {"Y"}, {.2f}, {.2f, .2f, .2f, none}},
+      {"rgb.jpg", {"R", "G", "B"}, {.2f, .2f, .2f}, {.2f, .2f, .2f, none}},
+      {"rgb.hdr", {"R", "G", "B"}, {.2f, .4f, .6f}, {.2f, .4f, .6f, none}},
+      {"y.exr", {"Y"}, {.2f}, {.2f, .2f, .2f, none}},
+      {"ya.exr", {"Y", "A"}, {.2f, .6f}, {.2f, .2f, .2f, .6f}},
+      {"a.exr", {"A"}, {.2f}, {.2f, .2f, .2f, .2f}},
+      {"r.exr", {"R"}, {.2f}, {.2f, .2f, .2f, none}},
+      {"mask.exr", {"mask"}, {.2f}, {.2f, .2f, .2f, none}},
+      {"rg.exr", {"R", "G"}, {.2f, .4f}, {.2f, .4f, none, none}},
+      {"ga.exr", {"G", "A"}, {.4f, .6f}, {none, .4f, none, .6f}},
+      {"rgb.exr", {"R", "G", "B"}, {.2f, .4f, .6f}, {.2f, .4f, .6f, none}},
+      {"rgba.exr", {"R", "G", "B", "A"}, {.2f, .4f, .6f, .8f}, {.2f, .4f, .6f, .8f}},
+      {"words.exr", {"red", "green", "blue"}, {.2f, .4f, .6f}, {.2f, .4f, .6f, none}},
+      {"many.exr", {"R", "G", "B", "A", "Z", "N.X"}, {.2f, .4f, .6f, .8f, 9, 9}, {.2f, .4f, .6f, .8f}},
+      {"layer.exr", {"Z", "paint.R", "paint.G", "paint.B"}, {9, .2f, .4f, .6f}, {.2f, .4f, .6f, none}}};
+  for (const Case& c : cases) {
+    const std::string path = folder.file(c.file);
+    const bool is_float = path.ends_with("exr") || path.ends_with("hdr");
+    std::vector<float> right;
+    for (const float value : c.left) right.push_back(1 - value);
+    put_channels(path, OIIO::ImageSpec(64, 64, 1, is_float ? OIIO::TypeFloat : OIIO::TypeUInt8), c.names,
+                 {c.left, right});
+    const auto texture = TextureFile::open(path, ColorSpace::linear),
+               srgb = TextureFile::open(path, ColorSpace::srgb);
+    const auto left = texture->at(at(.25, .5)), middle = texture->at(at(.75, .5)),
+               light = srgb->at(at(.25, .5));
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(texture->has_channel(k), c.texel[k] != none) << path << k;
+      if (!texture->has_channel(k)) continue;
+      EXPECT_NEAR(left[k], c.texel[k], .01f) << path << k;
+      EXPECT_NEAR(middle[k], 1 - c.texel[k], .01f) << path << k;
+      EXPECT_NEAR(texture->mean()[k], .5, .01) << path << k;
+      EXPECT_NEAR(double(light[k]), k < 3 ? linear_of_byte(255 * double(c.texel[k])) : double(c.texel[k]),
+                  .01)
+          << path << k;
+    }
+  }
+  const auto refused = [&](const Names& names) {
+    const std::vector<float> values(names.size(), .5f);
+    put_channels(folder.file("none.exr"), OIIO::ImageSpec(8, 8, 1, OIIO::TypeFloat), names, {values, values});
+    return message_of(folder.file("none.exr"));
+  };
+  EXPECT_NE(refused({"U", "V"})
+                .find("has no colours (expected the channels R, G and B, or Y, or one alone, got U, V)"),
+            std::string::npos);
+  EXPECT_NE(refused({"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}).find("several layers"), std::string::npos);
+  EXPECT_NE(refused({"Y", "BY", "RY"}).find("luminance and chroma"), std::string::npos);
+}
+
+// Claim: a picture is its display window: 0 beside the data window, without what lies over. Source: the OpenEXR manual. The
+// same picture, written as a whole, gives the same texels, by rows and by tiles. Tolerance: none. Fails if: texels are found by
+// their places in the data window, or the data window repeats.
+TEST(TextureFile, FillsTheDisplayWindow) {
+  const ScratchFolder folder;
+  const int size = 96;
+  const auto value = [](int x, int y) { return float((x * 7 + y * 13) % 32) / 32; };
+  struct Window {
+    int x, y, width, height;
+  };
+  const Window windows[] = {
+      {16, 16, 32, 32}, {0, 48, 96, 17}, {-8, 40, 60, 70}, {-5, -5, 120, 120}, {95, 95, 1, 1}};
+  for (const Window& window : windows)
+    for (const int tile : {0, 32})
+      for (const int channels : {1, 3, 4}) {
+        OIIO::ImageSpec spec(window.width, window.height, channels, OIIO::TypeFloat);
+        spec.x = window.x;
+        spec.y = window.y;
+        spec.full_width = spec.full_height = size;
+        spec.tile_width = spec.tile_height = tile;
+        OIIO::ImageSpec whole_spec(size, size, channels, OIIO::TypeFloat);
+        std::vector<float> part, whole(std::size_t(size * size * channels));
+        for (int y = window.y; y < window.y + window.height; ++y)
+          for (int x = window.x; x < window.x + window.width; ++x)
+            for (int c = 0; c < channels; ++c) {
+              part.push_back(value(x, y));
+              if (x >= 0 && x < size && y >= 0 && y < size)
+                whole[std::size_t((y * size + x) * channels + c)] = value(x, y);
+            }
+        const auto put = [&](const std::string& path, const OIIO::ImageSpec& as,
+                             const std::vector<float>& pixels) {
+          const auto output = OIIO::ImageOutput::create(path);
+          ASSERT_TRUE(output->open(path, as) && output->write_image(OIIO::TypeFloat, pixels.data()) &&
+                      output->close());
+        };
+        const std::string name =
+            std::to_string(&window - windows) + std::to_string(tile) + std::to_string(channels);
+        put(folder.file(name + "part.exr"), spec, part);
+        put(folder.file(name + "whole.exr"), whole_spec, whole);
+        const auto a = TextureFile::open(folder.file(name + "part.exr"), ColorSpace::linear),
+                   b = TextureFile::open(folder.file(name + "whole.exr"), ColorSpace::linear);
+        for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(a->mean()[c], b->mean()[c], 1e-12) << name;
+        EXPECT_FALSE(a->constant());
+        for (int i = 0; i < 400; ++i) {
+          const float side = i % 3 == 0 ? .03f : 0;
+          const TexturePlace place{float(i) * .0371f, float(i) * .0597f, {side, 0}, {0, side}};
+          EXPECT_EQ(a->at(place), b->at(place)) << name << ' ' << i;
+        }
+      }
+  OIIO::ImageSpec beside(8, 8, 1, OIIO::TypeFloat);
+  beside.x = 100;
+  beside.full_width = beside.full_height = 64;
+  put_channels(folder.file("beside.exr"), beside, {"Y"}, {std::vector<float>{1}, std::vector<float>{1}});
+  EXPECT_NE(message_of(folder.file("beside.exr"))
+                .find("its data window lies outside of its display window (expected within 64 x 64 at 0,0, "
+                      "got 8 x 8 at 100,0)"),
+            std::string::npos);
+}
+
 // Claim: where all texels are alike their value is exact, that of "#808080" in a scene file; one other texel makes the
 // difference. Tolerance: none. Fails if the constant is found by a filtered lookup, or only the first rows are looked at.
 TEST(TextureFile, FindsConstants) {
@@ -150,9 +301,9 @@ TEST(TextureFile, RefusesBrokenFiles) {
                                                         {"changed.png", "damaged"},
                                                         {"empty.png", "empty"},
                                                         {"text.png", "EXR, HDR"},
-                                                        {"absent.png", "cannot read"},
-                                                        {"folder.png", "not a regular file"},
-                                                        {"endless.png", "not a regular file"},
+                                                        {"absent.png", "no such image file"},
+                                                        {"folder.png", "is a folder"},
+                                                        {"endless.png", "is a device"},
                                                         {"short.jpg", "truncated"}};
   for (const auto& [name, what] : broken) {
     const std::string message = message_of(folder.file(name));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures that shine from all around.
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -236,6 +237,16 @@ class EnvironmentFile : public testing::Test {
     write_exr((folder_ / "room.exr").string(), image, false);
     return (folder_ / "room.exr").string();
   }
+  /// As it is: write_exr writes 0 for what is not finite.
+  void write_raw(const Image& image) const {
+    const auto output = OIIO::ImageOutput::create("exr");
+    OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()), OIIO::TypeFloat);
+    spec.channelnames = image.channels;
+    spec.full_width = image.full_width;
+    spec.full_height = image.full_height;
+    ASSERT_TRUE(output->open((folder_ / "room.exr").string(), spec) &&
+                output->write_image(OIIO::TypeFloat, image.pixels.data()) && output->close());
+  }
   Scene scene(const std::string& light = R"("type": "environment", "file": "room.exr")") const {
     return parse_scene(R"({"shapes": [{"sphere": {"radius": 1}}], "lights": [{)" + light + "}]}",
                        (folder_ / "scene.json").string());
@@ -277,7 +288,7 @@ TEST_F(EnvironmentFile, IsReadBesideTheScene) {
 
 // Claim: what is no environment is an error that names the file and what is wrong. Fails when: it is rendered.
 TEST_F(EnvironmentFile, WhatIsNoneIsAnError) {
-  EXPECT_NE(error().find("room.exr: cannot read"), std::string::npos) << error();
+  EXPECT_NE(error().find("room.exr: no such image file"), std::string::npos) << error();
   write(64, 64, 1, {"R", "G", "B"});
   EXPECT_NE(
       error().find("room.exr: is no picture of an environment (expected a lat-long picture, twice as wide as "
@@ -286,6 +297,53 @@ TEST_F(EnvironmentFile, WhatIsNoneIsAnError) {
       << error();
   write(64, 32, 1, {"U", "V"});
   EXPECT_NE(error().find("room.exr: has no colours"), std::string::npos) << error();
+}
+
+// Claim: radiance that is not finite is an error that names the pixel, minus infinity, too; what is below zero is 0, and
+// said with how many and the lowest. Fails when: values are cut to 0 before they are looked at, or without a word.
+TEST_F(EnvironmentFile, BadRadianceIsNotTakenInSilence) {
+  int writes = 0;  // which another time of the file tells apart
+  const auto with = [&](std::size_t pixel, float value) {
+    Image image = read_image(write(64, 32, 1, {"R", "G", "B"}));
+    image.pixels[pixel * 3 + 1] = value;
+    write_raw(image);
+    std::filesystem::last_write_time(folder_ / "room.exr",
+                                     std::filesystem::file_time_type() + std::chrono::hours(++writes));
+    return error();
+  };
+  for (const char* value : {"inf", "-inf", "nan"}) {
+    const std::string said = with(64 * 2 + 5, std::stof(value));
+    EXPECT_NE(said.find("room.exr: pixel (5, 2) is not finite"), std::string::npos) << said;
+    EXPECT_NE(said.find(value), std::string::npos) << said;
+  }
+  EXPECT_EQ(with(7, -.25f), "none");
+  const auto picture = std::get<EnvironmentLight>(scene().lights[0].source).picture;
+  EXPECT_NE(picture->warning().find(
+                "room.exr: 1 of 2048 pixels have a negative radiance, taken as 0; the lowest is -0.25 at "
+                "pixel (7, 0)"),
+            std::string::npos)
+      << picture->warning();
+  EXPECT_EQ(with(7, 0), "none");
+  EXPECT_TRUE(std::get<EnvironmentLight>(scene().lights[0].source).picture->warning().empty());
+}
+
+// Claim: an environment is the display window, black beside the data window, and grey where it has Y alone, with alpha or
+// without. By hand: of 64 x 32 pixels the left upper 32 x 16 have light. Fails when: the data window is stretched over the sphere.
+TEST_F(EnvironmentFile, FillsTheDisplayWindow) {
+  for (const std::vector<std::string>& channels :
+       {std::vector<std::string>{"R", "G", "B"}, std::vector<std::string>{"Y"},
+        std::vector<std::string>{"Y", "A"}}) {
+    Image image = read_image(write(32, 16, 2, channels));
+    image.full_width = 64;
+    image.full_height = 32;
+    write_raw(image);
+    const Scene read = scene();
+    EXPECT_EQ(read.lights.size(), 1u);
+    const auto picture = std::get<EnvironmentLight>(read.lights[0].source).picture;
+    EXPECT_EQ(picture->radiance(normalized(Vec3d{1, 1, 0})), RgbF(2));
+    EXPECT_EQ(picture->radiance(normalized(Vec3d{1, -1, 0})), RgbF(0));
+    EXPECT_EQ(picture->radiance(normalized(Vec3d{-1, 1, 0})), RgbF(0));
+  }
 }
 
 }  // namespace

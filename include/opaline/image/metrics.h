@@ -93,10 +93,10 @@ struct HalvesComparison {
 HalvesComparison compare_with_halves(const Layer& h, const Layer& d1, const Layer& d2,
                                      const std::vector<std::uint8_t>& object);
 
-/// Root of the mean of ((h - d)^2 - v) / (h^2 + (.01 m)^2) over the object's pixels, of the worst channel, m the largest h
-/// of the channel there: how far h is from what a noisy reference d of known variance v tends to, relative to h, whose
-/// noise is small. The quotient's expectation is the squared error without the noise. 0 where the noise explains the whole
-/// difference.
+/// The error of compare_with_halves against one noisy reference d of known variance v, for the worst channel: the root of
+/// the mean of ((h - d)^2 - v) / (r^2 + (0.01 m)^2) over the object's pixels, m the largest d of the channel there. r^2 is
+/// d^2 where v is 0; where the noise of a pixel is 5 % or more, it is the mean of d^2 - v over its neighbours, for the
+/// pixel's own noise would bias the quotient. 0 where the noise explains the whole difference.
 /// in    three layers of the same size and number of channels, linear; object: a flag a pixel. Pixels that are not finite
 ///       in all three are left out
 double error_beyond_noise(const Layer& h, const Layer& d, const Layer& variance,

@@ -27,7 +27,8 @@ struct TextureMemory {
   std::size_t cached = 0;   ///< at all sizes; all textures together take no more than cache_limit
 };
 
-using Texel = std::array<double, 4>;  ///< red, green, blue, alpha; a grey picture has three alike
+using Texel =
+    std::array<double, 4>;  ///< red, green, blue, alpha; a grey picture has three alike; no alpha: 1
 
 class CachedPicture;
 
@@ -37,8 +38,10 @@ class TextureFile {
  public:
   /// in    path: EXR, HDR, PNG, JPEG or TIFF, a name with "<UDIM>", or "asset.glb#image/3" by its index in the asset;
   ///       space: not automatic
-  /// out   the same object while the file has not changed and somebody holds it
-  /// error Error{bad_input} naming the file: missing, damaged, no picture
+  /// out   the same object while the file has not changed and somebody holds it; the picture is the display window, 0
+  ///       beside the data window
+  /// error Error{bad_input} naming the file: missing, no regular file, damaged, no picture, no colours or several layers
+  ///       of them
   static std::shared_ptr<const TextureFile> open(const std::string& path, ColorSpace space);
   /// The space of colours in a file that does not declare another: linear if it holds floats, else sRGB.
   /// error as open
@@ -57,7 +60,8 @@ class TextureFile {
   Texel mean() const;
 
   const std::string& path() const { return path_; }
-  int channels() const { return channels_; }
+  /// Whether it has a channel of at(), in all its pictures: 0 red to 3 alpha. A grey one has the first three.
+  bool has_channel(std::size_t channel) const { return has_channel_[channel]; }
   TextureMemory memory() const;
   /// Of the cache that all textures share, bytes.
   static std::size_t cache_limit();
@@ -75,7 +79,7 @@ class TextureFile {
   std::string path_;
   std::map<int, std::unique_ptr<const CachedPicture>> pictures_;  // by tile; a plain one is 0
   std::optional<Texel> constant_;
-  int channels_ = 0;
+  std::array<bool, 4> has_channel_{true, true, true, true};
   std::uint64_t hash_ = 0;
 };
 

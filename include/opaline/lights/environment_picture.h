@@ -22,8 +22,9 @@ class EnvironmentPicture {
   /// in    pixels: rows from the top, all finite and >= 0
   EnvironmentPicture(std::size_t width, std::size_t height, std::vector<RgbF> pixels);
 
-  /// The picture of a file; the same object while the file has not changed and somebody holds it.
-  /// error Error{bad_input}: as read_image; the shape or a value is not that of an environment
+  /// The display window of a file, black beside the data window; the same object while the file has not changed and
+  /// somebody holds it. Negative radiance counts as 0, see warning().
+  /// error Error{bad_input}: as read_image; the shape is not that of an environment; a value is not finite
   static std::shared_ptr<const EnvironmentPicture> read(const std::string& path);
 
   /// in    direction: unit
@@ -77,6 +78,8 @@ class EnvironmentPicture {
               double turn, std::span<Sample> samples) const;
   float density(const Vec3d& direction, const Vec3d& normal, const InLobe& lobe) const;
 
+  /// Says which pixels of the file are negative; empty: none.
+  const std::string& warning() const { return warning_; }
   bool is_grey() const { return is_grey_; }
   /// At most, while it is read: four channels of the file beside the pixels and their tables; bytes.
   std::size_t memory() const;
@@ -120,6 +123,7 @@ class EnvironmentPicture {
   std::vector<RgbF> pixels_;
   bool is_grey_ = true;
   std::uint64_t hash_ = 0;
+  std::string warning_;
   // Cells: means over pixels, where there are many.
   std::size_t step_ = 1, columns_ = 0, rows_ = 0;
   std::vector<double> row_cosines_;  ///< of the angles from +y at the rows' borders

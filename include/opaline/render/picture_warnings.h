@@ -16,7 +16,7 @@ namespace opaline {
 /// in    image: of the scene, with R G B and the coverage A
 std::vector<std::string> picture_warnings(const Scene& scene, const World& world, const Image& image);
 
-/// Lamps that have a back and turn it to every shape; one line each. Says so before a picture is made.
-std::vector<std::string> lamps_turned_away(const Scene& scene, const World& world);
+/// Lights whose side or cone has no surface in it, one line each, before an image is made.
+std::vector<std::string> lights_that_miss(const Scene& scene, const World& world);
 
 }  // namespace opaline

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <istream>
 #include <string>
+#include <string_view>
 
 #include "geometry/source_mesh.h"
 #include "opaline/scene/mesh_formats.h"
@@ -25,7 +25,8 @@ struct MeshFormat {
   std::string (*contents)(const std::string& path) = nullptr;
 
   /// The length of the whole file as its header announces it; 0 if it does not. Null: the format never does.
-  std::uintmax_t (*announced_length)(std::istream& file) = nullptr;
+  /// in    start: of the file, 4 KiB or all
+  std::uintmax_t (*announced_length)(std::string_view start) = nullptr;
 };
 
 /// Each of kMeshFormats, by its index: what the format's file defines. One without does not link.

@@ -154,10 +154,9 @@ SourceMesh read_stl(const std::string& path, std::string& bytes, MeshUvs) {
 }
 
 /// Of a binary file.
-std::uintmax_t announced_length(std::istream& file) {
-  std::array<char, binary_header> head{};
-  if (!file.read(head.data(), head.size())) return 0;
-  const std::string_view text(head.data(), head.size());
+std::uintmax_t announced_length(std::string_view start) {
+  if (start.size() < binary_header) return 0;
+  const std::string_view text = start.substr(0, binary_header);
   if (text.starts_with("solid") && text.find('\0') == text.npos) return 0;
   return binary_size(text);
 }

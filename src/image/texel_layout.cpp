@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "image/texel_layout.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+std::string window_text(int x, int y, int width, int height) {
+  return std::to_string(width) + " x " + std::to_string(height) + " at " + std::to_string(x) + "," +
+         std::to_string(y);
+}
+
+}  // namespace
+
+TexelLayout::TexelLayout(const OIIO::ImageSpec& file, const std::string& path)
+    : places(channel_places(file.channelnames, path)) {
+  const bool is_grey = places[0] == places[1] && places[0] == places[2];
+  if (is_grey)
+    sources = {places[0], places[3], -1, -1};
+  else
+    sources = places;
+  channels = (is_grey ? 1 : 3) + (places[3] >= 0 ? 1 : 0);
+  begin = file.nchannels;
+  for (int c = 0; c < channels; ++c) {
+    if (sources[std::size_t(c)] < 0) continue;
+    begin = std::min(begin, sources[std::size_t(c)]);
+    end = std::max(end, sources[std::size_t(c)] + 1);
+  }
+  is_windowed = file.x != file.full_x || file.y != file.full_y || file.width != file.full_width ||
+                file.height != file.full_height;
+  if (file.x >= file.full_x + file.full_width || file.x + file.width <= file.full_x ||
+      file.y >= file.full_y + file.full_height || file.y + file.height <= file.full_y)
+    throw bad_file(path, "its data window lies outside of its display window",
+                   "within " + window_text(file.full_x, file.full_y, file.full_width, file.full_height),
+                   window_text(file.x, file.y, file.width, file.height));
+}
+
+bool TexelLayout::is_plain() const {
+  for (int c = 0; c < channels; ++c)
+    if (sources[std::size_t(c)] != begin + c) return false;
+  return end - begin == channels;
+}
+
+OIIO::ImageSpec TexelLayout::spec(const OIIO::ImageSpec& file) const {
+  OIIO::ImageSpec texels = file;
+  texels.nchannels = channels;
+  texels.channelformats.clear();
+  texels.default_channel_names();
+  texels.alpha_channel = places[3] >= 0 ? channels - 1 : -1;
+  if (!is_windowed) return texels;
+  texels.x = texels.y = texels.full_x = texels.full_y = 0;
+  texels.width = file.full_width;
+  texels.height = file.full_height;
+  texels.tile_width = texels.tile_height = texels.tile_depth = 0;
+  return texels;
+}
+
+void TexelLayout::take(const unsigned char* values, std::size_t pixels, std::size_t bytes,
+                       unsigned char* texels) const {
+  const std::size_t step = bytes * std::size_t(end - begin);
+  for (std::size_t i = 0; i < pixels; ++i, values += step)
+    for (int c = 0; c < channels; ++c, texels += bytes) {
+      const int source = sources[std::size_t(c)];
+      if (source < 0)
+        std::memset(texels, 0, bytes);
+      else
+        std::memcpy(texels, values + bytes * std::size_t(source - begin), bytes);
+    }
+}
+
+}  // namespace opaline
