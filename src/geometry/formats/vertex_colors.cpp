@@ -30,12 +30,12 @@ std::vector<RgbF> FileColors::linear(std::size_t elements) const {
   const float scale = counts_to_255 ? 1.0f / 255 : 1.0f;
   std::vector<RgbF> colors;
   colors.reserve(elements);
-  for (RgbF color : colors_) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      color[c] = usable(color[c] * scale);
-      if (counts_to_255 || coding_ == ColorCoding::srgb) color[c] = float(srgb_to_linear(color[c]));
+  for (const RgbF& color : colors_) {
+    RgbF& linear = colors.emplace_back(1);
+    for (std::size_t c = 0; c < 3 && color != kNone; ++c) {
+      linear[c] = usable(color[c] * scale);
+      if (counts_to_255 || coding_ == ColorCoding::srgb) linear[c] = float(srgb_to_linear(linear[c]));
     }
-    colors.push_back(color);
   }
   colors.resize(elements, RgbF(1));
   return colors;

@@ -20,13 +20,15 @@ class FileColors {
   bool empty() const { return colors_.empty(); }
   /// The color of the element with this index; indices ascend.
   void set(std::size_t index, const RgbF& color) {
-    colors_.resize(index, RgbF(1));
+    colors_.resize(index, kNone);
     colors_.push_back(color);
   }
   /// Linear, from 0 to 1, one an element. Whole numbers of which one exceeds 1 count to 255 and are sRGB.
   std::vector<RgbF> linear(std::size_t elements) const;
 
  private:
+  static constexpr RgbF kNone{-1, -1, -1};
+
   ColorCoding coding_;
   std::vector<RgbF> colors_;
 };
