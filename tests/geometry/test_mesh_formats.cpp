@@ -260,7 +260,7 @@ TEST(MeshFormats, ByteOrderMarksArePassedOver) {
   expect_cube(load("a.ply", mark + text_ply(soup)), "text PLY");
   expect_cube(load("b.ply", mark + binary_ply(soup, true)), "binary PLY");
   for (const char* name : {"a.obj", "a.stl", "a.off", "a.ply"})
-    for (const std::string text : {std::string("\xff\xfev\0", 4), std::string("\xfe\xff\0v", 4)})
+    for (const std::string& text : {std::string("\xff\xfev\0", 4), std::string("\xfe\xff\0v", 4)})
       EXPECT_NE(load_error(name, text).find("is UTF-16 (expected text in UTF-8)"), std::string::npos) << name;
 }
 
