@@ -26,6 +26,7 @@ struct AssetScene {
   double radius = 1;             ///< from there to the outermost vertex
   double center_irradiance = 0;  ///< that its lights bring to a surface there that faces them
   bool is_one_mesh = false;      ///< its shapes are parts of one body
+  bool has_vertex_colors = false;
   std::vector<std::string> translated, not_carried;
   std::vector<std::string> missing_files;  ///< that it names, or that cannot be read, and where
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/assets/gltf_part.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -166,6 +167,22 @@ void read_tangents(const GltfModel& gltf, const tinygltf::Primitive& primitive, 
   }
 }
 
+/// Linear; its opacity is left out.
+void read_colors(const GltfModel& gltf, const tinygltf::Primitive& primitive, GltfPart& part) {
+  const auto found = primitive.attributes.find("COLOR_0");
+  if (found == primitive.attributes.end()) return;
+  const auto take = [&](double r, double g, double b) {
+    Vec3d color{r, g, b};
+    for (std::size_t c = 0; c < 3; ++c) color[c] = color[c] > 0 ? std::min(color[c], 1.0) : 0;
+    part.colors.emplace_back(color);
+  };
+  if (gltf.model.accessors[std::size_t(found->second)].type == TINYGLTF_TYPE_VEC3)
+    for (const auto& [r, g, b] : read_vectors(gltf, found->second)) take(r, g, b);
+  else
+    for (const auto& [r, g, b, a] : read_quadruples(gltf, found->second)) take(r, g, b);
+  check_count(gltf, found->second, part.colors.size(), part, "colour");
+}
+
 }  // namespace
 
 GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, MeshUvs uvs) {
@@ -184,6 +201,7 @@ GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, MeshUvs 
   read_normals(gltf, primitive, part);
   if (uvs != MeshUvs::unread) read_uvs(gltf, primitive, part);
   if (uvs == MeshUvs::if_any || uvs == MeshUvs::with_tangents) read_tangents(gltf, primitive, part);
+  read_colors(gltf, primitive, part);
   TriangleList(gltf, primitive, place).read(part);
   if (part.triangles.empty())
     fail_at(gltf.path, place, "has no triangles", "at least three corners", "fewer");

@@ -51,6 +51,7 @@ void replace_materials(AssetScene& scene, const std::string& material, const Ass
          {"medium", "reflectance", "group", "metalness", "specular_roughness", "specular_ior",
           "specular_weight", "specular_anisotropy", "specular_rotation", "normal_map", "bump_map"})
       shape.erase(key);
+    if (scene.has_vertex_colors) shape["vertex_colors"] = false;
     if (surface.medium.is_null())
       shape["reflectance"] = triple_json(surface.reflectance);
     else

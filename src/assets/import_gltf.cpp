@@ -182,6 +182,7 @@ class GltfImporter {
     }
     const bool is_faceted = !primitive.attributes.contains("NORMAL");
     if (is_faceted) shape["normals"] = "faceted";
+    if (primitive.attributes.contains("COLOR_0")) shape["vertex_colors"] = scene_.has_vertex_colors = true;
     const MaterialUse use{primitive.material, primitive.attributes.contains("TEXCOORD_0"),
                           primitive.attributes.contains("TANGENT") && primitive.attributes.contains("NORMAL"),
                           mesh_path_};
@@ -234,7 +235,7 @@ class GltfImporter {
       if (!has_triangles(index, p)) scene_.not_carried.push_back(place + ": it has no triangles");
       if (!primitive.targets.empty()) scene_.not_carried.push_back(place + ": its morph targets");
       if (primitive.attributes.contains("COLOR_0"))
-        scene_.not_carried.push_back(place + ": its vertex colours");
+        scene_.translated.push_back(place + ": its vertex colours multiply the base colour");
     }
   }
 

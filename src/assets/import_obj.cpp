@@ -10,6 +10,7 @@
 #include "assets/asset_bytes.h"
 #include "assets/asset_scene.h"
 #include "opaline/assets/obj_material.h"
+#include "opaline/core/byte_order_mark.h"
 #include "opaline/core/error.h"
 #include "opaline/image/texture_file.h"
 
@@ -54,6 +55,13 @@ std::optional<Vec3d> three_numbers(std::string_view line) {
   return value;
 }
 
+/// The text of a file.
+std::string read_asset_text(const std::string& path) {
+  std::string text = read_asset_bytes(path);
+  drop_byte_order_mark(path, text);
+  return text;
+}
+
 /// A line's names of files.
 struct NamedFiles {
   std::string names;
@@ -62,7 +70,7 @@ struct NamedFiles {
 
 /// What an OBJ file says beside its faces.
 struct ObjOutline {
-  bool has_uvs = false;
+  bool has_uvs = false, has_colors = false;
   std::vector<Vec3d> vertices;
   std::vector<NamedFiles> libraries;
   std::vector<std::string> materials;  ///< that have faces, in the order of the file
@@ -78,6 +86,8 @@ ObjOutline read_outline(const std::string& text) {
       const auto position = three_numbers(line);  // where they are none, the reader of the mesh says so
       if (position && max_component(component_max(*position, -*position)) < 1e18)
         outline.vertices.push_back(*position);
+      for (int i = 0; i < 3; ++i) next_word(line);
+      outline.has_colors = outline.has_colors || three_numbers(line);
     } else if (keyword == "vt") {
       outline.has_uvs = true;
     } else if (keyword == "mtllib") {
@@ -97,11 +107,12 @@ class ObjImporter {
       : path_(path), mesh_path_(std::move(mesh_path)) {}
 
   AssetScene run() {
-    const ObjOutline outline = read_outline(read_asset_bytes(path_));
+    const ObjOutline outline = read_outline(read_asset_text(path_));
     if (outline.materials.empty()) throw bad_file(path_, "shows nothing", "a mesh with faces");
     enclose(scene_, [&](const auto& visit) { std::ranges::for_each(outline.vertices, visit); });
     scene_.is_one_mesh = true;
     has_uvs_ = outline.has_uvs;
+    scene_.has_vertex_colors = outline.has_colors;
     scene_.translated.push_back("OBJ has no unit: lengths are taken for millimetres");
     for (const NamedFiles& library : outline.libraries) read_libraries(library);
     for (const std::string& material : outline.materials) add_shape(material);
@@ -137,7 +148,7 @@ class ObjImporter {
 
   void read_library(const std::string& path) {
     std::string material;
-    for_each_line(read_asset_bytes(path), [&](std::string_view line, std::size_t number) {
+    for_each_line(read_asset_text(path), [&](std::string_view line, std::size_t number) {
       const std::string keyword(next_word(line));
       if (keyword == "newmtl") {
         material = obj_material_name(trimmed(line));
@@ -225,10 +236,9 @@ class ObjImporter {
 
   void add_shape(const std::string& material) {
     const std::string name = names_.take(material == kNoMaterial ? "" : material, "shape");
-    scene_.shapes.push_back({{"name", name},
-                             {"file", mesh_path_},
-                             {"part", material},
-                             {"reflectance", reflectance_of(material)}});
+    scene_.shapes.push_back({{"name", name}, {"file", mesh_path_}, {"part", material}});
+    if (const Json reflectance = reflectance_of(material); !reflectance.is_null())
+      scene_.shapes.back()["reflectance"] = reflectance;
     if (const auto bump = bumps_.find(material); bump != bumps_.end()) add_bump(material, bump->second);
     for (const std::string& keyword : lost_[material])
       scene_.not_carried.push_back("material " + in_quotes(material) + ": " + keyword);
@@ -244,6 +254,7 @@ class ObjImporter {
                                                 : fmt::format("for it is blue, slopes times {:.4g}", scale)));
   }
 
+  /// Null: the vertices have it.
   Json reflectance_of(const std::string& material) {
     const auto color = colors_.find(material);
     const Vec3d reflectance = color == colors_.end() ? kGrey : color->second;
@@ -256,6 +267,10 @@ class ObjImporter {
       scene_.translated.push_back(fmt::format("{}: map_Kd -> reflectance {}{}", label, picture->second,
                                               has_color ? " times Kd " + short_triple(reflectance) : ""));
       return texture;
+    }
+    if (color == colors_.end() && scene_.has_vertex_colors) {
+      scene_.translated.push_back(label + ": vertex colours -> reflectance");
+      return nullptr;
     }
     if (color != colors_.end())
       scene_.translated.push_back(

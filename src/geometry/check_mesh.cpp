@@ -31,7 +31,8 @@ class MeshChecker {
       : settings_(settings), source_(std::move(source)), memory_(memory) {}
 
   CheckedMesh run() {
-    origins_.resize(std::max(source_.uvs.size(), source_.tangents.size()));
+    origins_.resize(std::max({source_.uvs.size(), source_.tangents.size(), source_.colors.size(),
+                              source_.smoothing.groups.size()}));
     for (std::size_t t = 0; t < origins_.size(); ++t) origins_[t] = std::uint32_t(2 * t);
     find_same_vertices();
     if (!recall()) {
@@ -51,7 +52,9 @@ class MeshChecker {
     warn_about_drops();
     CheckedMesh checked;
     checked.mesh = compacted();
-    if (settings_.smooth) complete_normals(checked.mesh, settings_.name, report_.warnings);
+    const bool is_faceted = checked.mesh.normals.empty() && source_.smoothing.is_nowhere();
+    if (settings_.smooth && !is_faceted)
+      complete_normals(checked.mesh, mended_smoothing(), settings_.name, report_.warnings);
     checked.report = std::move(report_);
     return checked;
   }
@@ -241,6 +244,24 @@ class MeshChecker {
     return corners;
   }
 
+  /// Triangles that fill holes are in no group.
+  Smoothing mended_smoothing() const {
+    Smoothing smoothing{{}, source_.smoothing.crease_angle};
+    if (source_.smoothing.groups.empty()) return smoothing;
+    smoothing.groups.reserve(origins_.size());
+    for (const std::uint32_t origin : origins_)
+      smoothing.groups.push_back(origin == kNew ? 0 : source_.smoothing.groups[origin / 2]);
+    return smoothing;
+  }
+
+  /// White where holes are filled.
+  std::vector<CornerColors> mended_colors() const {
+    std::vector<CornerColors> colors = mended(source_.colors);
+    for (std::size_t t = 0; t < colors.size(); ++t)
+      if (origins_[t] == kNew) colors[t].fill(RgbF(1));
+    return colors;
+  }
+
   std::vector<CornerUvs> mended_uvs() const {
     std::vector<CornerUvs> uvs = mended(source_.uvs);
     constexpr float farthest = 1e6f;
@@ -266,6 +287,7 @@ class MeshChecker {
     }
     mesh.uvs = mended_uvs();
     mesh.tangents = mended(source_.tangents);
+    mesh.colors = mended_colors();
     mesh.triangles = std::move(source_.triangles);
     for (Triangle& triangle : mesh.triangles)
       for (std::uint32_t& v : triangle) v = place[v];
@@ -276,7 +298,7 @@ class MeshChecker {
 
   const CheckSettings& settings_;
   SourceMesh source_;
-  std::vector<std::uint32_t> origins_;  // see CheckMemory; empty: without UVs and tangents
+  std::vector<std::uint32_t> origins_;  // see CheckMemory; empty: nothing is given by triangle
   CheckMemory* memory_;
   MeshReport report_;
   std::vector<std::uint32_t> same_, site_;

@@ -25,7 +25,7 @@ struct CheckMemory {
       site;                      ///< of each vertex the first at its place, with its normal and without
   std::vector<Triangle> mended;  ///< without doubles, and wound
   std::vector<std::uint32_t>
-      origins;  ///< of these, twice the number of that given, one more if flipped; of UVs and tangents alone
+      origins;  ///< of these, twice the number of that given, one more if flipped; where something is given by triangle
   std::vector<std::uint32_t> part;  ///< Winding::part of these
   std::uint32_t parts = 0;
   MeshReport report;  ///< warnings do not name the mesh

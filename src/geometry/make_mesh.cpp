@@ -86,7 +86,18 @@ void place(SourceMesh& mesh, const Transform& to_world, const std::string& name)
     for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
     for (CornerUvs& uvs : mesh.uvs) std::swap(uvs[1], uvs[2]);
     for (CornerTangents& tangents : mesh.tangents) std::swap(tangents[1], tangents[2]);
+    for (CornerColors& colors : mesh.colors) std::swap(colors[1], colors[2]);
   }
+}
+
+/// White changes nothing.
+void choose_colors(const MeshFile& file, const std::string& name, SourceMesh& mesh) {
+  if (file.vertex_colors == true && mesh.colors.empty())
+    throw bad_file(name, "has no vertex colours", "colours in OBJ, PLY or OFF, COLOR_0 in glTF", "none");
+  const auto is_white = [](const CornerColors& colors) {
+    return std::ranges::all_of(colors, [](const RgbF& color) { return color == RgbF(1); });
+  };
+  if (file.vertex_colors == false || std::ranges::all_of(mesh.colors, is_white)) mesh.colors.clear();
 }
 
 SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs) {
@@ -94,8 +105,11 @@ SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs)
   if ((uvs == MeshUvs::required || uvs == MeshUvs::with_tangents) && mesh.uvs.empty())
     throw bad_file(name, "has no UVs, by which its textures would be laid over it",
                    "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF", "none");
-  if (const auto* file = std::get_if<MeshFile>(&shape.source))
+  if (const auto* file = std::get_if<MeshFile>(&shape.source)) {
     if (file->fit_size) fit(mesh, *file->fit_size, name);
+    choose_colors(*file, name, mesh);
+    if (file->crease_angle) mesh.smoothing = {{}, *file->crease_angle};
+  }
   return mesh;
 }
 

@@ -30,4 +30,9 @@ Tangent surface_tangent(const Mesh& mesh, std::uint32_t triangle, float u, float
           a.side * w + b.side * u + c.side * v < 0 ? -1.0f : 1.0f};
 }
 
+RgbF surface_color(const Mesh& mesh, std::uint32_t triangle, float u, float v) {
+  const auto& [a, b, c] = mesh.colors[triangle];
+  return a * (1 - u - v) + b * u + c * v;
+}
+
 }  // namespace opaline

@@ -4,26 +4,18 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/creases.h"
 #include "geometry/topology.h"
 
 namespace opaline {
 namespace {
-
-Vec3d unit_normal(const Mesh& mesh, const Triangle& t) {
-  const Vec3d& a = mesh.positions[t[0]];
-  return normalized(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a));
-}
 
 /// One average for all vertices at the same position.
 std::vector<Vec3d> averages(const Mesh& mesh, const std::vector<std::uint32_t>& site) {
   std::vector<Vec3d> sum(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
     const Vec3d normal = unit_normal(mesh, t);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3d& corner = mesh.positions[t[k]];
-      const Vec3d u = mesh.positions[t[(k + 1) % 3]] - corner, v = mesh.positions[t[(k + 2) % 3]] - corner;
-      sum[site[t[k]]] += normal * std::atan2(length(cross(u, v)), dot(u, v));
-    }
+    for (std::size_t k = 0; k < 3; ++k) sum[site[t[k]]] += normal * corner_angle(mesh, t, k);
   }
   return sum;
 }
@@ -64,7 +56,19 @@ std::size_t turn_outward(Mesh& mesh) {
 
 }  // namespace
 
-void complete_normals(Mesh& mesh, const std::string& name, std::vector<std::string>& warnings) {
+Vec3d unit_normal(const Mesh& mesh, const Triangle& t) {
+  const Vec3d& a = mesh.positions[t[0]];
+  return normalized(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a));
+}
+
+double corner_angle(const Mesh& mesh, const Triangle& t, std::size_t k) {
+  const Vec3d& corner = mesh.positions[t[k]];
+  const Vec3d u = mesh.positions[t[(k + 1) % 3]] - corner, v = mesh.positions[t[(k + 2) % 3]] - corner;
+  return std::atan2(length(cross(u, v)), dot(u, v));
+}
+
+void complete_normals(Mesh& mesh, const Smoothing& smoothing, const std::string& name,
+                      std::vector<std::string>& warnings) {
   const bool own = !mesh.normals.empty();
   mesh.normals.resize(mesh.positions.size());
   std::vector<bool> missing(mesh.positions.size());
@@ -75,7 +79,10 @@ void complete_normals(Mesh& mesh, const std::string& name, std::vector<std::stri
     missing[v] = unit == Vec3d();
     count += missing[v];
   }
-  if (count > 0) average_missing(mesh, missing, !own);
+  if (count > 0 && smoothing.is_everywhere())
+    average_missing(mesh, missing, !own);
+  else if (count > 0)
+    average_between_creases(mesh, missing, smoothing);
   if (!own) return;
   if (count > 0)
     warnings.push_back(name + ": " + std::to_string(count) + " vertices without a usable normal; computed");

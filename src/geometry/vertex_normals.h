@@ -5,18 +5,23 @@
 #include <string>
 #include <vector>
 
-#include "opaline/geometry/mesh.h"
+#include "geometry/source_mesh.h"
 
 namespace opaline {
 
 /// Gives every vertex a unit normal on the outer side of its triangles: its own, normalised, where
 /// mesh.normals has one, turned round where it points inward; else the average over the triangles at its
-/// position, weighted by their angle there, so that it does not depend on how the surface is cut into
-/// triangles.
+/// position, up to the creases, weighted by their angle there, so that it does not depend on how the surface is cut
+/// into triangles. Vertices on creases become several.
 /// in    mesh.normals: empty, and no two vertices at one position; or one a vertex, zero where
 /// there is none; every triangle has an area
 /// from  Thuerrmer & Wuethrich 1998, Computing vertex normals from
 /// polygonal facets
-void complete_normals(Mesh& mesh, const std::string& name, std::vector<std::string>& warnings);
+void complete_normals(Mesh& mesh, const Smoothing& smoothing, const std::string& name,
+                      std::vector<std::string>& warnings);
+
+Vec3d unit_normal(const Mesh& mesh, const Triangle& t);
+/// Of a triangle at its corner k, radians.
+double corner_angle(const Mesh& mesh, const Triangle& t, std::size_t k);
 
 }  // namespace opaline

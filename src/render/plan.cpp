@@ -17,6 +17,7 @@
 #include "opaline/render/precompute.h"
 #include "opaline/render/render.h"
 #include "opaline/render/surface_caches.h"
+#include "opaline/render/surface_textures.h"
 #include "opaline/scene/names.h"
 #include "opaline/volume/volume_diffusion.h"
 #include "opaline/volume/volume_exitance.h"
@@ -243,6 +244,19 @@ std::size_t picture_bytes(const Scene& scene, const std::vector<const Environmen
   return held + decoded + (files.empty() ? 0 : std::min(cached, TextureFile::cache_limit()));
 }
 
+void warn_of_unused_colors(const Scene& scene, const World& world, std::vector<std::string>& warnings) {
+  for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+    const Shape& shape = scene.shapes[i];
+    if (world.meshes[i].colors.empty() || uses_vertex_colors(scene, shape, world.meshes[i])) continue;
+    if (std::get<MeshFile>(shape.source).vertex_colors) continue;
+    warnings.push_back(
+        fmt::format("shape '{}': its vertex colours are left out, for a texture gives its colour; "
+                    "\"vertex_colors\": true "
+                    "multiplies both",
+                    shape.name));
+  }
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, const World& world) {
@@ -257,6 +271,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   for (const MeshReport& report : world.reports)
     for (const std::string& warning : report.warnings)
       if (said.insert(warning).second) plan.warnings.push_back(warning);
+  warn_of_unused_colors(scene, world, plan.warnings);
   if (scene.shapes.empty())
     plan.warnings.push_back("the scene has no shapes: the picture shows its surroundings");
   if (scene.lights.empty()) plan.warnings.push_back("the scene has no lights: the picture is black");
@@ -272,7 +287,8 @@ Plan make_plan(const Scene& scene, const World& world) {
     plan.triangles += mesh.triangles.size();
     plan.bytes += mesh.positions.size() * 48 + mesh.triangles.size() * 140;  // and Embree's tree
     plan.bytes +=                                                            // as read, and mended
-        2 * (mesh.uvs.size() * sizeof(CornerUvs) + mesh.tangents.size() * sizeof(CornerTangents));
+        2 * (mesh.uvs.size() * sizeof(CornerUvs) + mesh.tangents.size() * sizeof(CornerTangents) +
+             mesh.colors.size() * sizeof(CornerColors));
   }
   plan.bytes += picture_bytes(scene, environments);
   std::size_t samples = 0;

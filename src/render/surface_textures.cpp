@@ -168,7 +168,10 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
       if (shape.gloss) own.roughness = pointer_to(shape.gloss->roughness_texture);
       if (shape.gloss) own.metalness = pointer_to(shape.gloss->metalness_texture);
     }
-    own.has_tint = own.tint != nullptr || own.factor != Rgb(1) || own.weight != nullptr;
+    own.has_colors = uses_vertex_colors(scene, shape, world.meshes[m]);
+    if (own.has_colors && !shape.medium && !shape.has_reflectance)
+      own.factor = Rgb(1 / kDefaultReflectance.x);
+    own.has_tint = own.tint != nullptr || own.factor != Rgb(1) || own.weight != nullptr || own.has_colors;
     own.grain = grain_of(scene, shape);
     own.has_uv = uvs_of(scene, shape) != MeshUvs::unread && !world.meshes[m].uvs.empty();
     own.has_tangents = !world.meshes[m].tangents.empty();
@@ -188,6 +191,7 @@ SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t 
   Place place{mesh, {}, footprint};
   if (of_mesh_[mesh].has_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
   if (of_mesh_[mesh].has_tangents) place.tangent = surface_tangent(world_.meshes[mesh], triangle, u, v);
+  if (of_mesh_[mesh].has_colors) place.color = surface_color(world_.meshes[mesh], triangle, u, v);
   return place;
 }
 
@@ -199,6 +203,7 @@ SurfaceTint SurfaceTextures::tint(const Place& place) const {
   if (own.tint != nullptr) {
     tint = tint * color_of(*own.tint, place);
   }
+  if (own.has_colors) tint = tint * place.color;
   if (own.weight != nullptr) tint *= number_of(*own.weight, place);
   SurfaceTint result{powered(tint, own.at_entry), powered(tint, own.at_exit)};
   if (weight < 1) result.leaving *= weight;
@@ -212,6 +217,7 @@ RgbF SurfaceTextures::reflected(const Place& place) const {
       own.weight != nullptr ? number_of(*own.weight, place) : float(own.partly_opaque->subsurface_weight);
   RgbF base(own.partly_opaque->base_color);
   if (own.base != nullptr) base = base * color_of(*own.base, place);
+  if (own.has_colors) base = base * place.color;
   return base * (1 - scattered);
 }
 
@@ -253,9 +259,18 @@ void SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
   if (along != Vec3f{}) point.normal = normalized(point.normal - along * outward(place));
 }
 
+bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh) {
+  const auto* file = std::get_if<MeshFile>(&shape.source);
+  if (file == nullptr || mesh.colors.empty()) return false;
+  const bool has_texture = shape.medium ? scene.media[*shape.medium].tint_texture.has_value()
+                                        : shape.reflectance_texture.has_value();
+  return file->vertex_colors.value_or(!has_texture);
+}
+
 std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples) {
   std::vector<RgbF> tints;
-  if (samples.empty() || !textures.tints_entering(samples.front().mesh)) return tints;
+  if (std::ranges::none_of(samples, [&](const SurfaceSample& s) { return textures.tints_entering(s.mesh); }))
+    return tints;
   tints.reserve(samples.size());
   for (const SurfaceSample& s : samples) {
     Footprint footprint;
@@ -280,13 +295,21 @@ void add_to_key(KeyBuilder& key, const Texture& texture) {
   key.add(texture.uv_offset).add(texture.uv_scale).add(texture.uv_rotation);
 }
 
-StageKey tint_key(const Medium& medium, Method method, const World& world,
-                  std::span<const std::uint32_t> meshes, const StageKey& samples) {
-  const bool has_texture = medium.tint_texture && !has_color_inside(medium, method);
-  const bool has_tint = medium.tint != Rgb(1) || has_texture || medium.weight_texture;
+StageKey tint_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes,
+                  const StageKey& samples) {
+  const Medium& medium = scene.media[scene.shapes[meshes.front()].medium.value()];
+  const auto has_colors = [&](std::uint32_t m) {
+    return uses_vertex_colors(scene, scene.shapes[m], world.meshes[m]);
+  };
+  const bool has_texture = medium.tint_texture && !has_color_inside(medium, scene.settings.method);
+  const bool has_tint = medium.tint != Rgb(1) || has_texture || medium.weight_texture ||
+                        std::ranges::any_of(meshes, has_colors);
   if (medium.texture_mix == TextureMix::post || !has_tint) return {};
   KeyBuilder key("entering tint", 1);
   key.add(samples).add(medium.tint).add(medium.texture_mix);
+  for (const std::uint32_t m : meshes)
+    if (has_colors(m))
+      key.add(std::string("vertex colours")).add(m).add_array(std::span(world.meshes[m].colors));
   if (!has_texture && !medium.weight_texture) return key.key();
   if (has_texture) add_to_key(key, *medium.tint_texture);
   if (medium.weight_texture) add_to_key(key.add(std::string("weight")), *medium.weight_texture);

@@ -21,6 +21,8 @@ MeshFile read_mesh_file(const ObjectReader& shape, const ShapeContext& context) 
   if (const auto part = shape.find("part")) mesh.part = part->string();
   if (const auto fill_holes = shape.find("fill_holes")) mesh.fill_holes = fill_holes->flag();
   if (const auto fit_size = shape.find("fit_size")) mesh.fit_size = fit_size->length(context.mm_per_unit);
+  if (const auto colors = shape.find("vertex_colors")) mesh.vertex_colors = colors->flag();
+  if (const auto crease = shape.find("crease_angle")) mesh.crease_angle = crease->number();
   return mesh;
 }
 
@@ -65,7 +67,7 @@ ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context, 
   const std::string_view kind = shape.exactly_one_of(source_names);
   place = shape.need(kind).place();
   if (kind == "file") return read_mesh_file(shape, context);
-  for (const std::string_view option : {"part", "fill_holes", "fit_size"})
+  for (const std::string_view option : {"part", "fill_holes", "fit_size", "vertex_colors", "crease_angle"})
     if (const auto value = shape.find(option)) value->fail_key("has no meaning without 'file'");
   const ObjectReader source(shape.need(kind), "shape." + std::string(kind));
   const double mm_per_unit = context.mm_per_unit;
@@ -130,6 +132,7 @@ void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shap
   if (reflectance) {
     ColorReading color = read_color(*reflectance);
     shape.reflectance = color.color;
+    shape.has_reflectance = true;
     shape.reflectance_texture = std::move(color.texture);
   }
   if (const auto map = reader.find("normal_map")) shape.normal_map = read_normal_map(*map);

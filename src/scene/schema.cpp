@@ -101,12 +101,19 @@ std::vector<KeyInfo> shape_rows() {
       row("shape", "transform", list, "", kFiniteNumber, "none",
           "list of steps, applied in the order of the list"),
       row("shape", "normals", choice, "", kFiniteNumber, "`\"smooth\"`",
-          "`\"smooth\"`: shaded round, with the file's normals where it has them; `\"faceted\"`: each "
-          "triangle flat",
+          "`\"smooth\"`: shaded round, with the file's normals where it has them, else up to its creases; "
+          "`\"faceted\"`: each triangle flat",
           kNormalNames),
+      row("shape", "crease_angle", number, "degrees", {0, 180},
+          "STL: 30; OBJ: by its smoothing groups; else 180",
+          "with `file`: where it has no normals, edges that bend by more are sharp"),
       row("shape", "medium", text, "", kFiniteNumber, "opaque", "name of a medium"),
       textured(row("shape", "reflectance", color, "", kUnitInterval, "0.5",
-                   "colour of an opaque shape; not together with `medium`")),
+                   "colour of an opaque shape, times `vertex_colors`; not together with `medium`")),
+      row("shape", "vertex_colors", flag, "", kFiniteNumber, "true; false under a texture",
+          "with `file`: its vertex colours are the colour of an opaque shape, times a `reflectance` that is "
+          "given; "
+          "they multiply a medium's `tint` and `base_color`"),
       textured(
           row("shape", "metalness", number, "", kUnitInterval, "0",
               "of an opaque shape: 1 mirrors in its `reflectance`, 0 under a clear coat; makes it glossy")),

@@ -17,6 +17,8 @@ struct AddSource {
   void operator()(const MeshFile& mesh) const {
     key.add(mesh.path).add(contents).add(mesh.part);
     key.add(mesh.fill_holes).add(mesh.fit_size.value_or(0));
+    key.add(mesh.vertex_colors.has_value()).add(mesh.vertex_colors.value_or(false));
+    key.add(mesh.crease_angle.value_or(-1));
   }
   void operator()(const SphereShape& s) const { key.add(s.center).add(s.radius).add(s.fineness); }
   void operator()(const BoxShape& s) const { key.add(s.low).add(s.high); }

@@ -191,8 +191,7 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
 }
 
 void Session::State::update_tint(Body& body, BodyKeys& known) {
-  const Medium& medium = scene_.media[body.plan.medium];
-  const StageKey key = tint_key(medium, scene_.settings.method, *world_, body.plan.meshes, known.samples_key);
+  const StageKey key = tint_key(scene_, *world_, body.plan.meshes, known.samples_key);
   if (key == known.tint_key) return;
   known.tint_key = {};
   body.entering.clear();

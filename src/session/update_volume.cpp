@@ -24,8 +24,7 @@ std::size_t passes_of(const VolumeSums& sums) {
 void Session::State::update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                   const std::vector<Light>& lights) {
   VolumeInput walks = walk_input(input, body, lights);
-  const StageKey tint =
-      tint_key(scene_.media[body.plan.medium], Method::volume, *world_, body.plan.meshes, known.samples_key);
+  const StageKey tint = tint_key(scene_, *world_, body.plan.meshes, known.samples_key);
   std::optional<SurfaceTextures> textures;
   if (tint != StageKey{}) {
     textures.emplace(scene_, *world_);

@@ -151,5 +151,35 @@ TEST(GltfMeshes, WithoutNormalsIsToldAsFaceted) {
   EXPECT_EQ(scene_of(asset.glb(), "a.glb").shapes.at(0).normals, NormalMode::faceted);
 }
 
+// Claim: COLOR_0 is linear, of three or four numbers, and multiplies the base colour, also under a texture; where
+// --material replaces all materials it is left out. Source: glTF 2.0, 3.7.2.1 and 3.9.2. Fails if it is taken for sRGB,
+// or not carried over.
+TEST(GltfMeshes, VertexColorsAreLinear) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("wax.mtlx"),
+            "<materialx version=\"1.38\"><standard_surface name=\"a\" type=\"surfaceshader\"/></materialx>");
+  for (const int kind : {0, 1, 2}) {
+    Asset asset = cube_asset();
+    const int colors =
+        kind == 0   ? asset.accessor("VEC3", kFloat, std::vector<float>(24 * 3, .5f))
+        : kind == 1 ? asset.accessor("VEC4", kUnsignedByte, std::vector<std::uint8_t>(24 * 4, 51), true)
+                    : asset.accessor("VEC4", kUnsignedShort, std::vector<std::uint16_t>(24 * 4, 13107), true);
+    asset.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = colors;
+    put_bytes(folder.file("a.glb"), asset.glb());
+    const Mesh mesh = mesh_of(folder.file("a.glb"), "0/0").mesh;
+    ASSERT_EQ(mesh.colors.size(), mesh.triangles.size());
+    EXPECT_NEAR(mesh.colors[0][0].y, kind == 0 ? .5 : .2, 1e-6);
+    EXPECT_TRUE(std::get<MeshFile>(scene_of(asset.glb(), "a.glb").shapes.at(0).source).vertex_colors.value());
+    EXPECT_TRUE(has(imported(asset).translated, "its vertex colours multiply the base colour"));
+    const ImportedAsset replaced = import_asset(folder.file("a.glb"), "a.glb", folder.file("wax.mtlx"));
+    EXPECT_NE(replaced.text.find("\"vertex_colors\": false"), std::string::npos) << replaced.text;
+  }
+  Asset asset = cube_asset();
+  asset.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+      asset.accessor("VEC2", kFloat, std::vector<float>(24 * 2, .5f));
+  put_bytes(folder.file("a.glb"), asset.glb());
+  EXPECT_THROW(mesh_of(folder.file("a.glb"), "0/0"), Error);
+}
+
 }  // namespace
 }  // namespace opaline::asset_test

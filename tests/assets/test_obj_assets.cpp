@@ -52,6 +52,36 @@ TEST(ObjAssets, EachMaterialIsAShape) {
   EXPECT_EQ(import.not_carried.size(), 2u);
 }
 
+// Claim: where an OBJ has vertex colours they are the reflectance of what no library colours, and multiply Kd. Fails if
+// such a shape is grey, or its colours are halved.
+TEST(ObjAssets, VertexColorsAreReflectance) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("a.mtl"), "newmtl half\nKd 0.5 0.5 0.5\n");
+  put_bytes(folder.file("a.obj"),
+            "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\nusemtl half\nf 3 2 1\n");
+  const Scene scene = load_scene(folder.file("a.obj"));
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  EXPECT_FALSE(scene.shapes[0].has_reflectance);
+  EXPECT_TRUE(scene.shapes[1].has_reflectance);
+  for (const Shape& shape : scene.shapes) EXPECT_EQ(make_mesh(shape).mesh.colors.at(0)[0], RgbF(1, 0, 0));
+  EXPECT_TRUE(has(import_asset(folder.file("a.obj"), "a.obj").translated, "vertex colours -> reflectance"));
+}
+
+// Claim: byte order marks of UTF-8 in front of an OBJ file and its library change nothing; UTF-16 is refused by name.
+// Fails if the first statement of either is lost.
+TEST(ObjAssets, ByteOrderMarksArePassedOver) {
+  const ScratchFolder folder;
+  const std::string mark = "\xef\xbb\xbf";
+  put_bytes(folder.file("a.mtl"), mark + "newmtl red\nKd 0.8 0.1 0.1\n");
+  put_bytes(folder.file("a.obj"), mark + "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+  const Scene scene = load_scene(folder.file("a.obj"));
+  EXPECT_EQ(scene.shapes.at(0).reflectance, Rgb(.8, .1, .1));
+  EXPECT_EQ(make_mesh(scene.shapes[0]).mesh.triangles.size(), 1u);
+  put_bytes(folder.file("a.mtl"), std::string("\xff\xfen\0", 4));
+  EXPECT_THROW(load_scene(folder.file("a.obj")), Error);
+  EXPECT_NE(error_of(std::string("\xff\xfev\0", 4), "b.obj").find("b.obj: is UTF-16"), std::string::npos);
+}
+
 // Claim: a library's name may have blanks in it, or stand beside others; one that is not there is said. Fails if the
 // line is one word.
 TEST(ObjAssets, LibrariesAreFoundByTheirNames) {

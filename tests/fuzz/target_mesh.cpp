@@ -19,6 +19,9 @@ void check(const CheckedMesh& checked) {
   for (const Vec3d& p : mesh.positions)
     expect(std::abs(p.x) < 1e18 && std::abs(p.y) < 1e18 && std::abs(p.z) < 1e18, "coordinates in range");
   for (const Vec3f& n : mesh.normals) expect(std::abs(dot(n, n) - 1) < 1e-3f, "unit normals");
+  expect(mesh.colors.empty() || mesh.colors.size() == mesh.triangles.size(), "colours for each triangle");
+  for (const CornerColors& corners : mesh.colors)
+    for (const RgbF& c : corners) expect(min_component(c) >= 0 && max_component(c) <= 1, "colours of 0 to 1");
 }
 
 /// Read again beside what an earlier check found, as after an edit, it is the same.
@@ -45,8 +48,8 @@ std::vector<std::string> seeds() {
 
 std::vector<std::string> words() {
   if (kFormat == "obj")
-    return {"\nv ", "\nvn ", "\nvt ", "\nf ",      "//",        "/", "\\\n",
-            "\ng ", "\no ",  "\ns ",  "\nusemtl ", "\nmtllib ", "#"};
+    return {"\nv ", "\nvn ",     "\nvt ",     "\nf ", "//",           "/",        "\\\n", "\ng ", "\no ",
+            "\ns ", "\nusemtl ", "\nmtllib ", "#",    "\xef\xbb\xbf", "\ns off\n"};
   if (kFormat == "off")
     return {"OFF", "NOFF", "COFF", "STOFF", "4OFF", "nOFF", "BINARY", "\n#", "\n3 0 1 2", "\n4 "};
   if (kFormat == "stl")
@@ -64,6 +67,10 @@ std::vector<std::string> words() {
           "property list uchar int vertex_indices\n",
           "property list int short ",
           "property uchar red\n",
+          "property float green\n",
+          "property uchar blue\n",
+          "property list uchar float texcoord\n",
+          "property int texnumber\n",
           "property float nx\n",
           "comment ",
           "obj_info ",
@@ -78,6 +85,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   file.put({reinterpret_cast<const char*>(data), size});
   MeshFile source{file.path(), size % 4 == 1, {}};
   if (size % 8 == 3) source.fit_size = 10;
+  if (size % 8 == 5) source.crease_angle = 40;
   Shape shape;
   shape.source = source;
   shape.normals = size % 2 == 0 ? NormalMode::smooth : NormalMode::faceted;

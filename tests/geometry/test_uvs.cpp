@@ -90,6 +90,36 @@ TEST(Uvs, OfPlyHaveSeveralNames) {
   }
 }
 
+// Claim: UVs that a PLY's faces give their corners are those of its triangles, also of quads and in front of the
+// indices, and hold before those of vertices; several pictures are told of. Fails if they are passed over.
+TEST(Uvs, OfPlyMayBeOfFaces) {
+  const ScratchFolder folder;
+  const auto ply = [](const std::string& vertex, const std::string& face, const std::string& rows) {
+    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" +
+           vertex + "element face 2\n" + face + "end_header\n" + rows;
+  };
+  const std::string list = "property list uchar int vertex_indices\n",
+                    texcoord = "property list uchar float texcoord\n";
+  put_bytes(folder.file("behind.ply"),
+            ply("", list + texcoord + "property int texnumber\n",
+                "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 6 0 0 1 1 0 1 1\n"));
+  put_bytes(folder.file("quad.ply"),
+            ply("property float u\nproperty float v\n", texcoord + list,
+                "0 0 0 7 7\n1 0 0 7 7\n1 1 0 7 7\n0 1 0 7 7\n8 0 0 1 0 1 1 0 1 4 0 1 2 3\n0 2 0 1\n"));
+  for (const char* name : {"behind.ply", "quad.ply"}) {
+    Shape shape = file_shape(folder.file(name));
+    const CheckedMesh mesh = make_mesh(shape, MeshUvs::required);
+    ASSERT_EQ(mesh.mesh.triangles.size(), 2u);
+    for (const auto& [p, uv] : corners_of(mesh.mesh))
+      EXPECT_EQ(uv, (std::array<float, 2>{float(p.x), float(p.y)})) << name;
+    EXPECT_EQ(warns(mesh.report, "2 textures (texnumber)"), std::string(name) == "behind.ply");
+    EXPECT_TRUE(make_mesh(shape).mesh.uvs.empty());
+  }
+  put_bytes(folder.file("none.ply"),
+            ply("", list + texcoord, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 0\n3 0 2 3 0\n"));
+  EXPECT_THROW(with_uvs(MeshFile{folder.file("none.ply"), false, {}}), Error);
+}
+
 // Claim: a mesh without UVs is refused, by name, where a texture needs them. Fails if they are taken as 0.
 TEST(Uvs, MustBeThere) {
   const ScratchFolder folder;

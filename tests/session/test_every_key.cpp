@@ -46,6 +46,7 @@ const std::string kRough = "media.stone.specular_roughness=0.5";
 const std::string kGloss = "shapes.floor.specular_roughness=0.4";
 const std::string kMap = R"(shapes.ball.normal_map={"texture": "cells.png"})";
 const std::string kMesh = R"(shapes.ball={"name": "ball", "file": "bump.obj", "medium": "stone"})";
+const std::string kColoredMesh = R"(shapes.ball={"name": "ball", "file": "coloured.obj", "medium": "stone"})";
 
 std::vector<Change> changes() {
   const auto light = [](const std::string& json) { return Overrides{"lights.panel=" + json}; };
@@ -117,6 +118,8 @@ std::vector<Change> changes() {
       {"shape.torus", R"(shapes.ring.torus={"major_radius": 8, "minor_radius": 2})"},
       {"shape.fill_holes", "shapes.ball.fill_holes=true", {kMesh, "shapes.ball.part=body"}},
       {"shape.fit_size", "shapes.ball.fit_size=24", {kMesh}},
+      {"shape.vertex_colors", "shapes.ball.vertex_colors=false", {kColoredMesh}},
+      {"shape.crease_angle", "shapes.ball.crease_angle=20", {kMesh}},
       {"shape.transform", step(R"({"translate": [0, 3, 0]})")},
       {"shape.normals", "shapes.ball.normals=faceted"},
       {"shape.medium", "shapes.ball.medium=wax"},
@@ -287,6 +290,8 @@ class EveryKey : public ::testing::TestWithParam<const char*> {};
 TEST_P(EveryKey, IsNoticed) {
   const ScratchFolder folder;
   put_bytes(folder.file("bump.obj"), kBump);
+  put_bytes(folder.file("coloured.obj"),
+            std::string(kBump).replace(std::string(kBump).find("14 0"), 4, "14 0 1 .2 .1"));
   write_png(folder.file("cells.png"), picture(8, 8, .37f), 0);
   write_png(folder.file("other.png"), picture(8, 8, .23f), 0);
   write_exr(folder.file("room.exr"), picture(8, 4, .37f), false);

@@ -22,12 +22,16 @@ struct Tangent {
 };
 using CornerTangents = std::array<Tangent, 3>;
 
+/// Linear colours at the corners of a triangle, 0 to 1.
+using CornerColors = std::array<RgbF, 3>;
+
 struct Mesh {
   std::vector<Vec3d> positions;                         ///< mm, world space
   std::vector<Vec3f> normals;                           ///< unit, one a vertex; empty: faceted
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
   std::vector<CornerUvs> uvs{};            ///< one a triangle, where a texture needs them; else empty
   std::vector<CornerTangents> tangents{};  ///< one a triangle, where they are read and the file has them
+  std::vector<CornerColors> colors{};      ///< one a triangle, where the file has vertex colours; else empty
 };
 
 /// What was found and mended while a mesh was made ready; counts are of triangles unless said.

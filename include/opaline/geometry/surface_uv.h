@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// UVs and tangents at a point of a mesh's surface.
+// UVs, tangents and vertex colours at a point of a mesh's surface.
 #pragma once
 
 #include <array>
@@ -21,5 +21,8 @@ SurfaceUv surface_uv(const Mesh& mesh, std::uint32_t triangle, float u, float v)
 /// Between those of the corners.
 /// in    mesh: with tangents
 Tangent surface_tangent(const Mesh& mesh, std::uint32_t triangle, float u, float v);
+
+/// The same of colors.
+RgbF surface_color(const Mesh& mesh, std::uint32_t triangle, float u, float v);
 
 }  // namespace opaline

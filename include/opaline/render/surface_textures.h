@@ -47,11 +47,12 @@ class SurfaceTextures {
     std::optional<SurfaceUv> uv;  ///< none: nothing asks for it, or the mesh has none
     Footprint footprint;
     Tangent tangent{};         ///< of the mesh, world units; zero: it has none
+    RgbF color{1, 1, 1};       ///< of the mesh's vertices
     bool from_behind = false;  ///< the point's normals are turned round: a sheet is seen on its other side
   };
   Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
 
-  /// Of an opaque surface what leaves is times the texture of its reflectance. Of a body's light that scatters, its
+  /// Of an opaque surface what leaves is times the texture of its reflectance and its vertex colours. Of a body's light that scatters, its
   /// weight is in it, once.
   SurfaceTint tint(const Place& place) const;
   /// Share of the light entering a body that it reflects diffusely at its surface instead.
@@ -72,7 +73,7 @@ class SurfaceTextures {
                   *radius_inside = nullptr;
     Rgb factor{1, 1, 1};               ///< times the tint's texture
     double at_entry = 0, at_exit = 1;  ///< exponents of the tint
-    bool has_tint = false, has_uv = false, has_tangents = false;
+    bool has_tint = false, has_uv = false, has_tangents = false, has_colors = false;
     const Grain* grain = nullptr;
     const Medium* partly_opaque = nullptr;
   };
@@ -82,6 +83,9 @@ class SurfaceTextures {
   bool is_empty_ = true;
 };
 
+/// Whether the mesh of a shape has vertex colours that colour it.
+bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh);
+
 /// What colours light that enters a body at its samples: the tint's power, its mean over a sample's share of the
 /// surface; empty where no tint is met there.
 std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples);
@@ -90,9 +94,9 @@ std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<cons
 void add_to_key(KeyBuilder& key, const Texture& texture);
 /// A mesh's UVs and tangents.
 void add_coordinates(KeyBuilder& key, const Mesh& mesh);
-/// Of entering_tints; a key of zeros where there are none.
-StageKey tint_key(const Medium& medium, Method method, const World& world,
-                  std::span<const std::uint32_t> meshes, const StageKey& samples);
+/// Of entering_tints of a body; a key of zeros where there are none.
+StageKey tint_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes,
+                  const StageKey& samples);
 /// Of how a medium varies inside bodies of these meshes; a key of zeros where it does not.
 StageKey medium_key(const Medium& medium, Method method, const World& world,
                     std::span<const std::uint32_t> meshes);

@@ -139,6 +139,10 @@ struct MeshFile {
   /// Of the file, where it holds several meshes: "mesh/primitive" by their indices of a glTF asset, the
   /// material's name of an OBJ. Empty: all of the file.
   std::string part{};
+  /// Whether its vertex colours multiply the surface's; none: where no texture gives that.
+  std::optional<bool> vertex_colors{};
+  /// Where it has no normals: edges that bend by more are sharp, degrees, [0, 180]; none: as the file says.
+  std::optional<double> crease_angle{};
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
@@ -184,6 +188,9 @@ struct Gloss {
   friend bool operator==(const Gloss&, const Gloss&) = default;
 };
 
+/// Of an opaque shape.
+inline constexpr Rgb kDefaultReflectance{0.5, 0.5, 0.5};
+
 struct Shape {
   std::string name;
   ShapeSource source;
@@ -191,7 +198,8 @@ struct Shape {
   NormalMode normals = NormalMode::smooth;
   /// Index into Scene::media, or none for an opaque Lambert surface of `reflectance`.
   std::optional<std::size_t> medium;
-  Rgb reflectance{0.5, 0.5, 0.5};
+  Rgb reflectance = kDefaultReflectance;
+  bool has_reflectance = false;  ///< the scene gives it; else vertex colours stand for it
   /// Translucent shapes with the same non-empty group blend as one object; others never bleed into each
   /// other.
   std::string group;

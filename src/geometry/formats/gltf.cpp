@@ -4,6 +4,7 @@
 
 #include "geometry/formats/file_checks.h"
 #include "geometry/formats/mesh_format.h"
+#include "geometry/formats/vertex_colors.h"
 #include "opaline/assets/gltf_part.h"
 
 namespace opaline {
@@ -26,6 +27,7 @@ SourceMesh read_primitive(const std::string& path, const std::string& part, std:
   if (!primitive.tangents.empty())
     for (const auto& [a, b, c] : mesh.triangles)
       mesh.tangents.push_back({primitive.tangents[a], primitive.tangents[b], primitive.tangents[c]});
+  if (!primitive.colors.empty()) give_vertex_colors(mesh, primitive.colors);
   mesh.warnings = std::move(primitive.warnings);
   return mesh;
 }

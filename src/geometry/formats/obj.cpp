@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wavefront OBJ: v, vn, vt and f are read, and usemtl where the faces of one material are a part of the file; what
-// else a file says is counted and said.
+// Wavefront OBJ: v (with colours), vn, vt, s and f are read, and usemtl where the faces of one material are a part of
+// the file; other statements are counted and reported.
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <unordered_set>
 #include <utility>
 
 #include "geometry/formats/file_checks.h"
 #include "geometry/formats/mesh_format.h"
 #include "geometry/formats/text_cursor.h"
+#include "geometry/formats/vertex_colors.h"
 #include "opaline/assets/obj_material.h"
+#include "opaline/core/byte_order_mark.h"
 
 namespace opaline {
 namespace {
 
-constexpr std::array<std::string_view, 12> silent{"vt", "vp",  "g",      "o",        "s",        "usemtl",
-                                                  "mg", "lod", "mtllib", "c_interp", "d_interp", "vc"};
+constexpr std::array<std::string_view, 11> silent{"vt",  "vp",     "g",        "o",        "usemtl", "mg",
+                                                  "lod", "mtllib", "c_interp", "d_interp", "vc"};
 
 constexpr std::int64_t kNone = -1;  // the index of a normal or UV that a corner has not
+constexpr std::int64_t kMissing = std::numeric_limits<std::int64_t>::max();  // of a normal that is not there
 
 /// Faces give normals to their corners: a vertex met with several gets a copy for each, behind all vertices.
 class VertexVariants {
@@ -57,6 +61,7 @@ class ObjReader {
       : path_(path), part_(part), bytes_(bytes), with_uvs_(uvs != MeshUvs::unread) {}
 
   SourceMesh run() {
+    drop_byte_order_mark(path_, bytes_);
     if (bytes_.find('\0') != bytes_.npos)
       throw bad_file(path_, "this is not an OBJ file", "text", "binary data");
     join_continued_lines();
@@ -86,18 +91,33 @@ class ObjReader {
 
   void statement(TextCursor& at) {
     const std::string_view keyword = at.word();
+    if (keyword == "#MRGB") has_polypaint_ = true;
     if (keyword.empty() || keyword[0] == '#') return;
     if (keyword == "v") return vertex(at);
     if (keyword == "vn") return normal(at);
     if (keyword == "f") return face(at);
     if (keyword == "vt" && with_uvs_) return uv(at);
-    if (std::find(silent.begin(), silent.end(), keyword) == silent.end() && unread_++ == 0) {
-      first_unread_ = quoted(keyword);
-      first_unread_line_ = line(at);
-    }
+    if (keyword == "s") return smoothing_group(at);
+    if (std::find(silent.begin(), silent.end(), keyword) == silent.end()) leave_out(keyword, at);
     if (keyword == "usemtl") material_ = obj_material_name(at.rest_of_line());
     if (first_material_line_ == 0 && (keyword == "mtllib" || keyword == "usemtl"))
       first_material_line_ = line(at);
+  }
+
+  void leave_out(std::string_view keyword, const TextCursor& at) {
+    if (unread_++ > 0) return;
+    first_unread_ = quoted(keyword);
+    first_unread_line_ = line(at);
+  }
+
+  /// Of the faces that follow; those before the first one belong to none.
+  void smoothing_group(TextCursor& at) {
+    has_groups_ = true;
+    groups_.resize(mesh_.triangles.size(), group_);
+    const std::string_view word = at.word();
+    std::int64_t number = 0;
+    const bool is_number = parse_integer(word, number);
+    group_ = word.empty() || word == "off" ? 0 : is_number ? std::uint32_t(number) : 1;
   }
 
   Vec3d three_numbers(TextCursor& at, const char* what) {
@@ -113,7 +133,16 @@ class ObjReader {
   void vertex(TextCursor& at) {
     const Vec3d position = three_numbers(at, "vertex");
     check_.check(position, mesh_.positions.size(), line(at));
+    color(at);
     mesh_.positions.push_back(position);
+  }
+
+  /// Three numbers behind a position, or four of which the last is opacity; fewer are a weight.
+  void color(TextCursor& at) {
+    Vec3d value;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!parse_number(at.word(), value[i])) return;
+    colors_.set(mesh_.positions.size(), RgbF(value));
   }
 
   void normal(TextCursor& at) { normals_.push_back(usable_normal(three_numbers(at, "normal"))); }
@@ -152,9 +181,15 @@ class ObjReader {
       remember_highest(highest_uv_, corner.uv, at);
     }
     if (second == text.npos || second + 1 == text.size()) return corner;
-    corner.normal = index(text.substr(second + 1), normals_.size(), "normal", at);
-    remember_highest(highest_normal_, corner.normal, at);
+    corner.normal = normal_index(text.substr(second + 1), at);
     return corner;
+  }
+
+  std::int64_t normal_index(std::string_view text, const TextCursor& at) const {
+    std::int64_t value = 0;
+    const bool is_number = parse_integer(text, value);
+    if (is_number && (value == 0 || value < -std::int64_t(normals_.size()))) return kMissing;
+    return index(text, normals_.size(), "normal", at);
   }
 
   struct Highest {
@@ -170,8 +205,7 @@ class ObjReader {
     corners_.clear();
     for (std::string_view word = at.word(); !word.empty() && word[0] != '#'; word = at.word())
       corners_.push_back(corner(word, at));
-    if (corners_.size() < 3)
-      throw bad_line(path_, line(at), "bad face", "at least three corners", std::to_string(corners_.size()));
+    if (corners_.size() < 3) return leave_out("f of " + std::to_string(corners_.size()) + " corners", at);
     if (part_ != nullptr && material_ != *part_) return;
     keep_first_of_equal_corners();
     if (corners_.size() < 3) {
@@ -216,7 +250,6 @@ class ObjReader {
     require_faces(path_, mesh_.positions.size(), faces);
     check_.throw_if_any(path_);
     check_range(highest_vertex_, mesh_.positions.size(), "vertex");
-    check_range(highest_normal_, normals_.size(), "normal");
     check_range(highest_uv_, uvs_.size(), "texture coordinate");
     if (unread_ > 0)
       mesh_.warnings.push_back(
@@ -226,8 +259,21 @@ class ObjReader {
       mesh_.warnings.push_back(path_ + ":" + std::to_string(first_material_line_) +
                                ": materials and textures (mtllib, usemtl) are not read: the scene file says "
                                "what a shape is made of");
+    if (has_polypaint_)
+      mesh_.warnings.push_back(path_ + ": its polypaint (#MRGB) is left out; save colours at vertices");
+    if (!colors_.empty()) give_vertex_colors(mesh_, colors_.linear(mesh_.positions.size()));
+    if (has_groups_) give_smoothing();
     if (!corner_normals_.empty()) give_normals();
     if (!uvs_.empty()) give_uvs();
+  }
+
+  void give_smoothing() {
+    groups_.resize(mesh_.triangles.size(), group_);
+    const std::uint32_t first = groups_.empty() ? 1 : groups_.front();
+    if (!std::ranges::all_of(groups_, [&](std::uint32_t group) { return group == first; }))
+      mesh_.smoothing.groups = std::move(groups_);
+    else if (first == 0)
+      mesh_.smoothing.crease_angle = 0;
   }
 
   void give_uvs() {
@@ -243,7 +289,12 @@ class ObjReader {
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i)
         if (const std::int64_t normal = corner_normals_[t][i]; normal != kNone)
-          mesh_.triangles[t][i] = variants.of(mesh_.triangles[t][i], normals_[std::size_t(normal)]);
+          mesh_.triangles[t][i] = variants.of(mesh_.triangles[t][i], normal_of(normal));
+  }
+
+  /// Zero where the file lacks it.
+  Vec3f normal_of(std::int64_t index) const {
+    return index < std::int64_t(normals_.size()) ? normals_[std::size_t(index)] : Vec3f();
   }
 
   void check_range(const Highest& highest, std::size_t count, const char* what) const {
@@ -266,8 +317,12 @@ class ObjReader {
   std::vector<std::array<std::int64_t, 3>> corner_uvs_;  // of triangles
   std::vector<Corner> corners_;                          // of the face at hand
   std::unordered_set<std::int64_t> seen_;
+  FileColors colors_{ColorCoding::srgb};
+  std::uint32_t group_ = 0;  // of the faces that follow
+  bool has_groups_ = false, has_polypaint_ = false;
+  std::vector<std::uint32_t> groups_;  // of the triangles before the last s
   std::size_t unread_ = 0;
-  Highest highest_vertex_, highest_normal_, highest_uv_;
+  Highest highest_vertex_, highest_uv_;
   std::string first_unread_;
   int first_unread_line_ = 0, first_material_line_ = 0;
 };

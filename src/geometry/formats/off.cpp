@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Object File Format, text: [ST][C][N]OFF. Colours, texture coordinates and what else follows a vertex or a
-// face on its line are passed over.
+// Object File Format, text: [ST][C][N]OFF. Texture coordinates and what else follows a vertex, or a face and its
+// colour, on its line are passed over.
 #include <algorithm>
+#include <optional>
 
 #include "geometry/formats/file_checks.h"
 #include "geometry/formats/mesh_format.h"
 #include "geometry/formats/text_cursor.h"
+#include "geometry/formats/vertex_colors.h"
+#include "opaline/core/byte_order_mark.h"
 
 namespace opaline {
 namespace {
@@ -15,6 +18,8 @@ class OffReader {
   OffReader(const std::string& path, std::string& bytes) : path_(path), bytes_(bytes), at_(bytes) {}
 
   SourceMesh run() {
+    drop_byte_order_mark(path_, bytes_);
+    at_ = TextCursor(bytes_);
     blank_comments();
     header();
     counts();
@@ -22,6 +27,11 @@ class OffReader {
     for (std::int64_t i = 0; i < faces_; ++i) face();
     require_faces(path_, std::size_t(vertices_), std::size_t(faces_));
     check_.throw_if_any(path_);
+    if (!vertex_colors_.empty())
+      give_vertex_colors(mesh_, vertex_colors_.linear(mesh_.positions.size()));
+    else if (!face_colors_.empty())
+      for (const RgbF& color : face_colors_.linear(mesh_.triangles.size()))
+        mesh_.colors.push_back({color, color, color});
     return std::move(mesh_);
   }
 
@@ -37,7 +47,7 @@ class OffReader {
     const std::string_view word = at_.word_across_lines();
     std::string_view rest = word;
     if (rest.starts_with("ST")) rest.remove_prefix(2);
-    if (rest.starts_with("C")) rest.remove_prefix(1);
+    if (rest.starts_with("C")) has_colors_ = true, rest.remove_prefix(1);
     if (rest.starts_with("N")) has_normals_ = true, rest.remove_prefix(1);
     if (rest != "OFF")
       throw bad_line(path_, at_.line(), "this is not an OFF file of three dimensions",
@@ -89,9 +99,19 @@ class OffReader {
   void vertex() {
     const Vec3d position = three_numbers("vertex", true);
     check_.check(position, mesh_.positions.size(), at_.line());
-    mesh_.positions.push_back(position);
     if (has_normals_) mesh_.normals.push_back(usable_normal(three_numbers("normal", false)));
+    if (has_colors_)
+      if (const auto value = color()) vertex_colors_.set(mesh_.positions.size(), *value);
+    mesh_.positions.push_back(position);
     end_line();
+  }
+
+  /// The next three numbers of the line; none: it has fewer.
+  std::optional<RgbF> color() {
+    Vec3d value;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!parse_number(at_.word(), value[i])) return std::nullopt;
+    return RgbF(value);
   }
 
   void face() {
@@ -99,6 +119,7 @@ class OffReader {
     if (corners > std::int64_t(bytes_.size() - at_.offset()) / 2 + 1)
       throw bad_line(path_, at_.line(), "a face claims more corners than the file holds", "",
                      std::to_string(corners));
+    const std::size_t triangles = mesh_.triangles.size();
     PolygonFan fan(mesh_);
     for (std::int64_t i = 0; i < corners; ++i) {
       const std::int64_t vertex = integer("vertex index in a face");
@@ -108,6 +129,8 @@ class OffReader {
       fan.add_corner(std::uint32_t(vertex));
     }
     fan.finish();
+    const auto value = color();
+    for (std::size_t t = triangles; value && t < mesh_.triangles.size(); ++t) face_colors_.set(t, *value);
     end_line();
   }
 
@@ -117,7 +140,8 @@ class OffReader {
   SourceMesh mesh_;
   VertexCheck check_;
   std::int64_t vertices_ = 0, faces_ = 0;
-  bool has_normals_ = false;
+  bool has_normals_ = false, has_colors_ = false;
+  FileColors vertex_colors_{ColorCoding::linear}, face_colors_{ColorCoding::linear};
 };
 
 SourceMesh read_off(const std::string& path, std::string& bytes, MeshUvs) {

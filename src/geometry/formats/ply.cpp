@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PLY, text and binary. Of the vertices x, y, z, nx, ny, nz and UVs are read, of the faces their vertices; all
-// other properties, and other elements before the faces, are passed over.
+// PLY, text and binary. Of the vertices x, y, z, nx, ny, nz, UVs and colours are read, of the faces their vertices,
+// UVs at their corners and colours; all other properties, and other elements before the faces, are passed over.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -11,6 +12,8 @@
 #include "geometry/formats/mesh_format.h"
 #include "geometry/formats/ply_header.h"
 #include "geometry/formats/text_cursor.h"
+#include "geometry/formats/vertex_colors.h"
+#include "opaline/core/byte_order_mark.h"
 
 namespace opaline {
 namespace {
@@ -121,6 +124,48 @@ constexpr std::array<std::string_view, 12> kept_names{"x", "y", "z", "nx", "ny",
                                                       "u", "v", "s", "t",  "texture_u", "texture_v"};
 constexpr std::size_t kFirstUv = 6;
 
+/// What stands for 1: of whole numbers the largest of their type.
+double one_of(PlyScalar type) {
+  if (is_floating(type)) return 1;
+  const bool is_signed = std::size_t(type) % 2 == 0;
+  return std::ldexp(1.0, 8 * int(byte_size(type)) - is_signed) - 1;
+}
+
+/// The red, green and blue of an element.
+class PlyColors {
+ public:
+  explicit PlyColors(const PlyElement& element) {
+    for (const auto& names : kNames) {
+      std::array<const PlyProperty*, 3> found{};
+      for (const PlyProperty& p : element.properties)
+        for (std::size_t c = 0; c < 3; ++c)
+          if (!p.is_list && p.name == names[c]) found[c] = &p;
+      if (std::ranges::find(found, nullptr) == found.end()) channels_ = found;
+    }
+    if (channels_[0] != nullptr && !is_floating(channels_[0]->type)) colors_ = FileColors(ColorCoding::srgb);
+  }
+
+  /// Takes a value that is one of them.
+  bool take(const PlyProperty& p, PlyValues& values) {
+    const auto channel = std::ranges::find(channels_, &p);
+    if (channel == channels_.end()) return false;
+    color_[std::size_t(channel - channels_.begin())] = float(values.next(p.type) / one_of(p.type));
+    return true;
+  }
+
+  bool are_there() const { return channels_[0] != nullptr; }
+  void set(std::size_t index) { colors_.set(index, color_); }
+  std::vector<RgbF> linear(std::size_t elements) const { return colors_.linear(elements); }
+
+ private:
+  static constexpr std::array<std::array<std::string_view, 3>, 3> kNames{
+      {{"r", "g", "b"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}, {"red", "green", "blue"}}};
+
+  std::array<const PlyProperty*, 3> channels_{};  // null: there are none
+  RgbF color_;
+  FileColors colors_{ColorCoding::linear};
+};
+
 class PlyReader {
  public:
   PlyReader(const std::string& path, const std::string& bytes, MeshUvs uvs)
@@ -132,7 +177,14 @@ class PlyReader {
   SourceMesh run() {
     for (const PlyElement* element : wanted_elements()) rows(*element);
     check_.throw_if_any(path_);
-    give_uvs(mesh_, uvs_);
+    if (!has_wedges_) {
+      mesh_.uvs.clear();
+      give_uvs(mesh_, uvs_);
+    }
+    give_colors();
+    if (textures_ > 1)
+      mesh_.warnings.push_back(path_ + ": its faces have " + std::to_string(textures_) +
+                               " textures (texnumber), which are taken for one");
     return std::move(mesh_);
   }
 
@@ -167,7 +219,23 @@ class PlyReader {
     return p.is_list && !is_floating(p.type) && (p.name == "vertex_indices" || p.name == "vertex_index");
   }
 
+  void give_colors() {
+    if (vertex_colors_->are_there())
+      give_vertex_colors(mesh_, vertex_colors_->linear(mesh_.positions.size()));
+    else if (face_colors_->are_there())
+      for (const RgbF& color : face_colors_->linear(mesh_.triangles.size()))
+        mesh_.colors.push_back({color, color, color});
+  }
+
+  static bool is_wedges(const PlyProperty& p) {
+    return p.is_list && is_floating(p.type) && p.name == "texcoord";
+  }
+
   void find_kept_properties() {
+    vertex_colors_.emplace(*vertices_);
+    face_colors_.emplace(*faces_);
+    const auto wedges = std::ranges::find_if(faces_->properties, is_wedges);
+    if (has_uvs_ && wedges != faces_->properties.end()) wedges_ = &*wedges;
     std::array<int, kept_names.size()> found{};
     for (const PlyProperty& p : vertices_->properties) {
       const auto name = std::ranges::find(kept_names, p.name);
@@ -209,6 +277,7 @@ class PlyReader {
     std::array<float, 2> uv{};
     for (std::size_t i = 0; i < slots_.size(); ++i) {
       const PlyProperty& p = vertices_->properties[i];
+      if (vertex_colors_->take(p, values_)) continue;
       if (!slots_[i])
         values_.skip(p);
       else if (*slots_[i] < kFirstUv)
@@ -217,28 +286,60 @@ class PlyReader {
         uv[*slots_[i] % 2] = float(values_.next(p.type));
     }
     check_.check(read[0], mesh_.positions.size(), values_.line());
+    if (vertex_colors_->are_there()) vertex_colors_->set(mesh_.positions.size());
     mesh_.positions.push_back(read[0]);
     if (has_normals_) mesh_.normals.push_back(usable_normal(read[1]));
     if (has_uvs_) uvs_.push_back(uv);
   }
 
   void face(std::uint64_t number) {
+    const std::size_t triangles = mesh_.triangles.size();
+    polygon_.clear();
+    wedge_.clear();
     for (const PlyProperty& p : faces_->properties) {
-      if (&p != indices_) {
+      if (face_colors_->take(p, values_)) continue;
+      if (&p == indices_)
+        polygon(p, number);
+      else if (&p == wedges_)
+        for (std::uint64_t left = values_.next_list_size(p); left > 0; --left)
+          wedge_.push_back(float(values_.next(p.type)));
+      else if (wedges_ != nullptr && !p.is_list && p.name == "texnumber")
+        textures_ = std::max(textures_, std::int64_t(values_.next(p.type)) + 1);
+      else
         values_.skip(p);
-        continue;
-      }
-      PolygonFan fan(mesh_);
-      for (std::uint64_t left = values_.next_list_size(p); left > 0; --left) {
-        const double vertex = values_.next(p.type);
-        if (vertex < 0 || vertex >= double(vertices_->count))
-          throw bad_line(
-              path_, values_.line(), "vertex index out of range in face " + std::to_string(number + 1),
-              "0 to " + std::to_string(vertices_->count - 1), std::to_string(std::int64_t(vertex)));
-        fan.add_corner(std::uint32_t(vertex));
-      }
-      fan.finish();
     }
+    if (wedges_ != nullptr) give_wedges(triangles);
+    if (face_colors_->are_there())
+      for (std::size_t t = triangles; t < mesh_.triangles.size(); ++t) face_colors_->set(t);
+  }
+
+  void polygon(const PlyProperty& p, std::uint64_t number) {
+    PolygonFan fan(mesh_);
+    for (std::uint64_t left = values_.next_list_size(p); left > 0; --left) {
+      const double vertex = values_.next(p.type);
+      if (vertex < 0 || vertex >= double(vertices_->count))
+        throw bad_line(path_, values_.line(),
+                       "vertex index out of range in face " + std::to_string(number + 1),
+                       "0 to " + std::to_string(vertices_->count - 1), std::to_string(std::int64_t(vertex)));
+      fan.add_corner(std::uint32_t(vertex));
+      if (wedges_ != nullptr) polygon_.push_back(std::uint32_t(vertex));
+    }
+    fan.finish();
+  }
+
+  /// Gives a face's triangles, from this one on, the UVs of its corners: u and v of each, or none at all.
+  void give_wedges(std::size_t triangle) {
+    mesh_.uvs.resize(mesh_.triangles.size());
+    if (wedge_.empty() || wedge_.size() != 2 * polygon_.size()) return;
+    has_wedges_ = true;
+    corner_of_.resize(vertices_->count);
+    for (std::size_t corner = 0; corner < polygon_.size(); ++corner)
+      corner_of_[polygon_[corner]] = std::uint32_t(corner);
+    for (; triangle < mesh_.triangles.size(); ++triangle)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t corner = corner_of_[mesh_.triangles[triangle][k]];
+        mesh_.uvs[triangle][k] = {wedge_[2 * corner], wedge_[2 * corner + 1]};
+      }
   }
 
   const std::string& path_;
@@ -250,11 +351,20 @@ class PlyReader {
   std::vector<std::optional<std::size_t>> slots_;  // of each vertex property, its number in kept_names
   bool has_normals_ = false, has_uvs_;
   std::vector<std::array<float, 2>> uvs_;
+  std::optional<PlyColors> vertex_colors_, face_colors_;
+  const PlyProperty* wedges_ =
+      nullptr;  // UVs at the corners of faces; null: there are none, or they are not wanted
+  std::vector<std::uint32_t> polygon_;    // of the face at hand, where it has them
+  std::vector<float> wedge_;              // the same
+  std::vector<std::uint32_t> corner_of_;  // of each vertex, in the face at hand
+  bool has_wedges_ = false;               // a face has given them
+  std::int64_t textures_ = 0;
   SourceMesh mesh_;
   VertexCheck check_;
 };
 
 SourceMesh read_ply(const std::string& path, std::string& bytes, MeshUvs uvs) {
+  drop_byte_order_mark(path, bytes);
   return PlyReader(path, bytes, uvs).run();
 }
 

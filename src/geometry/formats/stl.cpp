@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // STL, text and binary: triangles, each with corners of its own. Coordinates are taken as float; corners at
-// the same position become one vertex.
+// the same position become one vertex, shaded round but across creases: the format has no vertices of its own, and is
+// written by programs of parts with edges.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,11 +12,13 @@
 #include "geometry/formats/mesh_format.h"
 #include "geometry/formats/text_cursor.h"
 #include "geometry/topology.h"
+#include "opaline/core/byte_order_mark.h"
 
 namespace opaline {
 namespace {
 
 constexpr std::size_t binary_header = 84, binary_triangle = 50;
+constexpr double kCreaseAngle = 30;  // degrees
 
 std::uint32_t little_endian(const char* bytes) {
   std::uint32_t bits = 0;
@@ -141,12 +144,14 @@ class TextStlReader {
 
 SourceMesh read_stl(const std::string& path, std::string& bytes, MeshUvs) {
   const bool exact = bytes.size() >= binary_header && bytes.size() == binary_size(bytes);
+  if (!exact) drop_byte_order_mark(path, bytes);
   const bool text = lower(TextCursor(bytes).word_across_lines()) == "solid" && bytes.find('\0') == bytes.npos;
   const bool binary = exact || !text;
   const std::vector<Vec3f> corners = binary ? read_binary(path, bytes) : TextStlReader(path, bytes).run();
   const std::size_t surplus = binary ? bytes.size() - binary_size(bytes) : 0;
   std::string().swap(bytes);  // the tables of join_corners take its memory
   SourceMesh mesh = join_corners(corners);
+  mesh.smoothing.crease_angle = kCreaseAngle;
   if (surplus > 0)
     mesh.warnings.push_back(path + ": " + std::to_string(surplus) +
                             " bytes after the last triangle are left out");

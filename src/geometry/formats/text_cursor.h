@@ -68,11 +68,17 @@ class TextCursor {
   int line_;
 };
 
-/// Whether the whole word is a number, as streams read them; beyond double it becomes infinite or zero.
+/// Whether the whole word is a number, as streams read them; beyond double it becomes infinite or zero. What is not
+/// finite may also be written as old Microsoft libraries do: -1.#IND00.
 inline bool parse_number(std::string_view word, double& value) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (end != word.data() + word.size()) return false;
+  const std::size_t parsed = std::size_t(end - word.data());
+  if (parsed > 0 && word.substr(parsed - 1).starts_with(".#")) {
+    value = std::numeric_limits<double>::quiet_NaN();
+    return true;
+  }
+  if (parsed != word.size()) return false;
   if (error == std::errc::result_out_of_range) {
     const bool tiny = word.find("e-") != word.npos || word.find("E-") != word.npos;
     value = tiny ? 0 : std::numeric_limits<double>::infinity();

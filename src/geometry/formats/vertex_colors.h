@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Colours of vertices and faces, as mesh files have them.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "geometry/source_mesh.h"
+
+namespace opaline {
+
+/// What numbers of 0 to 1 mean.
+enum class ColorCoding { srgb, linear };
+
+/// Colours of vertices or faces on their way from a file to a mesh. Those that the file leaves out are white.
+class FileColors {
+ public:
+  explicit FileColors(ColorCoding coding) : coding_(coding) {}
+
+  bool empty() const { return colors_.empty(); }
+  /// The color of the element with this index; indices ascend.
+  void set(std::size_t index, const RgbF& color) {
+    colors_.resize(index, kNone);
+    colors_.push_back(color);
+  }
+  /// Linear, from 0 to 1, one an element. Whole numbers of which one exceeds 1 count to 255 and are sRGB.
+  std::vector<RgbF> linear(std::size_t elements) const;
+
+ private:
+  static constexpr RgbF kNone{-1, -1, -1};
+
+  ColorCoding coding_;
+  std::vector<RgbF> colors_;
+};
+
+/// Gives the triangles' corners the colors of their vertices.
+void give_vertex_colors(SourceMesh& mesh, const std::vector<RgbF>& colors);
+
+}  // namespace opaline
