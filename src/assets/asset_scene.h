@@ -27,7 +27,13 @@ struct AssetScene {
   double center_irradiance = 0;  ///< that its lights bring to a surface there that faces them
   bool is_one_mesh = false;      ///< its shapes are parts of one body
   std::vector<std::string> translated, not_carried;
-  std::vector<std::string> missing_files;  ///< that it names, or that cannot be read, and where
+  std::vector<std::string> warnings;  ///< of what changes the image
+
+  /// Something of a file or a record in it that is lost and changes the image.
+  void warn(const std::string& place, const std::string& what) {
+    not_carried.push_back(what);
+    warnings.push_back(place + ": " + what);
+  }
 };
 
 /// What the material of a shape becomes.

@@ -86,8 +86,7 @@ std::vector<KeyInfo> shape_rows() {
       row("shape", "file", file, "", kFiniteNumber, "", mesh_file_meaning()),
       row("shape", "part", text, "", kFiniteNumber, "all of the file",
           "with `file`: a part of it; of GLB and glTF, which must have it, `\"mesh/primitive\"` by their "
-          "indices, "
-          "of OBJ the material whose faces are meant"),
+          "indices, or `\"mesh/primitive/node\"` in the pose of that node, of OBJ the material whose faces are meant"),
       row("shape", "sphere", object, "", kFiniteNumber, "", "a built-in sphere, see below"),
       row("shape", "box", object, "", kFiniteNumber, "", "a built-in box"),
       row("shape", "quad", object, "", kFiniteNumber, "", "a built-in parallelogram"),
