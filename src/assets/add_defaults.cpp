@@ -64,7 +64,8 @@ ViewFrame view_frame(const AssetScene& scene) {
   const Vec3d up{0, 1, 0};
   Vec3d towards = vector_of(scene.camera["position"]) - scene.center;
   constexpr double kNear = .01;  // of the asset's radius, or of a right angle
-  if (!(length(cross(up, towards)) > kNear * std::max(length(towards), scene.radius))) towards = default_view();
+  if (!(length(cross(up, towards)) > kNear * std::max(length(towards), scene.radius)))
+    towards = default_view();
   return {normalized(cross(up, towards)), up, normalized(towards)};
 }
 
@@ -82,7 +83,7 @@ void add_lights(AssetScene& scene) {
          {"center", triple_json(scene.center + direction * (kLightDistance * scene.radius))},
          {"radius", light.radius * scene.radius},
          {"radiance", light.white * ratio * ratio},
-         });
+         {"visible", false}});
   }
   scene.translated.push_back("no lights: default ones, called key, fill and rim, are put around the asset");
 }

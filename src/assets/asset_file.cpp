@@ -23,7 +23,7 @@ bool has_drive(const std::string& name) {
   return name.size() > 1 && std::isalpha(static_cast<unsigned char>(name[0])) != 0 && name[1] == ':';
 }
 
-/// Of another machine, as far as this one can tell.
+/// The file of this name in a folder, whatever folders of another machine stand before it.
 fs::path beside(const std::string& name, const fs::path& folder) {
   return folder / name.substr(name.find_last_of("/:") + 1);
 }
@@ -37,7 +37,8 @@ void check_is_inside(const std::string& name, const std::string& asset, const fs
   if (outside_is_allowed) return;
   std::error_code error;
   const fs::path folder = fs::canonical(folder_of(asset), error), real = fs::canonical(file, error);
-  if (!error && std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first == folder.end()) return;
+  if (!error && std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first == folder.end())
+    return;
   throw OutsideAsset(ErrorKind::bad_input, asset, 0, 0,
                      in_quotes(name) + " lies outside of the asset's folder",
                      "a file in " + folder.string() + ", or --allow-outside", real.string());

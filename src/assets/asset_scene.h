@@ -28,6 +28,7 @@ struct AssetScene {
   bool is_one_mesh = false;      ///< its shapes are parts of one body
   std::vector<std::string> translated, not_carried;
   std::vector<std::string> warnings;  ///< of what changes the image
+  std::size_t bytes = 0;              ///< as ImportedAsset's
 
   /// Something of a file or a record in it that is lost and changes the image.
   void warn(const std::string& place, const std::string& what) {

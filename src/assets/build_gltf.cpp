@@ -92,8 +92,8 @@ class GltfBuilder {
     } catch (const Json::exception& failure) {
       // "[json.exception.parse_error.101] parse error at line 1, ...": the number is the library's.
       const std::string what = failure.what();
-      throw bad_file(gltf_.path,
-                     "cannot be read as glTF 2.0: " + what.substr(std::min(what.find("] ") + 2, what.size())));
+      throw bad_file(gltf_.path, "cannot be read as glTF 2.0: " +
+                                     what.substr(std::min(what.find("] ") + 2, what.size())));
     }
     return std::move(buffers_);
   }
@@ -118,7 +118,8 @@ class GltfBuilder {
   void take(const Json& json) {
     const std::size_t index = counts_[list_]++;
     const GltfRecord record(gltf_.path, record_name(list_, index), json);
-    if (list_ == "buffers") buffers_.push_back({record.need("byteLength").size("byteLength", 0), record.text("uri")});
+    if (list_ == "buffers")
+      buffers_.push_back({record.need("byteLength").size("byteLength", 0), record.text("uri")});
     if (list_ == "bufferViews") gltf_.views.push_back(read_view(record));
     if (list_ == "accessors") gltf_.accessors.push_back(read_accessor(record));
     if (list_ == "meshes") gltf_.meshes.push_back(read_mesh(record));
@@ -130,13 +131,14 @@ class GltfBuilder {
   void take_node(std::size_t index, const GltfRecord& record) {
     const GltfRecord extensions = record.record("extensions");
     const Transform placed = read_transform(record);
-    gltf_.nodes.push_back({.name = record.text("name"),
-                           .mesh = record.index("mesh"),
-                           .camera = record.index("camera"),
-                           .skin = record.index("skin"),
-                           .light = extensions.record("KHR_lights_punctual").index("light"),
-                           .children = record.indices("children"),
-                           .placed = placed == Transform{} ? nullptr : std::make_unique<const Transform>(placed)});
+    gltf_.nodes.push_back(
+        {.name = record.text("name"),
+         .mesh = record.index("mesh"),
+         .camera = record.index("camera"),
+         .skin = record.index("skin"),
+         .light = extensions.record("KHR_lights_punctual").index("light"),
+         .children = record.indices("children"),
+         .placed = placed == Transform{} ? nullptr : std::make_unique<const Transform>(placed)});
     if (record.has("weights")) gltf_.node_weights[index] = record.numbers("weights");
     if (extensions.has("EXT_mesh_gpu_instancing"))
       gltf_.instances[index] =
@@ -156,7 +158,8 @@ class GltfBuilder {
     gltf_.scene = root.index("scene");
     gltf_.extensions_used = root.texts("extensionsUsed");
     gltf_.extensions_required = root.texts("extensionsRequired");
-    const GltfRecord extensions = root.record("extensions"), lights = extensions.record("KHR_lights_punctual");
+    const GltfRecord extensions = root.record("extensions"),
+                     lights = extensions.record("KHR_lights_punctual");
     if (lights.has("lights")) {
       lights.records("lights");
       gltf_.lists["lights"] = json["extensions"]["KHR_lights_punctual"]["lights"].get<std::vector<Json>>();

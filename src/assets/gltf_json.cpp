@@ -130,8 +130,7 @@ std::vector<std::string> GltfRecord::texts(const char* key) const {
   std::vector<std::string> texts;
   if (const Json* const list = find_list(key))
     for (std::size_t i = 0; i < list->size(); ++i) {
-      if (!(*list)[i].is_string())
-        fail(key_at(key, i), "is of the wrong type", "a text", shown((*list)[i]));
+      if (!(*list)[i].is_string()) fail(key_at(key, i), "is of the wrong type", "a text", shown((*list)[i]));
       texts.push_back((*list)[i].get<std::string>());
     }
   return texts;

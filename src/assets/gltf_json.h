@@ -14,7 +14,6 @@ namespace opaline {
 
 using Json = nlohmann::ordered_json;
 
-
 /// error Error{bad_input} at one of a list's records: "meshes[3]" and what is wrong with it
 [[noreturn]] void fail_at(const std::string& path, const std::string& record, const std::string& message,
                           const std::string& expected = {}, const std::string& got = {});

@@ -94,7 +94,8 @@ BaseLayer specular_glossiness(const GltfRecord& model) {
   }
   const double metalness = base.metalness, mix = metalness * metalness;
   const Vec3d of_diffuse = diffuse * (rest / (1 - kDielectric) / std::max(1 - metalness, kLeast));
-  const Vec3d of_specular = (specular - Vec3d(kDielectric * (1 - metalness))) * (1 / std::max(metalness, kLeast));
+  const Vec3d of_specular =
+      (specular - Vec3d(kDielectric * (1 - metalness))) * (1 / std::max(metalness, kLeast));
   base.color = component_min(component_max(of_diffuse * (1 - mix) + of_specular * mix, Vec3d(0)), Vec3d(1));
   return base;
 }
@@ -187,11 +188,10 @@ class MaterialTranslator {
     const double ior = index_of_refraction();
     if (ior > 1 && ior != kGltfIor) surface.keys["specular_ior"] = ior;
     add_specular_weight(surface.keys);
-    translated(
-        fmt::format("{} -> reflectance {}, metalness {:.3g}, specular_roughness {:.3g} (opaque)",
-                    has(kSpecularGlossiness) ? "diffuseFactor, specularFactor, glossinessFactor"
-                                             : "baseColorFactor, metallicFactor, roughnessFactor",
-                    short_triple(surface.reflectance), metalness, roughness));
+    translated(fmt::format("{} -> reflectance {}, metalness {:.3g}, specular_roughness {:.3g} (opaque)",
+                           has(kSpecularGlossiness) ? "diffuseFactor, specularFactor, glossinessFactor"
+                                                    : "baseColorFactor, metallicFactor, roughnessFactor",
+                           short_triple(surface.reflectance), metalness, roughness));
   }
 
   /// Both alphas are met exactly: the roughness that is returned is the factor's without anisotropy.
@@ -274,7 +274,8 @@ class MaterialTranslator {
       if (color != Vec3d(1)) not_carried("diffuseTransmissionColorFactor " + short_triple(color));
     }
     add_specular_weight(surface.medium);
-    if (std::optional<Json> rough = channel(texture(base_.roughness_texture, "metallicRoughnessTexture"), "g"))
+    if (std::optional<Json> rough =
+            channel(texture(base_.roughness_texture, "metallicRoughnessTexture"), "g"))
       surface.medium["specular_roughness"] =
           times(std::move(rough), surface.medium["specular_roughness"], 1.0);
   }
@@ -333,8 +334,8 @@ class MaterialTranslator {
         "roughnessFactor {:.3g} -> sigma_a {}, sigma_s {} 1/mm, g {:.3g}, specular_ior {:.4g}, "
         "specular_roughness {:.3g}",
         short_triple(color), distance * kMillimetres, short_triple(scatter.multiscatter_color),
-        scatter.anisotropy, ior, base_.roughness, short_triple(sigma_a),
-        short_triple(sigma_s), g, ior, roughness));
+        scatter.anisotropy, ior, base_.roughness, short_triple(sigma_a), short_triple(sigma_s), g, ior,
+        roughness));
     tell_of_thickness(volume);
     medium.update({{"sigma_a", triple_json(sigma_a)},
                    {"sigma_s", triple_json(sigma_s)},
@@ -376,9 +377,9 @@ class MaterialTranslator {
   /// Alpha of 1 everywhere says nothing.
   void tell_alpha() {
     const std::string mode = material_.text("alphaMode", "OPAQUE");
-    const std::vector<double> factor =
-        material_.record("pbrMetallicRoughness").numbers("baseColorFactor", 4);
-    const bool may_be_clear = base_.color_texture.index("index") != kNoRecord || (!factor.empty() && factor[3] < 1);
+    const std::vector<double> factor = material_.record("pbrMetallicRoughness").numbers("baseColorFactor", 4);
+    const bool may_be_clear =
+        base_.color_texture.index("index") != kNoRecord || (!factor.empty() && factor[3] < 1);
     if (mode != "OPAQUE" && may_be_clear)
       warn("alphaMode " + in_quotes(mode) + ": shown whole, without holes");
   }
@@ -386,9 +387,9 @@ class MaterialTranslator {
   void tell_extensions(bool is_translucent) {
     constexpr std::array<std::string_view, 3> of_volume{"KHR_materials_transmission", "KHR_materials_volume",
                                                         "KHR_materials_diffuse_transmission"};
-    constexpr std::array<std::string_view, 6> read{kSpecularGlossiness, "KHR_materials_anisotropy", "KHR_materials_ior",
-                                                   "KHR_materials_specular", "KHR_materials_volume_scatter",
-                                                   "KHR_materials_scatter"};
+    constexpr std::array<std::string_view, 6> read{
+        kSpecularGlossiness,      "KHR_materials_anisotropy",     "KHR_materials_ior",
+        "KHR_materials_specular", "KHR_materials_volume_scatter", "KHR_materials_scatter"};
     for (const std::string& name : extensions_.keys()) {
       if (std::ranges::find(read, name) != read.end()) continue;
       if (std::ranges::find(of_volume, name) == of_volume.end())

@@ -118,6 +118,14 @@ class ReferenceCheck {
   GltfModel& gltf_;
 };
 
+std::size_t record_bytes(const GltfModel& gltf, std::string_view json) {
+  constexpr std::size_t kOfAllocation = 16;
+  std::size_t bytes = json.size();
+  for (const GltfNode& node : gltf.nodes)
+    bytes += sizeof node + (node.placed ? sizeof *node.placed + kOfAllocation : 0);
+  return bytes;
+}
+
 /// The last asset, and what it was read from.
 struct Kept {
   std::mutex mutex;
@@ -142,7 +150,8 @@ std::string bytes_of_uri(const GltfModel& gltf, std::size_t index, const std::st
   }
   const std::string name = decoded_uri(uri);
   const NamedFile file = find_named_file(name, gltf.path, fs::path(gltf.path).parent_path());
-  if (file.path.empty()) fail_at(gltf.path, place, "names no such file", "a file in the asset's folder", name);
+  if (file.path.empty())
+    fail_at(gltf.path, place, "names no such file", "a file in the asset's folder", name);
   files.push_back(file.path.string());
   return read_asset_bytes(files.back());
 }
@@ -157,7 +166,8 @@ void read_buffers(GltfModel& gltf, std::string_view binary, const std::vector<Gl
       bytes = gltf.own_bytes.emplace_back(bytes_of_uri(gltf, i, uri, files));
       if (files.size() > known) add_hash(gltf.contents, bytes);
     } else if (i > 0 || binary.data() == nullptr) {
-      fail_at(gltf.path, record_name("buffers", i), "has no data", "a uri, or the binary chunk of a GLB file");
+      fail_at(gltf.path, record_name("buffers", i), "has no data",
+              "a uri, or the binary chunk of a GLB file");
     }
     if (bytes.size() < length)
       fail_at(gltf.path, record_name("buffers", i), "is shorter than its byteLength", std::to_string(length),
@@ -209,9 +219,9 @@ std::shared_ptr<const GltfModel> load_gltf(const std::string& path) {
   add_hash(gltf->contents, file);
   gltf->file = std::move(file);
   const GltfChunks chunks = gltf_chunks(path, gltf->file);
-  if (!chunks.is_aligned)
-    gltf->warnings.push_back("its chunks are not aligned to 4 bytes, as glTF wants it");
+  if (!chunks.is_aligned) gltf->warnings.push_back("its chunks are not aligned to 4 bytes, as glTF wants it");
   const std::vector<GltfBuffer> buffers = build_gltf(chunks.json, *gltf);
+  gltf->record_bytes = record_bytes(*gltf, chunks.json);
   check_compression(*gltf);
   std::vector<std::string> files{path};
   read_buffers(*gltf, chunks.binary, buffers, files);

@@ -80,6 +80,7 @@ struct GltfModel {
   std::uint32_t scene = kNoRecord;                          ///< to be shown
   std::vector<std::string> extensions_used, extensions_required;
   std::size_t animations = 0;
+  std::size_t record_bytes = 0;  ///< memory that the text and its nodes take, which may be a million
   /// Lists whose records are read where they are used: a mistake in another one costs nothing.
   std::map<std::string, std::vector<Json>, std::less<>> lists;
 

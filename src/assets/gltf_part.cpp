@@ -132,8 +132,8 @@ void check_positions(const GltfModel& gltf, std::uint32_t accessor, const std::v
       continue;
     char got[160];
     std::snprintf(got, sizeof got, "(%g, %g, %g)", p.x, p.y, p.z);
-    fail_at(gltf.path, record_name("accessors", accessor),
-            "element " + std::to_string(i) + " is no place", "finite coordinates below 1e18", got);
+    fail_at(gltf.path, record_name("accessors", accessor), "element " + std::to_string(i) + " is no place",
+            "finite coordinates below 1e18", got);
   }
 }
 

@@ -93,7 +93,11 @@ std::vector<Transform> joint_matrices(const GltfModel& gltf, std::size_t skin_in
 class SkinBlend {
  public:
   SkinBlend(const GltfModel& gltf, std::vector<Transform> joints, std::size_t vertices)
-      : gltf_(gltf), joints_(std::move(joints)), blended_(vertices, kZero), sums_(vertices), first_(vertices) {}
+      : gltf_(gltf),
+        joints_(std::move(joints)),
+        blended_(vertices, kZero),
+        sums_(vertices),
+        first_(vertices) {}
 
   void add_set(std::uint32_t joints, std::uint32_t weights) {
     check_unsigned(gltf_, joints);
@@ -103,11 +107,12 @@ class SkinBlend {
       for (std::size_t k = 0; k < 4; ++k) {
         if (!(indices[i][k] < double(joints_.size())))
           fail_at(gltf_.path, record_name("accessors", joints),
-                  "element " + std::to_string(i) + " names no joint", "below " + std::to_string(joints_.size()),
-                  std::to_string(std::size_t(indices[i][k])));
+                  "element " + std::to_string(i) + " names no joint",
+                  "below " + std::to_string(joints_.size()), std::to_string(std::size_t(indices[i][k])));
         if (!(shares[i][k] >= 0 && std::isfinite(shares[i][k])))
-          fail_at(gltf_.path, record_name("accessors", weights), "element " + std::to_string(i) + " is no weight",
-                  "0 or more", std::to_string(shares[i][k]));
+          fail_at(gltf_.path, record_name("accessors", weights),
+                  "element " + std::to_string(i) + " is no weight", "0 or more",
+                  std::to_string(shares[i][k]));
         add(blended_[i], joints_[std::size_t(indices[i][k])], shares[i][k]);
         sums_[i] += shares[i][k];
       }
@@ -135,8 +140,8 @@ class SkinBlend {
     const GltfAccessor& accessor = gltf_.accessors[index];
     constexpr std::size_t kFloats = 5126;
     if (accessor.component != kFloats && !accessor.is_normalized)
-      fail_at(gltf_.path, record_name("accessors", index), "cannot hold weights", "floats or normalized integers",
-              "a componentType of " + std::to_string(accessor.component));
+      fail_at(gltf_.path, record_name("accessors", index), "cannot hold weights",
+              "floats or normalized integers", "a componentType of " + std::to_string(accessor.component));
   }
 
   std::vector<std::array<double, 4>> read(std::uint32_t index) const {
@@ -203,12 +208,14 @@ bool is_skinned(const GltfModel& gltf, std::size_t node, const GltfPrimitive& pr
 
 bool is_posed(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive) {
   return is_skinned(gltf, node, primitive) ||
-         (!primitive.targets.empty() && std::ranges::any_of(morph_weights(gltf, node), [](double w) { return w != 0; }));
+         (!primitive.targets.empty() &&
+          std::ranges::any_of(morph_weights(gltf, node), [](double w) { return w != 0; }));
 }
 
 bool pose(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive, const std::string& place,
           GltfPart& part) {
-  if (!primitive.targets.empty() && !morph_weights(gltf, node).empty()) morph(gltf, node, primitive, place, part);
+  if (!primitive.targets.empty() && !morph_weights(gltf, node).empty())
+    morph(gltf, node, primitive, place, part);
   if (!is_skinned(gltf, node, primitive)) return false;
   return skin(blended_joints(gltf, node, primitive, place, part), part);
 }

@@ -16,7 +16,7 @@ bool is_posed(const GltfModel& gltf, std::size_t node, const GltfPrimitive& prim
 /// Moves a part's vertices, normals and tangents into the node's pose: in the node's space, or in the scene's where it
 /// is skinned.
 /// in    place: of the primitive, for errors; part: as the mesh has it, without triangles
-/// out   turns_inside_out of the result: joints mirror most vertices
+/// out   whether joints mirror most vertices: triangles then face inwards
 /// error Error{bad_input} naming the accessor: a joint that is not there, weights below 0, too many or too few of either
 bool pose(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive, const std::string& place,
           GltfPart& part);

@@ -36,8 +36,7 @@ NamedFile file_of(const GltfModel& gltf, const GltfRecord& image) {
 }
 
 std::string view_bytes(const GltfModel& gltf, const GltfRecord& image) {
-  if (!image.has("bufferView"))
-    fail_at(gltf.path, image.place(), "has no data", "a uri or a bufferView");
+  if (!image.has("bufferView")) fail_at(gltf.path, image.place(), "has no data", "a uri or a bufferView");
   const std::uint32_t view = image.index("bufferView");
   if (view >= gltf.views.size())
     image.fail("bufferView", "points at nothing", "below " + std::to_string(gltf.views.size()),

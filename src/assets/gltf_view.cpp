@@ -63,8 +63,8 @@ class LightTranslator {
     scene_.lights.push_back(std::move(json));
     scene_.center_irradiance += at_center(brightness, has_place);
     scene_.translated.push_back(fmt::format(
-        "{}: {} of {} {} -> {} {} W/{}", label, type_, short_triple(brightness),
-        has_place ? "cd" : "lx", has_place ? "intensity" : "irradiance",
+        "{}: {} of {} {} -> {} {} W/{}", label, type_, short_triple(brightness), has_place ? "cd" : "lx",
+        has_place ? "intensity" : "irradiance",
         short_triple(brightness * (has_place ? kIntensityOfCandela : 1)), has_place ? "sr" : "mm^2"));
     if (const double range = light_.number("range", 0); range > 0)
       scene_.not_carried.push_back(label + fmt::format(": range {:.4g} m", range));

@@ -21,7 +21,7 @@ bool is_finite(const Transform& t) {
   return is_finite(t.x) && is_finite(t.y) && is_finite(t.z) && is_finite(t.translation);
 }
 
-/// A node that belongs to the scene, with its place in the world.
+/// A node that belongs to the scene, with its place in the world; of a mesh that is there several times, which one.
 struct PlacedNode {
   std::size_t index, instance;
   Transform to_world;
@@ -34,35 +34,42 @@ class NodeWalk {
 
   /// Those that show something, in the order of the file, parents first.
   std::vector<PlacedNode> run(const std::vector<std::uint32_t>& roots) {
-    push(roots, {});
+    push(roots, 1);
     std::vector<PlacedNode> placed;
+    std::vector<Transform> above{Transform{}};  // of the nodes from the world down to the next one
     while (!open_.empty()) {
-      const PlacedNode next = open_.back();
+      const auto [index, depth] = open_.back();
       open_.pop_back();
-      const GltfNode& node = gltf_.nodes[next.index];
-      if (node.mesh != kNoRecord || node.camera != kNoRecord || node.light != kNoRecord) placed.push_back(next);
-      push(node.children, next.to_world);
+      above.resize(depth);
+      above.push_back(compose(above.back(), gltf_.nodes[index].to_parent()));
+      if (!is_finite(above.back()))
+        fail_at(gltf_.path, record_name("nodes", index), "is placed beyond all numbers");
+      const GltfNode& node = gltf_.nodes[index];
+      if (node.mesh != kNoRecord || node.camera != kNoRecord || node.light != kNoRecord)
+        placed.push_back({index, 0, above.back()});
+      push(node.children, depth + 1);
     }
     return placed;
   }
 
  private:
-  void push(const std::vector<std::uint32_t>& nodes, const Transform& parent) {
+  struct OpenNode {
+    std::uint32_t index, depth;
+  };
+
+  void push(const std::vector<std::uint32_t>& nodes, std::uint32_t depth) {
     for (std::size_t i = nodes.size(); i-- > 0;) {
-      const std::size_t node = nodes[i];
-      if (is_met_[node])
-        fail_at(gltf_.path, record_name("nodes", node), "has two parents, or is its own", "a tree of nodes");
-      is_met_[node] = true;
-      const Transform to_world = compose(parent, gltf_.nodes[node].to_parent());
-      if (!is_finite(to_world))
-        fail_at(gltf_.path, record_name("nodes", node), "is placed beyond all numbers");
-      open_.push_back({node, 0, to_world});
+      if (is_met_[nodes[i]])
+        fail_at(gltf_.path, record_name("nodes", nodes[i]), "has two parents, or is its own",
+                "a tree of nodes");
+      is_met_[nodes[i]] = true;
+      open_.push_back({nodes[i], depth});
     }
   }
 
   const GltfModel& gltf_;
   std::vector<bool> is_met_;
-  std::vector<PlacedNode> open_;
+  std::vector<OpenNode> open_;
 };
 
 class GltfImporter {
@@ -115,7 +122,8 @@ class GltfImporter {
     const std::vector<Transform> all = instances(placed.index);
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t p = 0; p < gltf_.meshes[node.mesh].primitives.size(); ++p)
-        if (has_triangles(node.mesh, p)) add_shape({placed.index, i, compose(placed.to_world, all[i])}, p, label);
+        if (has_triangles(node.mesh, p))
+          add_shape({placed.index, i, compose(placed.to_world, all[i])}, p, label);
   }
 
   /// EXT_mesh_gpu_instancing; a node without it is there once.
@@ -133,14 +141,16 @@ class GltfImporter {
                 std::to_string(gltf_.accessors[attribute->second].count));
       const auto values = read(gltf_, attribute->second);
       if (!all.empty() && values.size() != all.size())
-        fail_at(gltf_.path, record_name("accessors", attribute->second), "has an instance too many or too few",
-                std::to_string(all.size()), std::to_string(values.size()));
+        fail_at(gltf_.path, record_name("accessors", attribute->second),
+                "has an instance too many or too few", std::to_string(all.size()),
+                std::to_string(values.size()));
       all.resize(values.size());
       for (std::size_t i = 0; i < values.size(); ++i) use(all[i], values[i]);
     };
     for_each("ROTATION", read_quadruples, [](Transform& t, const auto& q) { t = rotation(q); });
-    for_each("SCALE", read_vectors,
-             [](Transform& t, const Vec3d& s) { t = {t.x * s.x, t.y * s.y, t.z * s.z, {}}; });
+    for_each("SCALE", read_vectors, [](Transform& t, const Vec3d& s) {
+      t = {t.x * s.x, t.y * s.y, t.z * s.z, {}};
+    });
     for_each("TRANSLATION", read_vectors, [](Transform& t, const Vec3d& p) { t.translation = p; });
     return all;
   }
@@ -159,7 +169,8 @@ class GltfImporter {
     const bool skinned = is_skinned(gltf_, placed.index, primitive);
     const Transform t = skinned ? Transform{} : placed.to_world;
     if (!(std::abs(dot(normalized(t.x), cross(normalized(t.y), normalized(t.z)))) > 1e-12)) {
-      scene_.not_carried.push_back(label + ": its transform flattens the mesh");
+      if (const std::string lost = label + ": its transform flattens the mesh"; !is_told(lost))
+        scene_.not_carried.push_back(lost);
       return;
     }
     std::string part = fmt::format("{}/{}", node.mesh, p);
@@ -195,7 +206,8 @@ class GltfImporter {
     if (!has_siblings) return;
     shape["group"] = fmt::format("{} of node {}", surface.medium, placed.index);
     if (placed.instance > 0)
-      shape["group"] = fmt::format("{} of node {}, instance {}", surface.medium, placed.index, placed.instance);
+      shape["group"] =
+          fmt::format("{} of node {}, instance {}", surface.medium, placed.index, placed.instance);
   }
 
   struct Surface {
@@ -230,6 +242,10 @@ class GltfImporter {
     }
   }
 
+  bool is_told(const std::string& lost) const {
+    return !scene_.not_carried.empty() && scene_.not_carried.back() == lost;
+  }
+
   template <class Visit>
   void for_each_point(const Visit& visit) const {
     for (const PlacedPart& placed : parts_) {
@@ -241,8 +257,7 @@ class GltfImporter {
 
   void tell_losses() {
     if (gltf_.animations > 0)
-      scene_.not_carried.push_back(
-          fmt::format("animations ({}): the asset stands still", gltf_.animations));
+      scene_.not_carried.push_back(fmt::format("animations ({}): the asset stands still", gltf_.animations));
     constexpr std::array<std::string_view, 4> read{"KHR_lights_punctual", "KHR_mesh_quantization",
                                                    "KHR_texture_transform", "EXT_mesh_gpu_instancing"};
     const std::set<std::string> required(gltf_.extensions_required.begin(), gltf_.extensions_required.end());
@@ -271,7 +286,9 @@ class GltfImporter {
 
 AssetScene import_gltf(const std::string& path, const std::string& mesh_path) {
   const std::shared_ptr<const GltfModel> gltf = load_gltf(path);
-  return GltfImporter(*gltf, mesh_path).run();
+  AssetScene scene = GltfImporter(*gltf, mesh_path).run();
+  scene.bytes = gltf->record_bytes;
+  return scene;
 }
 
 }  // namespace opaline

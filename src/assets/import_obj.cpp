@@ -134,7 +134,8 @@ class ObjImporter {
   /// One file, whose name may have blanks in it, or several names.
   void read_libraries(const NamedFiles& library) {
     const auto& [names, line] = library;
-    if (const std::string whole = find(names, path_, line, "mtllib"); !whole.empty()) return read_library(whole);
+    if (const std::string whole = find(names, path_, line, "mtllib"); !whole.empty())
+      return read_library(whole);
     std::string_view rest = names;
     for (std::string_view name = next_word(rest); !name.empty(); name = next_word(rest)) {
       const std::string file = find(std::string(name), path_, line, "mtllib");
@@ -184,8 +185,8 @@ class ObjImporter {
   /// out   file: its path
   Json texture_of(const Statement& statement, const MtlTexture& texture, std::string& file) {
     file = find(texture.name, statement.library, statement.line, statement.keyword);
-    const std::string label = statement.keyword + ' ' + in_quotes(texture.name) + " of material " +
-                              in_quotes(statement.material);
+    const std::string label =
+        statement.keyword + ' ' + in_quotes(texture.name) + " of material " + in_quotes(statement.material);
     if (file.empty()) {
       warn(statement.library, statement.line, label + ": there is no such file");
       return {};

@@ -105,8 +105,7 @@ class SurfaceReader {
       scene_.not_carried.push_back(fmt::format("{}: {}: {}", label_, model_.normal, heights.problem));
       return;
     }
-    const NamedFile named =
-        find_named_file(heights.file, file_, std::filesystem::path(file_).parent_path());
+    const NamedFile named = find_named_file(heights.file, file_, std::filesystem::path(file_).parent_path());
     if (!named.warning.empty()) scene_.warn(file_, label_ + ": " + named.warning);
     // Where there is none, reading the scene says so.
     const std::filesystem::path file =

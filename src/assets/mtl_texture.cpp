@@ -51,7 +51,8 @@ class StatementReader {
     }
     skip_blanks();
     rest_ = rest_.substr(0, rest_.find_last_not_of(kBlanks) + 1);
-    if (rest_.size() > 1 && rest_.front() == '"' && rest_.back() == '"') rest_ = rest_.substr(1, rest_.size() - 2);
+    if (rest_.size() > 1 && rest_.front() == '"' && rest_.back() == '"')
+      rest_ = rest_.substr(1, rest_.size() - 2);
     texture_.name = rest_;
     return std::move(texture_);
   }
@@ -93,8 +94,7 @@ class StatementReader {
   /// False where it cannot be carried over.
   bool apply(std::string_view name, const std::vector<double>& numbers, const std::string& word) {
     if (name == "-clamp" || name == "-cc") return word == "off";
-    if (name == "-t")
-      return std::ranges::all_of(numbers, [](double n) { return n == 0; });
+    if (name == "-t") return std::ranges::all_of(numbers, [](double n) { return n == 0; });
     if (numbers.empty()) return name != "-bm" && name != "-mm" && name != "-o" && name != "-s";
     if (name == "-s") return set_pair(numbers, 1, texture_.scale);
     if (name == "-o") return set_pair(numbers, 0, texture_.offset);

@@ -78,8 +78,8 @@ std::string marble_text(const Scene& scene, const World& world) {
   const bool has_unit = !(diagonal > 0) || !(is_unitless || (diagonal > kMuch && !has_lights));
   return fmt::format(
       "; --set media.marble.preset=marble --set shapes.{}.medium=marble{} makes marble of {}{}{}", shape.name,
-      has_unit ? "" : fmt::format(" --set mm_per_unit={:.2g}", scene.mm_per_unit * kHandful / diagonal), shape.name,
-      has_unit ? "" : fmt::format(", {} mm across", kHandful),
+      has_unit ? "" : fmt::format(" --set mm_per_unit={:.2g}", scene.mm_per_unit * kHandful / diagonal),
+      shape.name, has_unit ? "" : fmt::format(", {} mm across", kHandful),
       shape.reflectance_texture ? " and not of its texture" : "");
 }
 

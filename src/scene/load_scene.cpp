@@ -96,7 +96,7 @@ std::vector<Light> by_channel(const std::vector<Light>& lights) {
     for (std::size_t c = 0; c < 3; ++c) {
       EnvironmentLight channel = *environment;
       channel.channel = c;
-      split.push_back({light.name, channel, light.place});
+      split.push_back({light.name, channel, light.place, light.is_seen});
     }
   }
   return split;
@@ -203,7 +203,8 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
   Scene scene = parse_scene(asset.text, path, overrides, frame);
   scene.translation = asset.summary;
-  scene.missing_files = asset.warnings;
+  scene.asset_warnings = asset.warnings;
+  scene.asset_bytes = asset.bytes;
   if (!asset.not_carried.empty()) scene.translation += ": opaline import lists them";
   forget_places(scene);
   return scene;

@@ -32,7 +32,8 @@ struct TwoFolders : ScratchFolder {
   void put_textured(const std::string& uri) const {
     Asset asset = cube_asset();
     const std::vector<float> uvs(48, .5f);
-    asset.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = asset.accessor("VEC2", kFloat, uvs);
+    asset.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+        asset.accessor("VEC2", kFloat, uvs);
     asset.json["meshes"][0]["primitives"][0]["material"] =
         asset.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
     asset.json["textures"] = Json::array({{{"source", 0}}});
@@ -63,8 +64,8 @@ TEST(AssetFiles, OutsideOfTheFolderAreRefused) {
   put_bytes(folder.file("asset/in.bin"), cube.buffer);
   fs::create_symlink("../secret.bin", folder.path / "asset" / "link.bin");
   fs::create_symlink("in.bin", folder.path / "asset" / "inner.bin");
-  for (const std::string uri : {"../secret.bin", "../asset-2/a.bin", "%2e%2e/secret.bin", "link.bin",
-                                "maps/../../secret.bin"}) {
+  for (const std::string uri :
+       {"../secret.bin", "../asset-2/a.bin", "%2e%2e/secret.bin", "link.bin", "maps/../../secret.bin"}) {
     put_bytes(folder.file("asset/a.gltf"), cube.gltf(uri));
     EXPECT_NE(folder.message("asset/a.gltf").find(kOutside), std::string::npos) << uri;
   }
@@ -91,15 +92,18 @@ TEST(AssetFiles, OutsideOfAMaterialsFolderAreRefused) {
   const TwoFolders folder;
   folder.put_obj("a.mtl", "own.png");
   const auto put = [&](const std::string& picture) {
-    put_bytes(folder.file("asset-2/a.mtlx"),
-              "<materialx version=\"1.38\"><image name=\"i\" type=\"float\"><input name=\"file\" value=\"" + picture +
-                  "\"/></image><bump name=\"b\" type=\"vector3\"><input name=\"height\" nodename=\"i\"/></bump>"
-                  "<open_pbr_surface name=\"s\"><input name=\"geometry_normal\" nodename=\"b\"/>"
-                  "</open_pbr_surface></materialx>");
+    put_bytes(
+        folder.file("asset-2/a.mtlx"),
+        "<materialx version=\"1.38\"><image name=\"i\" type=\"float\"><input name=\"file\" value=\"" +
+            picture +
+            "\"/></image><bump name=\"b\" type=\"vector3\"><input name=\"height\" nodename=\"i\"/></bump>"
+            "<open_pbr_surface name=\"s\"><input name=\"geometry_normal\" nodename=\"b\"/>"
+            "</open_pbr_surface></materialx>");
   };
   put("p.png");
-  EXPECT_NE(import_asset(folder.file("asset/a.obj"), "a.obj", folder.file("asset-2/a.mtlx")).text.find("p.png"),
-            std::string::npos);
+  EXPECT_NE(
+      import_asset(folder.file("asset/a.obj"), "a.obj", folder.file("asset-2/a.mtlx")).text.find("p.png"),
+      std::string::npos);
   put("../secret.png");
   EXPECT_THROW(import_asset(folder.file("asset/a.obj"), "a.obj", folder.file("asset-2/a.mtlx")), Error);
 }
@@ -109,8 +113,9 @@ TEST(AssetFiles, OldMaterialXSaysSo) {
   const TwoFolders folder;
   folder.put_obj("a.mtl", "own.png");
   for (const char* root : {"<materialx version=\"1.37\">", "<materialx>"}) {
-    put_bytes(folder.file("a.mtlx"), std::string(root) + "<material name=\"m\"><shaderref name=\"s\" "
-                                                         "node=\"standard_surface\"/></material></materialx>");
+    put_bytes(folder.file("a.mtlx"), std::string(root) +
+                                         "<material name=\"m\"><shaderref name=\"s\" "
+                                         "node=\"standard_surface\"/></material></materialx>");
     try {
       import_asset(folder.file("asset/a.obj"), "a.obj", folder.file("a.mtlx"));
       ADD_FAILURE();
@@ -135,19 +140,20 @@ TEST(AssetFiles, AreFoundBeside) {
     folder.put_obj("a.mtl", name);
     const Scene found = load_scene(folder.file("asset/a.obj"));
     EXPECT_TRUE(found.shapes.at(0).reflectance_texture) << name;
-    EXPECT_EQ(found.missing_files.size(), name[0] == '"' ? 0u : 1u) << name;
+    EXPECT_EQ(found.asset_warnings.size(), name[0] == '"' ? 0u : 1u) << name;
   }
   folder.put_textured("/home/x/own.png");
   const Scene glb = load_scene(folder.file("asset/a.glb"));
   EXPECT_TRUE(glb.shapes.at(0).reflectance_texture);
-  EXPECT_TRUE(has(glb.missing_files, "'own.png' beside is taken"));
+  EXPECT_TRUE(has(glb.asset_warnings, "'own.png' beside is taken"));
 }
 
 // Claim: an OBJ and an MTL that begin with a byte order mark are read as without. Fails if their first line is lost.
 TEST(AssetFiles, MayBeginWithAByteOrderMark) {
   const ScratchFolder folder;
   put_bytes(folder.file("a.mtl"), "\xef\xbb\xbfnewmtl red\nKd 0.8 0.1 0.1\n");
-  put_bytes(folder.file("a.obj"), "\xef\xbb\xbfmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+  put_bytes(folder.file("a.obj"),
+            "\xef\xbb\xbfmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
   const ImportedAsset import = import_asset(folder.file("a.obj"), "a.obj");
   EXPECT_TRUE(has(import.translated, "material 'red': Kd -> reflectance [0.8, 0.1, 0.1]"));
   EXPECT_TRUE(import.not_carried.empty());
@@ -157,9 +163,9 @@ TEST(AssetFiles, MayBeginWithAByteOrderMark) {
 // Fails if "Color.png" is the name.
 TEST(AssetFiles, OptionsStandBeforeNames) {
   const ImportedAsset import = import_asset(OPALINE_TEST_INPUTS "/opts.obj", "opts.obj");
-  EXPECT_NE(import.text.find(
-                R"({"texture": "Skin Color.png", "uv_scale": [2.0, 2.0], "uv_offset": [0.0, -1.0]})"),
-            std::string::npos)
+  EXPECT_NE(
+      import.text.find(R"({"texture": "Skin Color.png", "uv_scale": [2.0, 2.0], "uv_offset": [0.0, -1.0]})"),
+      std::string::npos)
       << import.text;
   EXPECT_TRUE(import.warnings.empty());
 }

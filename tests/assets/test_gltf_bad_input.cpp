@@ -134,7 +134,8 @@ TEST(GltfBadInput, NumbersAreReadStrictly) {
             "test.gltf: nodes[0].scale[1] is of the wrong type (expected a number, got null)");
   bad = good;
   bad["nodes"] = Json::object();
-  EXPECT_TRUE(error_of(bad.dump()).starts_with("test.gltf: nodes is of the wrong type")) << error_of(bad.dump());
+  EXPECT_TRUE(error_of(bad.dump()).starts_with("test.gltf: nodes is of the wrong type"))
+      << error_of(bad.dump());
   Json whole = good;
   whole["accessors"][0]["byteOffset"] = 0.0;  // a whole number all the same
   EXPECT_EQ(error_of(whole.dump()), "");
@@ -142,10 +143,10 @@ TEST(GltfBadInput, NumbersAreReadStrictly) {
 
 // Claim: an index of 2^32 - 1 is no missing one. Fails if it wraps to -1.
 TEST(GltfBadInput, AnIndexBeyondAllRecordsPointsAtNothing) {
-  const std::string error =
-      error_of(bytes_of(OPALINE_TEST_INPUTS "/silent-index-4294967295.glb"), "a.glb");
-  EXPECT_EQ(error, "a.glb: meshes[0].primitives[0].indices points at nothing (expected the index of a record, "
-                   "got 4294967295)");
+  const std::string error = error_of(bytes_of(OPALINE_TEST_INPUTS "/silent-index-4294967295.glb"), "a.glb");
+  EXPECT_EQ(error,
+            "a.glb: meshes[0].primitives[0].indices points at nothing (expected the index of a record, "
+            "got 4294967295)");
 }
 
 // Claim: a GLB whose chunks are not aligned to 4 bytes is read as other programs read it, and a warning says so; JSON that
@@ -156,7 +157,7 @@ TEST(GltfBadInput, SmallFaultsAreForgiven) {
   const Scene scene = load_scene(folder.file("a.glb"));
   EXPECT_EQ(scene.shapes.at(0).reflectance, Rgb(.8, .2, .2));
   EXPECT_EQ(mesh_of(folder.file("a.glb"), "0/0").mesh.triangles.size(), 1584u / 3);
-  EXPECT_TRUE(has(scene.missing_files, "not aligned to 4 bytes"));
+  EXPECT_TRUE(has(scene.asset_warnings, "not aligned to 4 bytes"));
   EXPECT_EQ(error_of("\xef\xbb\xbf" + cube_asset().gltf()), "");
 }
 

@@ -12,8 +12,7 @@ namespace {
 /// moved far away.
 Asset skinned_strip(const std::vector<std::uint8_t>& joints, const std::vector<float>& weights) {
   Asset asset;
-  const int positions =
-      asset.accessor<float>("VEC3", kFloat, {0, 0, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0});
+  const int positions = asset.accessor<float>("VEC3", kFloat, {0, 0, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0});
   const int normals = asset.accessor<float>("VEC3", kFloat, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
   const int indices = asset.accessor<std::uint16_t>("SCALAR", kUnsignedShort, {0, 2, 1, 1, 2, 3});
   asset.mesh({{"attributes",
@@ -64,7 +63,7 @@ TEST(GltfPoses, ASkinIgnoresItsNode) {
   const Scene scene = load_scene(OPALINE_TEST_INPUTS "/skin_root.glb");
   ASSERT_EQ(scene.shapes.size(), 1u);
   EXPECT_NEAR(surface_area(make_mesh(scene.shapes[0]).mesh), 5009, 1);
-  EXPECT_TRUE(scene.missing_files.empty());
+  EXPECT_TRUE(scene.asset_warnings.empty());
 }
 
 // Claim: each vertex is at the weighted mean of its joints' world matrices times their inverse bind matrices; without
@@ -107,8 +106,9 @@ TEST(GltfPoses, WeightsAreScaledToOne) {
 
 // Claim: what is wrong with a skin is named by its accessor or record. Fails if a joint is read beyond the skin.
 TEST(GltfPoses, BadSkinsAreNamed) {
-  const auto error = [](const std::vector<std::uint8_t>& joints, const std::vector<float>& weights,
-                        const std::function<void(Json&)>& spoil = [](Json&) {}) {
+  const auto error = [](
+                         const std::vector<std::uint8_t>& joints, const std::vector<float>& weights,
+                         const std::function<void(Json&)>& spoil = [](Json&) {}) {
     Asset asset = skinned_strip(joints, weights);
     add_skin(asset, {Json::object()}, {});
     spoil(asset.json);
@@ -116,22 +116,30 @@ TEST(GltfPoses, BadSkinsAreNamed) {
   };
   std::vector<std::uint8_t> joints = kFirst;
   joints[5] = 1;
-  EXPECT_EQ(error(joints, kOneJoint), "a.glb: accessors[3] element 1 names no joint (expected below 1, got 1)");
+  EXPECT_EQ(error(joints, kOneJoint),
+            "a.glb: accessors[3] element 1 names no joint (expected below 1, got 1)");
   std::vector<float> weights = kOneJoint;
   weights[4] = -1;
-  EXPECT_TRUE(error(kFirst, weights).starts_with("a.glb: accessors[4] element 1 is no weight (expected 0 or more"));
-  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) { j["accessors"][3]["count"] = 3; })
-                  .starts_with("a.glb: accessors[3] has a vertex of the skin too many or too few (expected 4"));
-  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) { j["accessors"][3]["componentType"] = 5120; })
-                  .starts_with("a.glb: accessors[3] cannot hold indices"));
-  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) { j["skins"][0]["joints"] = {99}; })
-                  .starts_with("a.glb: skins[0].joints points at nothing"));
-  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) { j["skins"][0]["joints"] = Json::array(); })
-                  .starts_with("a.glb: skins[0].joints is empty"));
-  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) { j["skins"][0]["inverseBindMatrices"] = 0; })
-                  .starts_with("a.glb: accessors[0] is of the wrong type (expected MAT4, got VEC3)"));
-  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) { j["nodes"][0]["skin"] = 1; })
-                  .starts_with("a.glb: nodes[0].skin points at nothing"));
+  EXPECT_TRUE(
+      error(kFirst, weights).starts_with("a.glb: accessors[4] element 1 is no weight (expected 0 or more"));
+  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
+                j["accessors"][3]["count"] = 3;
+              }).starts_with("a.glb: accessors[3] has a vertex of the skin too many or too few (expected 4"));
+  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
+                j["accessors"][3]["componentType"] = 5120;
+              }).starts_with("a.glb: accessors[3] cannot hold indices"));
+  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
+                j["skins"][0]["joints"] = {99};
+              }).starts_with("a.glb: skins[0].joints points at nothing"));
+  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
+                j["skins"][0]["joints"] = Json::array();
+              }).starts_with("a.glb: skins[0].joints is empty"));
+  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
+                j["skins"][0]["inverseBindMatrices"] = 0;
+              }).starts_with("a.glb: accessors[0] is of the wrong type (expected MAT4, got VEC3)"));
+  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
+                j["nodes"][0]["skin"] = 1;
+              }).starts_with("a.glb: nodes[0].skin points at nothing"));
 }
 
 // Claim: the weights of a node, or else of its mesh, morph it; weights of 0 leave it alone; their number must be that of
@@ -159,18 +167,19 @@ TEST(GltfPoses, InstancesAreShapes) {
   Asset asset = cube_mesh();
   const int translations = asset.accessor<float>("VEC3", kFloat, {0, 0, 0, 3, 0, 0, 0, 5, 0});
   const int rotations = asset.accessor<float>("VEC4", kFloat, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1});
-  asset.root(asset.node(
-      {{"mesh", 0},
-       {"scale", {2, 2, 2}},
-       {"extensions",
-        {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", translations}, {"ROTATION", rotations}}}}}}}}));
+  asset.root(asset.node({{"mesh", 0},
+                         {"scale", {2, 2, 2}},
+                         {"extensions",
+                          {{"EXT_mesh_gpu_instancing",
+                            {{"attributes", {{"TRANSLATION", translations}, {"ROTATION", rotations}}}}}}}}));
   const Scene scene = scene_of(asset.glb(), "a.glb");
   ASSERT_EQ(scene.shapes.size(), 3u);
   EXPECT_NEAR(length(scene.shapes[1].to_world.translation - Vec3d(6000, 0, 0)), 0, 1e-9);
   EXPECT_NEAR(length(scene.shapes[2].to_world.x / 1000 - Vec3d(0, 2, 0)), 0, 1e-6);  // a quarter turn about z
   EXPECT_NE(scene.shapes[0].name, scene.shapes[1].name);
   asset.json["accessors"][rotations]["count"] = 2;
-  EXPECT_TRUE(error_of(asset.glb(), "a.glb").starts_with("a.glb: accessors[3] has an instance too many or too few"));
+  EXPECT_TRUE(
+      error_of(asset.glb(), "a.glb").starts_with("a.glb: accessors[3] has an instance too many or too few"));
 }
 
 }  // namespace

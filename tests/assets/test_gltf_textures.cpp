@@ -198,7 +198,8 @@ TEST(ObjTextures, AreTakenFromLibraries) {
   std::filesystem::create_directory(folder.path / "maps");
   put_bytes(folder.file("maps/p.png"), png_of(128));
   put_bytes(folder.file("maps/a.mtl"),
-            "newmtl wood\nKd .8 .6 .4\nmap_Kd p.png\nnewmtl odd\nKd 0 0 0\nmap_Kd -blendu on -s 2 3 1 -o .25 .5 -mm 0 .5 -clamp on p.png\n");
+            "newmtl wood\nKd .8 .6 .4\nmap_Kd p.png\nnewmtl odd\nKd 0 0 0\nmap_Kd -blendu on -s 2 3 1 -o .25 "
+            ".5 -mm 0 .5 -clamp on p.png\n");
   const std::string mesh = "mtllib maps/a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
   const std::string faces = "usemtl wood\nf 1/1 2/2 3/3\nusemtl odd\nf 1/1 2/2 4/3\n";
   put_bytes(folder.file("a.obj"), mesh + "vt 0 0\nvt 1 0\nvt 0 1\n" + faces);
@@ -208,9 +209,10 @@ TEST(ObjTextures, AreTakenFromLibraries) {
   EXPECT_NEAR(left_texel(*scene.shapes[0].reflectance_texture->file), test::linear_of_byte(128), 2e-4);
   const Texture& odd = scene.shapes.at(1).reflectance_texture.value();
   EXPECT_EQ(odd.uv_scale, (std::array<double, 2>{2, 3}));
-  EXPECT_EQ(odd.uv_offset, (std::array<double, 2>{.25, -2.5}));  // v = 0, downwards 1, becomes .5, downwards .5
+  EXPECT_EQ(odd.uv_offset,
+            (std::array<double, 2>{.25, -2.5}));  // v = 0, downwards 1, becomes .5, downwards .5
   EXPECT_EQ(odd.scale, Rgb(.5));
-  EXPECT_EQ(scene.missing_files,
+  EXPECT_EQ(scene.asset_warnings,
             (std::vector<std::string>{folder.file("maps/a.mtl") +
                                       ":6: map_Kd 'p.png' of material 'odd': its option -clamp on"}));
 }

@@ -172,13 +172,13 @@ TEST(CliAssets, DefaultLightsAreUnseen) {
   asset.json["cameras"] = asset_test::Json::array(
       {{{"type", "perspective"}, {"perspective", {{"yfov", 1.2}, {"znear", .001}, {"aspectRatio", 1}}}}});
   // From below and behind, at (-3, -4, -6), which a matrix of columns right, up and backwards says.
-  asset.root(asset.node({{"camera", 0},
-                         {"matrix", {-.8944, 0, .4472, 0, .2290, .8589, .4581, 0, -.3841, -.5121, -.7682, 0, -3, -4,
-                                     -6, 1}}}));
+  asset.root(asset.node(
+      {{"camera", 0},
+       {"matrix", {-.8944, 0, .4472, 0, .2290, .8589, .4581, 0, -.3841, -.5121, -.7682, 0, -3, -4, -6, 1}}}));
   const ScratchFolder folder;
   put_bytes(folder.file("a.glb"), asset.glb());
-  const Outcome outcome =
-      run_program({"render", "a.glb", "-o", "a.exr", "--resolution", "64x64", "--layers", "none"}, folder.path);
+  const Outcome outcome = run_program(
+      {"render", "a.glb", "-o", "a.exr", "--resolution", "64x64", "--layers", "none"}, folder.path);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const Image image = read_image(folder.file("a.exr"));
   ASSERT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
@@ -245,7 +245,8 @@ TEST(CliAssets, BrokenAssetsAreNamed) {
   put_bytes(folder.file("bad.gltf"), "{}");
   put_bytes(folder.file("wax.txt"), "wax");
   put_bytes(folder.file("wax.glb"), "wax of bees, for candles");
-  for (const char* name : {"b.fbx", "b.USDZ", "ball.blend"}) put_bytes(folder.file(name), "Kaydara FBX Binary");
+  for (const char* name : {"b.fbx", "b.USDZ", "ball.blend"})
+    put_bytes(folder.file(name), "Kaydara FBX Binary");
   put_bytes(folder.file("ball.json"), R"({"shapes": [{"file": "ball.blend"}]})");
   put_bytes(folder.file("dusk.json"),
             "{\n\"lights\": [{\"type\": \"environment\",\n\"file\": \"gone.exr\"}]}");

@@ -4,6 +4,31 @@
 #include "fuzz_target.h"
 
 namespace opaline::fuzz {
+namespace {
+
+/// A cube that two joints and a morph target move, and three of it in a row.
+asset_test::Asset posed_cubes() {
+  using namespace asset_test;
+  Asset asset = cube_mesh();
+  const std::vector<std::uint8_t> joints(24 * 4, 1);
+  const std::vector<float> weights(24 * 4, .25f), moved(24 * 3, .5f),
+      bind{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 3, 0, 1};
+  Json& primitive = asset.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["JOINTS_0"] = asset.accessor("VEC4", kUnsignedByte, joints);
+  primitive["attributes"]["WEIGHTS_0"] = asset.accessor("VEC4", kFloat, weights);
+  primitive["targets"] = {{{"POSITION", asset.accessor("VEC3", kFloat, moved)}}};
+  asset.json["skins"] = {{{"joints", {2, 3}}, {"inverseBindMatrices", asset.accessor("MAT4", kFloat, bind)}}};
+  const int places = asset.accessor<float>("VEC3", kFloat, {0, 0, 0, 3, 0, 0, 6, 0, 0});
+  asset.root(asset.node({{"mesh", 0}, {"skin", 0}, {"weights", {.5}}}));
+  asset.root(asset.node(
+      {{"mesh", 0},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}}));
+  asset.root(asset.node({{"translation", {1, 2, 3}}, {"children", {3}}}));
+  asset.node({{"rotation", {0, 0, 1, 1}}});
+  return asset;
+}
+
+}  // namespace
 
 std::vector<std::string> seeds() {
   asset_test::Asset asset = asset_test::cube_asset();
@@ -21,7 +46,7 @@ std::vector<std::string> seeds() {
                                                                {{"type", "directional"}}};
   asset.root(asset.node(
       {{"camera", 0}, {"scale", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
-  return {asset.gltf(), asset.glb()};
+  return {asset.gltf(), asset.glb(), posed_cubes().gltf()};
 }
 
 std::vector<std::string> words() {
@@ -46,6 +71,10 @@ std::vector<std::string> words() {
           "null",
           "{}",
           "[]",
+          "\"skin\":",
+          "\"joints\":[",
+          "\"targets\":[{\"POSITION\":",
+          "\"weights\":[",
           "\"spot\":{",
           "\"type\":\"spot\""};
 }
