@@ -19,7 +19,7 @@ constexpr double kAzimuth = 35, kElevation = 20, kFieldOfView = 30;  // degrees
 constexpr double kMargin = 1.05;                                     // of the sphere that the picture holds
 constexpr int kSamplesPerPixel = 4;
 
-/// A ball that lights the asset: where, in units along the picture's right, the world's up and towards the camera;
+/// A ball that lights the asset, unseen: where, in units along the picture's right, the world's up and towards the camera;
 /// its radius over that of the asset; and the radiance of a white matte surface at the asset's centre that faces it.
 struct DefaultLight {
   const char* name;
@@ -27,8 +27,7 @@ struct DefaultLight {
   double radius, white;
 };
 
-// Where the asset comes nearest to a light it is 1.8 times as bright: white stays below 1 there, too. The rim lies
-// outside the picture.
+// Where the asset comes nearest to a light it is 1.8 times as bright: white stays below 1 there, too.
 constexpr std::array<DefaultLight, 3> kLights{
     {{"key", {-.7, .7, .7}, .8, .52}, {"fill", {.9, .2, .8}, 1.2, .16}, {"rim", {.3, 1, -.8}, .6, .35}}};
 constexpr double kLightDistance = 4;  // over the asset's radius
@@ -37,7 +36,7 @@ constexpr double kWhite = .8;         // of a surface under the asset's own ligh
 // Where the PNG must be darkened by more stops than this, highlights may be beyond the largest half, 65504.
 constexpr double kHalfExposure = -8;
 
-Vec3d towards_camera() {
+Vec3d default_view() {
   const double azimuth = kAzimuth * kRadians, elevation = kElevation * kRadians;
   return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
           std::cos(azimuth) * std::cos(elevation)};
@@ -45,16 +44,35 @@ Vec3d towards_camera() {
 
 void add_camera(AssetScene& scene) {
   const double distance = kMargin * scene.radius / std::sin(kFieldOfView * kRadians / 2);
-  scene.camera = {{"position", triple_json(scene.center + towards_camera() * distance)},
+  scene.camera = {{"position", triple_json(scene.center + default_view() * distance)},
                   {"look_at", triple_json(scene.center)},
                   {"field_of_view", kFieldOfView}};
   scene.translated.push_back("no camera: a default one frames the asset");
 }
 
+Vec3d vector_of(const Json& triple) {
+  return {triple[0].get<double>(), triple[1].get<double>(), triple[2].get<double>()};
+}
+
+/// Unit vectors by which lights are placed.
+struct ViewFrame {
+  Vec3d right, up, towards_camera;
+};
+
+/// Of the scene's camera; where that is within the asset's middle, or looks along the world's up, of the default view.
+ViewFrame view_frame(const AssetScene& scene) {
+  const Vec3d up{0, 1, 0};
+  Vec3d towards = vector_of(scene.camera["position"]) - scene.center;
+  constexpr double kNear = .01;  // of the asset's radius, or of a right angle
+  if (!(length(cross(up, towards)) > kNear * std::max(length(towards), scene.radius)))
+    towards = default_view();
+  return {normalized(cross(up, towards)), up, normalized(towards)};
+}
+
 void add_lights(AssetScene& scene) {
   if (!scene.lights.empty()) scene.not_carried.push_back("its lights: they are dark");
   scene.lights = Json::array();
-  const Vec3d forward = normalized(towards_camera()), up{0, 1, 0}, right = normalized(cross(up, forward));
+  const auto [right, up, forward] = view_frame(scene);
   for (const DefaultLight& light : kLights) {
     const Vec3d& d = light.direction;
     const Vec3d direction = normalized(right * d.x + up * d.y + forward * d.z);
@@ -64,7 +82,8 @@ void add_lights(AssetScene& scene) {
          {"name", light.name},
          {"center", triple_json(scene.center + direction * (kLightDistance * scene.radius))},
          {"radius", light.radius * scene.radius},
-         {"radiance", light.white * ratio * ratio}});
+         {"radiance", light.white * ratio * ratio},
+         {"visible", false}});
   }
   scene.translated.push_back("no lights: default ones, called key, fill and rim, are put around the asset");
 }

@@ -28,7 +28,14 @@ struct AssetScene {
   bool is_one_mesh = false;      ///< its shapes are parts of one body
   bool has_vertex_colors = false;
   std::vector<std::string> translated, not_carried;
-  std::vector<std::string> missing_files;  ///< that it names, or that cannot be read, and where
+  std::vector<std::string> warnings;  ///< of what changes the image
+  std::size_t bytes = 0;              ///< as ImportedAsset's
+
+  /// Something of a file or a record in it that is lost and changes the image.
+  void warn(const std::string& place, const std::string& what) {
+    not_carried.push_back(what);
+    warnings.push_back(place + ": " + what);
+  }
 };
 
 /// What the material of a shape becomes.

@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-#include "assets/gltf_extension.h"
+#include "assets/asset_file.h"
 #include "assets/gltf_texture.h"
 
 namespace opaline {
@@ -43,28 +43,88 @@ Shares single_scattering(double color, double g) {
   return {square * (1 - g) * scale, (1 - square) * scale};
 }
 
+Vec3d color_of(const GltfRecord& record, const char* key, const Vec3d& otherwise) {
+  const std::vector<double> c = record.numbers(key, 3);
+  return c.empty() ? otherwise
+                   : Vec3d(std::clamp(c[0], 0., 1.), std::clamp(c[1], 0., 1.), std::clamp(c[2], 0., 1.));
+}
+
+constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
+/// Colour, metalness and roughness, as either model of glTF gives them.
+struct BaseLayer {
+  Vec3d color{1, 1, 1};
+  double metalness = 1, roughness = 1;
+  GltfRecord color_texture, roughness_texture;  ///< as in a material, or without an index
+  const char* color_texture_name;
+};
+
+BaseLayer metallic_roughness(const GltfRecord& pbr) {
+  BaseLayer base{.metalness = std::clamp(pbr.number("metallicFactor", 1), 0., 1.),
+                 .roughness = std::clamp(pbr.number("roughnessFactor", 1), 0., 1.),
+                 .color_texture = pbr.record("baseColorTexture"),
+                 .roughness_texture = pbr.record("metallicRoughnessTexture"),
+                 .color_texture_name = "baseColorTexture"};
+  if (const std::vector<double> c = pbr.numbers("baseColorFactor", 4); !c.empty())
+    for (std::size_t i = 0; i < 3; ++i) base.color[i] = std::clamp(c[i], 0., 1.);
+  return base;
+}
+
+/// The metal and its colour that reflect as much as a diffuse and a specular colour: Khronos's conversion (glTF
+/// repository, extensions/2.0/Archived/KHR_materials_pbrSpecularGlossiness).
+BaseLayer specular_glossiness(const GltfRecord& model) {
+  constexpr double kDielectric = .04, kLeast = 1e-6;
+  const auto brightness = [](const Vec3d& c) {
+    return std::sqrt(.299 * c.x * c.x + .587 * c.y * c.y + .114 * c.z * c.z);
+  };
+  BaseLayer base{.metalness = 0,
+                 .roughness = 1 - std::clamp(model.number("glossinessFactor", 1), 0., 1.),
+                 .color_texture = model.record("diffuseTexture"),
+                 .roughness_texture = model.record("none"),
+                 .color_texture_name = "diffuseTexture"};
+  Vec3d diffuse(1);
+  if (const std::vector<double> c = model.numbers("diffuseFactor", 4); !c.empty())
+    for (std::size_t i = 0; i < 3; ++i) diffuse[i] = std::clamp(c[i], 0., 1.);
+  const Vec3d specular = color_of(model, "specularFactor", Vec3d(1));
+  const double rest = 1 - max_component(specular), bright = brightness(specular);
+  if (bright > kDielectric) {
+    const double b = brightness(diffuse) * rest / (1 - kDielectric) + bright - 2 * kDielectric,
+                 square = b * b - 4 * kDielectric * (kDielectric - bright);
+    base.metalness = std::clamp((std::sqrt(std::max(square, 0.)) - b) / (2 * kDielectric), 0., 1.);
+  }
+  const double metalness = base.metalness, mix = metalness * metalness;
+  const Vec3d of_diffuse = diffuse * (rest / (1 - kDielectric) / std::max(1 - metalness, kLeast));
+  const Vec3d of_specular =
+      (specular - Vec3d(kDielectric * (1 - metalness))) * (1 / std::max(metalness, kLeast));
+  base.color = component_min(component_max(of_diffuse * (1 - mix) + of_specular * mix, Vec3d(0)), Vec3d(1));
+  return base;
+}
+
 class MaterialTranslator {
  public:
   MaterialTranslator(const GltfModel& gltf, const MaterialUse& use, AssetScene& scene)
       : gltf_(gltf),
-        material_(gltf.model.materials[std::size_t(use.index)]),
+        material_(gltf.record("materials", use.index)),
+        extensions_(material_.record("extensions")),
+        base_(has(kSpecularGlossiness) ? specular_glossiness(values(kSpecularGlossiness))
+                                       : metallic_roughness(material_.record("pbrMetallicRoughness"))),
         use_(use),
-        place_(record_name("materials", std::size_t(use.index))),
         label_(material_label(gltf, use.index)),
-        scene_(scene) {}
+        scene_(scene) {
+    if (has(kSpecularGlossiness)) carried_.insert(base_.color_texture_name);
+  }
 
   SurfaceTranslation run() {
     SurfaceTranslation surface;
-    const std::vector<double>& base = material_.pbrMetallicRoughness.baseColorFactor;
-    if (base.size() == 4)
-      for (std::size_t i = 0; i < 3; ++i) surface.reflectance[i] = std::clamp(base[i], 0., 1.);
+    surface.reflectance = base_.color;
     if (const std::optional<Scatter> scatter = read_scatter()) surface.medium = make_medium(*scatter);
     if (surface.medium.is_null())
       add_opaque(surface);
     else
       add_entry(surface);
-    if (std::optional<Json> normals = texture(of(material_.normalTexture), "normalTexture")) {
-      (*normals)["scale"] = std::max(material_.normalTexture.scale, 0.);
+    const GltfRecord normal = material_.record("normalTexture");
+    if (std::optional<Json> normals = texture(normal, "normalTexture")) {
+      (*normals)["scale"] = std::max(normal.number("scale", 1), 0.);
       surface.keys["normal_map"] = std::move(*normals);
       translated("normalTexture: " + tangents());
     }
@@ -76,25 +136,25 @@ class MaterialTranslator {
   void translated(const std::string& text) { scene_.translated.push_back(label_ + ": " + text); }
   void not_carried(const std::string& text) { scene_.not_carried.push_back(label_ + ": " + text); }
 
-  template <class Info>
-  static GltfTexture of(const Info& info) {
-    return {info.index, info.texCoord, &info.extensions};
-  }
+  void warn(const std::string& text) { scene_.warn(gltf_.path, label_ + ": " + text); }
 
   /// None: the material has none, or it is not carried over.
-  std::optional<Json> texture(const GltfTexture& info, const char* name) {
-    if (info.index < 0) return {};
+  std::optional<Json> texture(const GltfRecord& info, const std::string& name) {
+    if (info.index("index") == kNoRecord) return {};
     if (!use_.has_uvs) {
-      not_carried(std::string(name) + ": its mesh has no TEXCOORD_0");
+      not_carried(name + ": its mesh has no TEXCOORD_0");
       return {};
     }
     try {
-      Json json = texture_json(gltf_, info, use_.mesh_path);
-      translated(std::string(name) + " -> " + json["texture"].get<std::string>());
+      std::string warning;
+      Json json = texture_json(gltf_, info, use_.mesh_path, warning);
+      if (!warning.empty()) warn(name + ' ' + warning);
+      translated(name + " -> " + json["texture"].get<std::string>());
       return json;
+    } catch (const OutsideAsset&) {
+      throw;
     } catch (const Error& failure) {
-      not_carried(std::string(name) + ": " + failure.message);
-      scene_.missing_files.push_back(gltf_.path + ": " + label_ + ": " + name + ": " + failure.message);
+      warn(name + ": " + failure.message);
       return {};
     }
   }
@@ -119,27 +179,25 @@ class MaterialTranslator {
   }
 
   void add_opaque(SurfaceTranslation& surface) {
-    const tinygltf::PbrMetallicRoughness& pbr = material_.pbrMetallicRoughness;
-    const Json white = triple_json(Vec3d(1));
-    const double metalness = std::clamp(pbr.metallicFactor, 0., 1.), roughness = add_grain(surface.keys);
-    surface.keys["reflectance"] =
-        times(texture(of(pbr.baseColorTexture), "baseColorTexture"), triple_json(surface.reflectance), white);
-    const std::optional<Json> both = texture(of(pbr.metallicRoughnessTexture), "metallicRoughnessTexture");
+    const double metalness = base_.metalness, roughness = add_grain(surface.keys);
+    surface.keys["reflectance"] = times(texture(base_.color_texture, base_.color_texture_name),
+                                        triple_json(surface.reflectance), triple_json(Vec3d(1)));
+    const std::optional<Json> both = texture(base_.roughness_texture, "metallicRoughnessTexture");
     if (metalness > 0) surface.keys["metalness"] = times(channel(both, "b"), metalness, 1.0);
     surface.keys["specular_roughness"] = times(channel(both, "g"), roughness, 1.0);
     const double ior = index_of_refraction();
     if (ior > 1 && ior != kGltfIor) surface.keys["specular_ior"] = ior;
     add_specular_weight(surface.keys);
-    translated(
-        fmt::format("baseColorFactor, metallicFactor, roughnessFactor -> reflectance {}, metalness {:.3g}, "
-                    "specular_roughness {:.3g} (opaque)",
-                    short_triple(surface.reflectance), metalness, roughness));
+    translated(fmt::format("{} -> reflectance {}, metalness {:.3g}, specular_roughness {:.3g} (opaque)",
+                           has(kSpecularGlossiness) ? "diffuseFactor, specularFactor, glossinessFactor"
+                                                    : "baseColorFactor, metallicFactor, roughnessFactor",
+                           short_triple(surface.reflectance), metalness, roughness));
   }
 
   /// Both alphas are met exactly: the roughness that is returned is the factor's without anisotropy.
   double add_grain(Json& keys) {
-    const double roughness = std::clamp(material_.pbrMetallicRoughness.roughnessFactor, 0., 1.);
-    const ExtensionValues extension = values("KHR_materials_anisotropy");
+    const double roughness = base_.roughness;
+    const GltfRecord extension = values("KHR_materials_anisotropy");
     const double strength = std::clamp(extension.number("anisotropyStrength", 0), 0., 1.);
     if (!(strength > 0)) return roughness;
     const double across = roughness * roughness, along = across + (1 - across) * strength * strength;
@@ -152,7 +210,7 @@ class MaterialTranslator {
         fmt::format("anisotropyStrength {:.3g}, anisotropyRotation {:.3g}, roughnessFactor {:.3g} -> "
                     "specular_anisotropy {:.3g}, specular_rotation {:.4g}, specular_roughness {:.3g}; {}",
                     strength, rotation, roughness, anisotropy, degrees, mean, tangents()));
-    if (material_.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0)
+    if (base_.roughness_texture.index("index") != kNoRecord)
       not_carried(
           "anisotropyStrength where the roughness is not roughnessFactor: both alphas follow the texture");
     return mean;
@@ -160,19 +218,18 @@ class MaterialTranslator {
 
   void add_specular_weight(Json& keys) {
     if (!has("KHR_materials_specular")) return;
-    const ExtensionValues specular = values("KHR_materials_specular");
+    const GltfRecord specular = values("KHR_materials_specular");
     const double weight = std::clamp(specular.number("specularFactor", 1), 0., 1.);
     if (weight < 1) keys["specular_weight"] = weight;
     translated(fmt::format("specularFactor -> specular_weight {:.3g}", weight));
-    const Vec3d color = specular.color("specularColorFactor", Vec3d(1));
+    const Vec3d color = color_of(specular, "specularColorFactor", Vec3d(1));
     if (color != Vec3d(1)) not_carried("specularColorFactor " + short_triple(color));
   }
 
   std::optional<Json> extension_texture(const char* extension, const char* key) {
     if (!values(extension).has(key)) return {};
     carried_.insert(key);
-    tinygltf::ExtensionMap extensions;
-    return texture(values(extension).texture(key, extensions), key);
+    return texture(values(extension).record(key), key);
   }
 
   /// A colour of the medium, unless it is white.
@@ -191,9 +248,8 @@ class MaterialTranslator {
     const double clear = std::clamp(values(kClear).number("transmissionFactor", 0), 0., 1.),
                  diffuse = std::clamp(values(kDiffuse).number("diffuseTransmissionFactor", 0), 0., 1.);
     const double weight = clear + (1 - clear) * diffuse;
-    const Vec3d color = values(kDiffuse).color("diffuseTransmissionColorFactor", Vec3d(1));
-    std::optional<Json> base =
-        texture(of(material_.pbrMetallicRoughness.baseColorTexture), "baseColorTexture");
+    const Vec3d color = color_of(values(kDiffuse), "diffuseTransmissionColorFactor", Vec3d(1));
+    std::optional<Json> base = texture(base_.color_texture, base_.color_texture_name);
     std::optional<Json> share;
     if (diffuse == 0 && clear > 0) share = channel(extension_texture(kClear, "transmissionTexture"), "r");
     if (clear == 0 && diffuse > 0)
@@ -218,31 +274,25 @@ class MaterialTranslator {
       if (color != Vec3d(1)) not_carried("diffuseTransmissionColorFactor " + short_triple(color));
     }
     add_specular_weight(surface.medium);
-    const GltfTexture both = of(material_.pbrMetallicRoughness.metallicRoughnessTexture);
-    if (std::optional<Json> rough = channel(texture(both, "metallicRoughnessTexture"), "g"))
+    if (std::optional<Json> rough =
+            channel(texture(base_.roughness_texture, "metallicRoughnessTexture"), "g"))
       surface.medium["specular_roughness"] =
           times(std::move(rough), surface.medium["specular_roughness"], 1.0);
   }
 
-  bool has(const char* extension) const { return material_.extensions.contains(extension); }
-
-  ExtensionValues values(const char* extension) const {
-    static const tinygltf::Value none;
-    const auto found = material_.extensions.find(extension);
-    return {gltf_, place_ + ".extensions." + extension,
-            found == material_.extensions.end() ? none : found->second};
-  }
+  bool has(const char* extension) const { return extensions_.has(extension); }
+  GltfRecord values(const char* extension) const { return extensions_.record(extension); }
 
   std::optional<Scatter> read_scatter() const {
     if (has("KHR_materials_scatter")) {
-      const ExtensionValues scatter = values("KHR_materials_scatter");
+      const GltfRecord scatter = values("KHR_materials_scatter");
       const double strength = std::clamp(scatter.number("scatterStrengthFactor", 1), 0., 1.);
-      return Scatter{scatter.color("multiscatterColorFactor", Vec3d(1)) * strength,
+      return Scatter{color_of(scatter, "multiscatterColorFactor", Vec3d(1)) * strength,
                      scatter.number("scatterAnisotropy", 0)};
     }
     if (!has("KHR_materials_volume_scatter")) return std::nullopt;
-    const ExtensionValues scatter = values("KHR_materials_volume_scatter");
-    return Scatter{scatter.color("multiscatterColor", Vec3d(0)), scatter.number("scatterAnisotropy", 0)};
+    const GltfRecord scatter = values("KHR_materials_volume_scatter");
+    return Scatter{color_of(scatter, "multiscatterColor", Vec3d(0)), scatter.number("scatterAnisotropy", 0)};
   }
 
   double index_of_refraction() {
@@ -255,9 +305,9 @@ class MaterialTranslator {
 
   /// Null where nothing attenuates light.
   Json make_medium(const Scatter& scatter) {
-    const ExtensionValues volume = values("KHR_materials_volume");
+    const GltfRecord volume = values("KHR_materials_volume");
     const double distance = volume.number("attenuationDistance", std::numeric_limits<double>::infinity());
-    const Vec3d color = volume.color("attenuationColor", Vec3d(1));
+    const Vec3d color = color_of(volume, "attenuationColor", Vec3d(1));
     if (!(distance > 0) || !std::isfinite(distance) || color == Vec3d(1) ||
         scatter.multiscatter_color == Vec3d()) {
       not_carried(
@@ -284,8 +334,8 @@ class MaterialTranslator {
         "roughnessFactor {:.3g} -> sigma_a {}, sigma_s {} 1/mm, g {:.3g}, specular_ior {:.4g}, "
         "specular_roughness {:.3g}",
         short_triple(color), distance * kMillimetres, short_triple(scatter.multiscatter_color),
-        scatter.anisotropy, ior, material_.pbrMetallicRoughness.roughnessFactor, short_triple(sigma_a),
-        short_triple(sigma_s), g, ior, roughness));
+        scatter.anisotropy, ior, base_.roughness, short_triple(sigma_a), short_triple(sigma_s), g, ior,
+        roughness));
     tell_of_thickness(volume);
     medium.update({{"sigma_a", triple_json(sigma_a)},
                    {"sigma_s", triple_json(sigma_s)},
@@ -299,7 +349,7 @@ class MaterialTranslator {
     return component_min(component_max(color, Vec3d(kDarkest)), Vec3d(kClearest));
   }
 
-  void tell_of_thickness(const ExtensionValues& volume) {
+  void tell_of_thickness(const GltfRecord& volume) {
     const double thickness = volume.number("thicknessFactor", 0);
     if (thickness > 0)
       translated(
@@ -309,30 +359,38 @@ class MaterialTranslator {
   }
 
   void tell_losses(bool is_translucent) {
-    std::vector<std::string> textures;
-    const auto add = [&](int index, const char* name) {
-      if (index >= 0) textures.emplace_back(name);
-    };
-    add(material_.occlusionTexture.index, "occlusionTexture");
-    add(material_.emissiveTexture.index, "emissiveTexture");
-    for (const auto& [extension, unused] : material_.extensions)
-      for (std::string& name : values(extension.c_str()).textures()) textures.push_back(std::move(name));
-    for (const std::string& name : textures)
+    const auto add = [this](const std::string& name) {
       if (!carried_.contains(name)) not_carried("texture " + name);
-    if (material_.emissiveFactor != std::vector<double>{0, 0, 0} && !material_.emissiveFactor.empty())
+    };
+    for (const char* name : {"occlusionTexture", "emissiveTexture"})
+      if (material_.record(name).index("index") != kNoRecord) add(name);
+    for (const std::string& extension : extensions_.keys())
+      for (const std::string& key : values(extension.c_str()).keys())
+        if (key.ends_with("Texture")) add(key);
+    const std::vector<double> emissive = material_.numbers("emissiveFactor", 3);
+    if (!emissive.empty() && emissive != std::vector<double>{0, 0, 0})
       not_carried("emissiveFactor: it does not glow");
-    if (material_.alphaMode != "OPAQUE")
-      not_carried("alphaMode " + in_quotes(material_.alphaMode) + ": shown whole");
+    tell_alpha();
     tell_extensions(is_translucent);
+  }
+
+  /// Alpha of 1 everywhere says nothing.
+  void tell_alpha() {
+    const std::string mode = material_.text("alphaMode", "OPAQUE");
+    const std::vector<double> factor = material_.record("pbrMetallicRoughness").numbers("baseColorFactor", 4);
+    const bool may_be_clear =
+        base_.color_texture.index("index") != kNoRecord || (!factor.empty() && factor[3] < 1);
+    if (mode != "OPAQUE" && may_be_clear)
+      warn("alphaMode " + in_quotes(mode) + ": shown whole, without holes");
   }
 
   void tell_extensions(bool is_translucent) {
     constexpr std::array<std::string_view, 3> of_volume{"KHR_materials_transmission", "KHR_materials_volume",
                                                         "KHR_materials_diffuse_transmission"};
-    constexpr std::array<std::string_view, 5> read{"KHR_materials_anisotropy", "KHR_materials_ior",
-                                                   "KHR_materials_specular", "KHR_materials_volume_scatter",
-                                                   "KHR_materials_scatter"};
-    for (const auto& [name, unused] : material_.extensions) {
+    constexpr std::array<std::string_view, 6> read{
+        kSpecularGlossiness,      "KHR_materials_anisotropy",     "KHR_materials_ior",
+        "KHR_materials_specular", "KHR_materials_volume_scatter", "KHR_materials_scatter"};
+    for (const std::string& name : extensions_.keys()) {
       if (std::ranges::find(read, name) != read.end()) continue;
       if (std::ranges::find(of_volume, name) == of_volume.end())
         not_carried(name);
@@ -342,9 +400,10 @@ class MaterialTranslator {
   }
 
   const GltfModel& gltf_;
-  const tinygltf::Material& material_;
+  GltfRecord material_, extensions_;
+  BaseLayer base_;
   const MaterialUse& use_;
-  std::string place_, label_;
+  std::string label_;
   AssetScene& scene_;
   std::set<std::string> carried_;  // textures of extensions
 };
@@ -352,14 +411,14 @@ class MaterialTranslator {
 }  // namespace
 
 SurfaceTranslation translate_material(const GltfModel& gltf, const MaterialUse& use, AssetScene& scene) {
-  if (use.index >= 0) return MaterialTranslator(gltf, use, scene).run();
+  if (use.index != kNoRecord) return MaterialTranslator(gltf, use, scene).run();
   scene.translated.push_back("no material -> reflectance 1 (opaque)");
   return {};
 }
 
-std::string material_label(const GltfModel& gltf, int index) {
-  const std::string& name = gltf.model.materials[std::size_t(index)].name;
-  return name.empty() ? record_name("materials", std::size_t(index)) : "material " + in_quotes(name);
+std::string material_label(const GltfModel& gltf, std::size_t index) {
+  const std::string name = gltf.record("materials", index).text("name");
+  return name.empty() ? record_name("materials", index) : "material " + in_quotes(name);
 }
 
 }  // namespace opaline

@@ -9,8 +9,8 @@ namespace opaline {
 
 /// Where a material is met.
 struct MaterialUse {
-  int index = -1;        ///< -1: glTF's default one, white
-  bool has_uvs = false;  ///< of what it is on
+  std::uint32_t index = kNoRecord;  ///< none: glTF's default one, white
+  bool has_uvs = false;             ///< of what it is on
   bool has_tangents = false;
   std::string mesh_path{};  ///< how the scene file calls the asset
 };
@@ -19,6 +19,6 @@ struct MaterialUse {
 SurfaceTranslation translate_material(const GltfModel& gltf, const MaterialUse& use, AssetScene& scene);
 
 /// How messages call it.
-std::string material_label(const GltfModel& gltf, int index);
+std::string material_label(const GltfModel& gltf, std::size_t index);
 
 }  // namespace opaline

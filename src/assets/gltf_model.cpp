@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fstream>  // tinygltf does not, without its own access to files
-#include <sstream>
+#include "assets/gltf_model.h"
 
-#define TINYGLTF_IMPLEMENTATION
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <mutex>
-#include <vector>
 
-#include "assets/gltf_model.h"
+#include "assets/asset_file.h"
+#include "assets/build_gltf.h"
+#include "assets/gltf_file.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -22,90 +22,15 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 3> compressions{"KHR_draco_mesh_compression", "EXT_meshopt_compression",
                                                   "KHR_meshopt_compression"};
 
-/// A buffer's bytes must be longer by what tinygltf may read behind a chunk that lies about its length.
-constexpr std::size_t spare_bytes = 16;
-
-void add_hash(std::string& contents, const void* bytes, std::size_t size) {
-  const XXH128_hash_t hash = XXH3_128bits(bytes, size);
+void add_hash(std::string& contents, std::string_view bytes) {
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
   XXH128_canonical_t canonical;
   XXH128_canonicalFromHash(&canonical, hash);
   contents.append(reinterpret_cast<const char*>(canonical.digest), sizeof canonical.digest);
 }
 
-/// The files beside the asset, as tinygltf asks for them.
-struct Neighbours {
-  std::string folder;  ///< with a slash at its end
-  std::vector<std::string> read;
-  std::string failure;
-};
-
-/// tinygltf looks into the folder of the program's user as well, and takes a + in an URI for a space.
-std::string existing(const Neighbours& beside, const std::string& name) {
-  if (!name.starts_with(beside.folder)) return {};
-  std::error_code ignored;
-  if (fs::exists(name, ignored)) return name;
-  std::string plus = name;
-  std::ranges::replace(plus, ' ', '+');
-  return fs::exists(plus, ignored) ? plus : std::string();
-}
-
-bool file_exists(const std::string& name, void* user_data) {
-  return !existing(*static_cast<const Neighbours*>(user_data), name).empty();
-}
-
-std::string same_path(const std::string& name, void*) {
-  return name;
-}
-
-bool read_whole_file(std::vector<unsigned char>* out, std::string*, const std::string& name,
-                     void* user_data) {
-  Neighbours& beside = *static_cast<Neighbours*>(user_data);
-  const std::string path = existing(beside, name);
-  try {
-    const std::string bytes = read_asset_bytes(path);
-    out->assign(bytes.begin(), bytes.end());
-  } catch (const Error& failure) {
-    beside.failure = failure.what();
-    return false;
-  }
-  beside.read.push_back(path);
-  return true;
-}
-
-bool take_no_image(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*,
-                   int, void*) {
-  return true;
-}
-
-/// The first record that was not read, in the order in which tinygltf reads the lists; empty: none is missing.
-std::string first_unread(const GltfModel& gltf) {
-  const tinygltf::Model& m = gltf.model;
-  const std::array<std::pair<const char*, std::size_t>, 8> lists{{{"buffers", m.buffers.size()},
-                                                                  {"bufferViews", m.bufferViews.size()},
-                                                                  {"accessors", m.accessors.size()},
-                                                                  {"meshes", m.meshes.size()},
-                                                                  {"nodes", m.nodes.size()},
-                                                                  {"scenes", m.scenes.size()},
-                                                                  {"materials", m.materials.size()},
-                                                                  {"cameras", m.cameras.size()}}};
-  for (const auto& [name, size] : lists) {
-    const auto listed = gltf.counts.find(name);
-    if (listed != gltf.counts.end() && size < listed->second) return record_name(name, size);
-  }
-  return {};
-}
-
-std::string one_line(std::string text) {
-  while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
-  for (char& c : text)
-    if (c < ' ') c = ' ';
-  constexpr std::size_t most = 300;  // a data URI would follow
-  if (text.size() > most) text = text.substr(0, most) + "...";
-  return text;
-}
-
 void check_compression(const GltfModel& gltf) {
-  for (const std::string& name : gltf.model.extensionsRequired)
+  for (const std::string& name : gltf.extensions_required)
     if (std::ranges::find(compressions, name) != compressions.end())
       throw bad_file(gltf.path, "its meshes are compressed by " + name + ", which is not read",
                      "an asset exported without compression");
@@ -114,119 +39,91 @@ void check_compression(const GltfModel& gltf) {
 /// Indices between the records; all names are of their JSON.
 class ReferenceCheck {
  public:
-  explicit ReferenceCheck(const GltfModel& gltf) : path_(gltf.path), model_(gltf.model) {}
+  explicit ReferenceCheck(GltfModel& gltf) : gltf_(gltf) {}
 
-  void run() const {
-    for (std::size_t i = 0; i < model_.bufferViews.size(); ++i) buffer_view(i);
-    for (std::size_t i = 0; i < model_.accessors.size(); ++i) accessor(i);
-    for (std::size_t i = 0; i < model_.meshes.size(); ++i) mesh(i);
-    for (std::size_t i = 0; i < model_.nodes.size(); ++i) node(i);
-    for (std::size_t i = 0; i < model_.scenes.size(); ++i)
-      for (const int root : model_.scenes[i].nodes)
-        index(record_name("scenes", i) + ".nodes", root, model_.nodes.size());
-    optional(std::string("scene"), model_.defaultScene, model_.scenes.size());
+  void run() {
+    for (std::size_t i = 0; i < gltf_.views.size(); ++i) view(i);
+    for (std::size_t i = 0; i < gltf_.accessors.size(); ++i) accessor(i);
+    for (std::size_t i = 0; i < gltf_.meshes.size(); ++i) mesh(i);
+    for (std::size_t i = 0; i < gltf_.nodes.size(); ++i) node(i);
+    for (std::size_t i = 0; i < gltf_.scenes.size(); ++i)
+      for (const std::uint32_t root : gltf_.scenes[i])
+        index(record_name("scenes", i) + ".nodes", root, gltf_.nodes.size());
+    optional("scene", gltf_.scene, gltf_.scenes.size());
   }
 
  private:
-  void index(const std::string& place, int value, std::size_t size) const {
-    if (value >= 0 && std::size_t(value) < size) return;
-    fail_at(path_, place, "points at nothing",
+  void index(const std::string& place, std::uint32_t value, std::size_t size) const {
+    if (value < size) return;
+    fail_at(gltf_.path, place, "points at nothing",
             size == 0 ? "nothing: there is none" : "0 to " + std::to_string(size - 1), std::to_string(value));
   }
 
-  void optional(const std::string& place, int value, std::size_t size) const {
-    if (value != -1) index(place, value, size);
+  void optional(const std::string& place, std::uint32_t value, std::size_t size) const {
+    if (value != kNoRecord) index(place, value, size);
   }
 
-  void buffer_view(std::size_t i) const {
-    const tinygltf::BufferView& view = model_.bufferViews[i];
+  void view(std::size_t i) const {
+    const GltfBufferView& view = gltf_.views[i];
     const std::string place = record_name("bufferViews", i);
-    index(place + ".buffer", view.buffer, model_.buffers.size());
-    const std::size_t size = model_.buffers[std::size_t(view.buffer)].data.size();
-    if (view.byteOffset > size || view.byteLength > size - view.byteOffset)
-      fail_at(path_, place, "reaches beyond its buffer", "within " + std::to_string(size) + " bytes",
-              std::to_string(view.byteLength) + " from " + std::to_string(view.byteOffset));
+    index(place + ".buffer", view.buffer, gltf_.buffers.size());
+    const std::size_t size = gltf_.buffers[view.buffer].size();
+    if (view.offset > size || view.length > size - view.offset)
+      fail_at(gltf_.path, place, "reaches beyond its buffer", "within " + std::to_string(size) + " bytes",
+              std::to_string(view.length) + " from " + std::to_string(view.offset));
   }
 
   void accessor(std::size_t i) const {
-    const tinygltf::Accessor& accessor = model_.accessors[i];
+    const GltfAccessor& accessor = gltf_.accessors[i];
     const std::string place = record_name("accessors", i);
-    optional(place + ".bufferView", accessor.bufferView, model_.bufferViews.size());
-    if (!accessor.sparse.isSparse) return;
-    index(place + ".sparse.indices.bufferView", accessor.sparse.indices.bufferView,
-          model_.bufferViews.size());
-    index(place + ".sparse.values.bufferView", accessor.sparse.values.bufferView, model_.bufferViews.size());
+    optional(place + ".bufferView", accessor.view, gltf_.views.size());
+    if (!accessor.sparse) return;
+    index(place + ".sparse.indices.bufferView", accessor.sparse->index_view, gltf_.views.size());
+    index(place + ".sparse.values.bufferView", accessor.sparse->value_view, gltf_.views.size());
+  }
+
+  void attributes(const std::string& place, const GltfAttributes& all) const {
+    for (const auto& [name, accessor] : all) index(place + '.' + name, accessor, gltf_.accessors.size());
   }
 
   void mesh(std::size_t i) const {
-    for (std::size_t p = 0; p < model_.meshes[i].primitives.size(); ++p) {
-      const tinygltf::Primitive& primitive = model_.meshes[i].primitives[p];
+    for (std::size_t p = 0; p < gltf_.meshes[i].primitives.size(); ++p) {
+      const GltfPrimitive& primitive = gltf_.meshes[i].primitives[p];
       const std::string place = record_name("meshes", i) + '.' + record_name("primitives", p);
-      for (const auto& [name, accessor] : primitive.attributes)
-        index(place + ".attributes." + name, accessor, model_.accessors.size());
-      optional(place + ".indices", primitive.indices, model_.accessors.size());
-      optional(place + ".material", primitive.material, model_.materials.size());
+      attributes(place + ".attributes", primitive.attributes);
+      for (std::size_t t = 0; t < primitive.targets.size(); ++t)
+        attributes(place + '.' + record_name("targets", t), primitive.targets[t]);
+      optional(place + ".indices", primitive.indices, gltf_.accessors.size());
+      optional(place + ".material", primitive.material, gltf_.count("materials"));
     }
   }
 
-  void node(std::size_t i) const {
-    const tinygltf::Node& node = model_.nodes[i];
+  void node(std::size_t i) {
+    const GltfNode& node = gltf_.nodes[i];
     const std::string place = record_name("nodes", i);
-    optional(place + ".mesh", node.mesh, model_.meshes.size());
-    optional(place + ".camera", node.camera, model_.cameras.size());
-    for (const int child : node.children) index(place + ".children", child, model_.nodes.size());
+    optional(place + ".mesh", node.mesh, gltf_.meshes.size());
+    optional(place + ".camera", node.camera, gltf_.count("cameras"));
+    optional(place + ".skin", node.skin, gltf_.count("skins"));
+    optional(place + ".extensions.KHR_lights_punctual.light", node.light, gltf_.count("lights"));
+    if (const auto found = gltf_.instances.find(i); found != gltf_.instances.end())
+      attributes(place + ".extensions.EXT_mesh_gpu_instancing.attributes", found->second);
+    for (const std::uint32_t child : node.children) {
+      index(place + ".children", child, gltf_.nodes.size());
+      if (gltf_.nodes[child].parent != kNoRecord)
+        fail_at(gltf_.path, record_name("nodes", child), "has two parents, or is its own", "a tree of nodes");
+      gltf_.nodes[child].parent = std::uint32_t(i);
+    }
   }
 
-  const std::string& path_;
-  const tinygltf::Model& model_;
+  GltfModel& gltf_;
 };
 
-/// in    file: is written to, see prepare_gltf_json
-void parse(GltfModel& gltf, std::string& file, Neighbours& beside) {
-  GltfOutline outline = prepare_gltf_json(gltf.path, file);
-  gltf.counts = std::move(outline.counts);
-  gltf.images = std::move(outline.images);
-  gltf.textures = std::move(outline.textures);
-  const std::size_t size = file.size();
-  if (size > 0xffffffff) throw bad_file(gltf.path, "is too large for a glTF file", "less than 4 GiB");
-  file.resize(size + spare_bytes);
-  tinygltf::TinyGLTF loader;
-  loader.SetFsCallbacks({file_exists, same_path, read_whole_file, nullptr, &beside});
-  loader.SetImageLoader(take_no_image, nullptr);
-  std::string error, warning;
-  bool good = false;
-  try {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(file.data());
-    good = file.starts_with("glTF") ? loader.LoadBinaryFromMemory(&gltf.model, &error, &warning, bytes,
-                                                                  unsigned(size), beside.folder)
-                                    : loader.LoadASCIIFromString(&gltf.model, &error, &warning, file.data(),
-                                                                 unsigned(size), beside.folder);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& failure) {
-    error += failure.what();
-  }
-  check_compression(gltf);
-  if (good && error.empty()) return;
-  // "[json.exception.parse_error.101] parse error at line 1, ...": the number is the library's.
-  if (error.starts_with("[json.exception.")) error.erase(0, std::min(error.find("] "), error.size() - 2) + 2);
-  if (!beside.failure.empty()) error = beside.failure;
-  const std::string record = gltf.model.asset.version.empty() ? "" : first_unread(gltf);
-  throw bad_file(gltf.path,
-                 (record.empty() ? "" : record + ": ") + "cannot be read as glTF 2.0: " + one_line(error));
-}
-
-/// Of a GLB file: glTF 1 had another layout under the same name.
-void check_binary_version(const std::string& path, const std::string& file) {
-  constexpr std::size_t version_at = 4;
-  if (file.starts_with("glTF") && file.size() > version_at && file[version_at] != 2)
-    throw bad_file(path, "is not of a version that is read", "binary glTF 2",
-                   std::to_string(int(std::uint8_t(file[version_at]))));
-}
-
-void check_version(const GltfModel& gltf) {
-  if (!gltf.model.asset.version.starts_with("2."))
-    fail_at(gltf.path, "asset.version", "is not one that is read", "2.0", gltf.model.asset.version);
+std::size_t record_bytes(const GltfModel& gltf, std::string_view json) {
+  constexpr std::size_t kOfAllocation = 16;
+  std::size_t bytes = json.size();
+  for (const GltfNode& node : gltf.nodes)
+    bytes += sizeof node + (node.placed ? sizeof *node.placed + kOfAllocation : 0);
+  return bytes;
 }
 
 /// The last asset, and what it was read from.
@@ -241,14 +138,49 @@ Kept& kept() {
   return last;
 }
 
+/// The bytes of a buffer that lies outside of the asset's own file.
+/// in    files: its file is added
+std::string bytes_of_uri(const GltfModel& gltf, std::size_t index, const std::string& uri,
+                         std::vector<std::string>& files) {
+  const std::string place = record_name("buffers", index) + ".uri";
+  if (is_data_uri(uri)) {
+    std::optional<std::string> bytes = data_of_uri(uri);
+    if (!bytes) fail_at(gltf.path, place, "cannot be read", "a file, or data in base64");
+    return *std::move(bytes);
+  }
+  const std::string name = decoded_uri(uri);
+  const NamedFile file = find_named_file(name, gltf.path, fs::path(gltf.path).parent_path());
+  if (file.path.empty())
+    fail_at(gltf.path, place, "names no such file", "a file in the asset's folder", name);
+  files.push_back(file.path.string());
+  return read_asset_bytes(files.back());
+}
+
+void read_buffers(GltfModel& gltf, std::string_view binary, const std::vector<GltfBuffer>& buffers,
+                  std::vector<std::string>& files) {
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    const auto& [length, uri] = buffers[i];
+    std::string_view bytes = binary;
+    if (!uri.empty()) {
+      const std::size_t known = files.size();
+      bytes = gltf.own_bytes.emplace_back(bytes_of_uri(gltf, i, uri, files));
+      if (files.size() > known) add_hash(gltf.contents, bytes);
+    } else if (i > 0 || binary.data() == nullptr) {
+      fail_at(gltf.path, record_name("buffers", i), "has no data",
+              "a uri, or the binary chunk of a GLB file");
+    }
+    if (bytes.size() < length)
+      fail_at(gltf.path, record_name("buffers", i), "is shorter than its byteLength", std::to_string(length),
+              std::to_string(bytes.size()));
+    gltf.buffers.push_back(bytes.substr(0, length));
+  }
+}
+
 /// Of all files, read again.
 std::string contents_of(const std::vector<std::string>& files, const std::string& first) {
   std::string contents;
-  add_hash(contents, first.data(), first.size());
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    const std::string bytes = read_asset_bytes(files[i]);
-    add_hash(contents, bytes.data(), bytes.size());
-  }
+  add_hash(contents, first);
+  for (std::size_t i = 1; i < files.size(); ++i) add_hash(contents, read_asset_bytes(files[i]));
   return contents;
 }
 
@@ -264,13 +196,17 @@ bool is_kept(const std::string& path, const std::string& file) {
 
 }  // namespace
 
-void fail_at(const std::string& path, const std::string& record, const std::string& message,
-             const std::string& expected, const std::string& got) {
-  throw bad_file(path, record + ' ' + message, expected, got);
+GltfRecord GltfModel::record(const char* list, std::size_t index) const {
+  const std::size_t size = count(list);
+  if (index >= size)
+    fail_at(path, record_name(list, index), "is not there",
+            size == 0 ? "nothing: there is none" : "below " + std::to_string(size));
+  return {path, record_name(list, index), lists.find(list)->second[index]};
 }
 
-std::string record_name(const char* list, std::size_t index) {
-  return std::string(list) + '[' + std::to_string(index) + ']';
+std::size_t GltfModel::count(const char* list) const {
+  const auto found = lists.find(list);
+  return found == lists.end() ? 0 : found->second.size();
 }
 
 std::shared_ptr<const GltfModel> load_gltf(const std::string& path) {
@@ -280,22 +216,46 @@ std::shared_ptr<const GltfModel> load_gltf(const std::string& path) {
   if (is_kept(path, file)) return kept().gltf;
   const auto gltf = std::make_shared<GltfModel>();
   gltf->path = path;
-  add_hash(gltf->contents, file.data(), file.size());
-  const fs::path folder = fs::path(path).parent_path();
-  check_binary_version(path, file);
-  Neighbours beside{(folder.empty() ? "." : folder.string()) + '/', {}, {}};
-  parse(*gltf, file, beside);
-  check_version(*gltf);
-  ReferenceCheck(*gltf).run();
+  add_hash(gltf->contents, file);
+  gltf->file = std::move(file);
+  const GltfChunks chunks = gltf_chunks(path, gltf->file);
+  if (!chunks.is_aligned) gltf->warnings.push_back("its chunks are not aligned to 4 bytes, as glTF wants it");
+  const std::vector<GltfBuffer> buffers = build_gltf(chunks.json, *gltf);
+  gltf->record_bytes = record_bytes(*gltf, chunks.json);
+  check_compression(*gltf);
   std::vector<std::string> files{path};
-  files.insert(files.end(), beside.read.begin(), beside.read.end());
-  for (const std::string& name : beside.read) {
-    const std::string bytes = read_asset_bytes(name);
-    add_hash(gltf->contents, bytes.data(), bytes.size());
-  }
+  read_buffers(*gltf, chunks.binary, buffers, files);
+  ReferenceCheck(*gltf).run();
+  if (chunks.binary.data() == nullptr) gltf->file = {};
   kept().gltf = gltf;
   kept().files = std::move(files);
   return gltf;
+}
+
+Transform rotation(const std::array<double, 4>& quaternion) {
+  const auto [x0, y0, z0, w0] = quaternion;
+  const double norm = std::sqrt(x0 * x0 + y0 * y0 + z0 * z0 + w0 * w0);
+  const double x = x0 / norm, y = y0 / norm, z = z0 / norm, w = w0 / norm;
+  return {{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
+          {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
+          {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)},
+          {}};
+}
+
+Transform compose(const Transform& second, const Transform& first) {
+  const auto linear = [&](const Vec3d& v) { return second.x * v.x + second.y * v.y + second.z * v.z; };
+  return {linear(first.x), linear(first.y), linear(first.z), transform_point(second, first.translation)};
+}
+
+Transform node_to_world(const GltfModel& gltf, std::size_t node) {
+  Transform to_world = gltf.nodes[node].to_parent();
+  std::size_t steps = 0;
+  for (std::uint32_t at = gltf.nodes[node].parent; at != kNoRecord; at = gltf.nodes[at].parent) {
+    if (++steps > gltf.nodes.size())
+      fail_at(gltf.path, record_name("nodes", node), "has two parents, or is its own", "a tree of nodes");
+    to_world = compose(gltf.nodes[at].to_parent(), to_world);
+  }
+  return to_world;
 }
 
 }  // namespace opaline

@@ -4,9 +4,10 @@
 #include <charconv>
 #include <filesystem>
 #include <numbers>
-#include <optional>
 #include <string_view>
 
+#include "assets/asset_file.h"
+#include "assets/gltf_file.h"
 #include "opaline/assets/gltf_image.h"
 #include "opaline/core/input_file.h"
 
@@ -15,85 +16,42 @@ namespace {
 
 constexpr std::string_view kImageWord = "#image/";
 
-/// A record of a list that was kept as text.
-Json record_of(const GltfModel& gltf, const std::string& list, const char* name, std::size_t index) {
-  const Json records = Json::parse(list.empty() ? "[]" : list, nullptr, false);
-  if (!records.is_array() || index >= records.size())
-    fail_at(gltf.path, record_name(name, index), "is not there",
-            records.is_array() ? "below " + std::to_string(records.size()) : "a list of records");
-  if (!records[index].is_object()) fail_at(gltf.path, record_name(name, index), "is no record", "an object");
-  return records[index];
-}
-
-std::optional<std::size_t> index_in(const Json& record, const char* key) {
-  const auto found = record.find(key);
-  if (found == record.end() || !found->is_number_unsigned()) return {};
-  return found->get<std::size_t>();
-}
-
-std::string uri_of(const Json& image) {
-  const auto found = image.find("uri");
-  return found == image.end() || !found->is_string() ? "" : found->get<std::string>();
-}
-
-bool is_data(const std::string& uri) {
-  return uri.starts_with("data:");
-}
-
-/// "%20" and the like as the bytes that they stand for.
-std::string decoded(const std::string& uri) {
-  std::string text;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    unsigned byte = 0;
-    const char* const digits = uri.data() + i + 1;
-    if (uri[i] == '%' && i + 2 < uri.size() &&
-        std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
-      text += char(byte);
-      i += 2;
-    } else {
-      text += uri[i];
-    }
-  }
-  return text;
-}
-
-std::string data_of(const GltfModel& gltf, const std::string& uri, std::size_t index) {
-  std::vector<unsigned char> bytes;
-  std::string type;
-  if (!tinygltf::DecodeDataURI(&bytes, type, uri, 0, false))
-    fail_at(gltf.path, record_name("images", index) + ".uri", "cannot be read",
-            "a file, or a PNG or JPEG in base64");
-  return {bytes.begin(), bytes.end()};
-}
-
-std::string view_bytes(const GltfModel& gltf, std::size_t view, std::size_t image) {
-  if (view >= gltf.model.bufferViews.size())
-    fail_at(gltf.path, record_name("images", image) + ".bufferView", "points at nothing",
-            "below " + std::to_string(gltf.model.bufferViews.size()), std::to_string(view));
-  const tinygltf::BufferView& found = gltf.model.bufferViews[view];
-  const std::vector<unsigned char>& data = gltf.model.buffers[std::size_t(found.buffer)].data;
-  return {reinterpret_cast<const char*>(data.data()) + found.byteOffset, found.byteLength};
-}
-
 /// The image of a texture.
-std::size_t image_of(const GltfModel& gltf, int texture) {
-  const Json record = record_of(gltf, gltf.textures, "textures", std::size_t(texture));
-  const std::optional<std::size_t> image = index_in(record, "source");
-  if (!image)
-    fail_at(gltf.path, record_name("textures", std::size_t(texture)), "has no image that is read",
-            "a source, PNG or JPEG");
-  return *image;
+std::size_t image_of(const GltfModel& gltf, std::size_t texture) {
+  const GltfRecord record = gltf.record("textures", texture);
+  const std::uint32_t image = record.index("source");
+  if (image == kNoRecord)
+    fail_at(gltf.path, record.place(), "has no image that is read", "a source, PNG or JPEG");
+  return image;
+}
+
+/// The file of an image, where it is not in the asset.
+NamedFile file_of(const GltfModel& gltf, const GltfRecord& image) {
+  const std::string uri = image.text("uri");
+  if (uri.empty() || is_data_uri(uri)) return {};
+  const std::string name = decoded_uri(uri);
+  NamedFile file = find_named_file(name, gltf.path, std::filesystem::path(gltf.path).parent_path());
+  if (file.path.empty()) image.fail("uri", "names no such file", "a file in the asset's folder", name);
+  return file;
+}
+
+std::string view_bytes(const GltfModel& gltf, const GltfRecord& image) {
+  if (!image.has("bufferView")) fail_at(gltf.path, image.place(), "has no data", "a uri or a bufferView");
+  const std::uint32_t view = image.index("bufferView");
+  if (view >= gltf.views.size())
+    image.fail("bufferView", "points at nothing", "below " + std::to_string(gltf.views.size()),
+               std::to_string(view));
+  return std::string(bytes_of(gltf, gltf.views[view]));
 }
 
 GltfImage image_at(const GltfModel& gltf, std::size_t index) {
-  const Json image = record_of(gltf, gltf.images, "images", index);
-  const std::string uri = uri_of(image);
-  if (!uri.empty() && !is_data(uri))
-    return {(std::filesystem::path(gltf.path).parent_path() / decoded(uri)).string(), {}};
-  if (!uri.empty()) return {{}, data_of(gltf, uri, index)};
-  const std::optional<std::size_t> view = index_in(image, "bufferView");
-  if (!view) fail_at(gltf.path, record_name("images", index), "has no data", "a uri or a bufferView");
-  return {{}, view_bytes(gltf, *view, index)};
+  const GltfRecord image = gltf.record("images", index);
+  if (const NamedFile file = file_of(gltf, image); !file.path.empty()) return {file.path.string(), {}};
+  const std::string uri = image.text("uri");
+  if (uri.empty()) return {{}, view_bytes(gltf, image)};
+  std::optional<std::string> data = data_of_uri(uri);
+  if (!data) image.fail("uri", "cannot be read", "a file, or a PNG or JPEG in base64");
+  return {{}, *std::move(data)};
 }
 
 /// error unless it is there and of a kind that glTF itself has
@@ -105,44 +63,35 @@ void check_image(const GltfModel& gltf, std::size_t index) {
     fail_at(gltf.path, record_name("images", index), "is no picture that is read", "PNG or JPEG");
 }
 
-/// How a scene file calls an image: the file beside the asset that it is, else the asset's with "#image/3".
-std::string image_name(const GltfModel& gltf, std::size_t image, const std::string& mesh_path) {
-  const std::string uri = uri_of(record_of(gltf, gltf.images, "images", image));
-  if (uri.empty() || is_data(uri)) return mesh_path + std::string(kImageWord) + std::to_string(image);
-  return (std::filesystem::path(mesh_path).parent_path() / decoded(uri)).string();
+Json pair_json(const GltfRecord& transform, const char* key, double otherwise) {
+  const std::vector<double> pair = transform.numbers(key, 2);
+  return pair.empty() ? Json::array({otherwise, otherwise}) : Json(pair);
 }
 
-Json pair_json(const tinygltf::Value& transform, const char* key, double otherwise) {
-  Json pair = Json::array({otherwise, otherwise});
-  if (!transform.Has(key)) return pair;
-  for (std::size_t i = 0; i < 2; ++i)
-    if (transform.Get(key).ArrayLen() == 2 && transform.Get(key).Get(int(i)).IsNumber())
-      pair[i] = transform.Get(key).Get(int(i)).GetNumberAsDouble();
-  return pair;
-}
-
-void add_transform(const tinygltf::Value& transform, Json& json) {
-  if (transform.Has("scale")) json["uv_scale"] = pair_json(transform, "scale", 1);
-  if (transform.Has("rotation") && transform.Get("rotation").IsNumber())
-    json["uv_rotation"] = transform.Get("rotation").GetNumberAsDouble() * 180 / std::numbers::pi;
-  if (transform.Has("offset")) json["uv_offset"] = pair_json(transform, "offset", 0);
+void add_transform(const GltfRecord& transform, Json& json) {
+  if (transform.has("scale")) json["uv_scale"] = pair_json(transform, "scale", 1);
+  if (transform.has("rotation"))
+    json["uv_rotation"] = transform.number("rotation", 0) * 180 / std::numbers::pi;
+  if (transform.has("offset")) json["uv_offset"] = pair_json(transform, "offset", 0);
 }
 
 }  // namespace
 
-Json texture_json(const GltfModel& gltf, const GltfTexture& texture, const std::string& mesh_path) {
-  int uv_set = texture.uv_set;
-  const auto found = texture.extensions->find("KHR_texture_transform");
-  const tinygltf::Value* const transform = found == texture.extensions->end() ? nullptr : &found->second;
-  if (transform != nullptr && transform->Has("texCoord") && transform->Get("texCoord").IsInt())
-    uv_set = transform->Get("texCoord").GetNumberAsInt();
+Json texture_json(const GltfModel& gltf, const GltfRecord& info, const std::string& mesh_path,
+                  std::string& warning) {
+  const GltfRecord transform = info.record("extensions").record("KHR_texture_transform");
+  const std::size_t uv_set = transform.size("texCoord", info.size("texCoord", 0)),
+                    texture = info.index("index");
   if (uv_set != 0)
-    fail_at(gltf.path, record_name("textures", std::size_t(texture.index)), "is laid by another set of UVs",
-            "TEXCOORD_0", "TEXCOORD_" + std::to_string(uv_set));
-  const std::size_t image = image_of(gltf, texture.index);
+    fail_at(gltf.path, record_name("textures", texture), "is laid by another set of UVs", "TEXCOORD_0",
+            "TEXCOORD_" + std::to_string(uv_set));
+  const std::size_t image = image_of(gltf, texture);
   check_image(gltf, image);
-  Json json{{"texture", image_name(gltf, image, mesh_path)}};
-  if (transform != nullptr) add_transform(*transform, json);
+  const NamedFile file = file_of(gltf, gltf.record("images", image));
+  warning = file.warning;
+  Json json{{"texture", file.path.empty() ? mesh_path + std::string(kImageWord) + std::to_string(image)
+                                          : scene_name_of(file.path, gltf.path, mesh_path)}};
+  add_transform(transform, json);
   return json;
 }
 

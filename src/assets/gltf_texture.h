@@ -9,16 +9,11 @@
 
 namespace opaline {
 
-/// What a material says of a texture.
-struct GltfTexture {
-  int index = -1;  ///< below 0: there is none
-  int uv_set = 0;
-  const tinygltf::ExtensionMap* extensions = nullptr;
-};
-
 /// The texture as a scene file has it, laid as KHR_texture_transform says.
-/// in    mesh_path: how the scene file calls the asset
-/// error Error{bad_input} naming the asset and the record: it cannot be carried over, and why
-Json texture_json(const GltfModel& gltf, const GltfTexture& texture, const std::string& mesh_path);
+/// in    info: what a material says of it, with an index; mesh_path: how the scene file calls the asset
+/// out   warning: of the image's file, see NamedFile
+/// error Error{bad_input} naming the asset and the record: it cannot be carried over, and why; OutsideAsset
+Json texture_json(const GltfModel& gltf, const GltfRecord& info, const std::string& mesh_path,
+                  std::string& warning);
 
 }  // namespace opaline

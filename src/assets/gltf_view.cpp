@@ -40,47 +40,49 @@ double luminance(const Vec3d& color) {
 class LightTranslator {
  public:
   LightTranslator(const GltfModel& gltf, std::size_t index, const Transform& to_world, AssetScene& scene)
-      : gltf_(gltf),
-        light_(gltf.model.lights[index]),
-        place_(record_name("extensions.KHR_lights_punctual.lights", index)),
+      : light_(gltf.record("lights", index)),
+        type_(light_.text("type")),
+        intensity_(light_.number("intensity", 1)),
         to_world_(to_world),
         scene_(scene) {}
 
   void run(const std::string& name, const std::string& label) {
-    const Vec3d brightness = color() * light_.intensity;
-    if (!(light_.intensity >= 0 && luminance(brightness) <= 1e20))
-      fail_at(gltf_.path, place_, "is no brightness", "a color and an intensity from 0",
-              fmt::format("{}", light_.intensity));
-    const bool has_place = light_.type == "point" || light_.type == "spot";
-    if (!has_place && light_.type != "directional")
-      fail_at(gltf_.path, place_ + ".type", "is unknown", "point, spot or directional",
-              in_quotes(light_.type));
-    Json json{{"type", light_.type}, {"name", name}};
+    const Vec3d brightness = color() * intensity_;
+    if (!(intensity_ >= 0 && luminance(brightness) <= 1e20))
+      light_.fail("intensity", "is no brightness", "a color and an intensity from 0",
+                  fmt::format("{}", intensity_));
+    const bool has_place = type_ == "point" || type_ == "spot";
+    if (!has_place && type_ != "directional")
+      light_.fail("type", "is unknown", "point, spot or directional", in_quotes(type_));
+    Json json{{"type", type_}, {"name", name}};
     if (has_place) json["position"] = triple_json(to_world_.translation);
-    if (light_.type != "point") json["direction"] = triple_json(forward(to_world_));
+    if (type_ != "point") json["direction"] = triple_json(forward(to_world_));
     json[has_place ? "intensity" : "irradiance"] =
         triple_json(brightness * (has_place ? kIntensityOfCandela : 1));
-    if (light_.type == "spot") add_cone(json, label);
+    if (type_ == "spot") add_cone(json, label);
     scene_.lights.push_back(std::move(json));
     scene_.center_irradiance += at_center(brightness, has_place);
     scene_.translated.push_back(fmt::format(
-        "{}: {} of {} {} -> {} {} W/{}", label, light_.type, short_triple(brightness),
-        has_place ? "cd" : "lx", has_place ? "intensity" : "irradiance",
+        "{}: {} of {} {} -> {} {} W/{}", label, type_, short_triple(brightness), has_place ? "cd" : "lx",
+        has_place ? "intensity" : "irradiance",
         short_triple(brightness * (has_place ? kIntensityOfCandela : 1)), has_place ? "sr" : "mm^2"));
-    if (light_.range > 0) scene_.not_carried.push_back(label + fmt::format(": range {:.4g} m", light_.range));
+    if (const double range = light_.number("range", 0); range > 0)
+      scene_.not_carried.push_back(label + fmt::format(": range {:.4g} m", range));
   }
 
  private:
   Vec3d color() const {
-    const std::vector<double>& c = light_.color;
+    const std::vector<double> c = light_.numbers("color", 3);
     if (c.empty()) return Vec3d(1);
-    if (c.size() != 3 || std::ranges::any_of(c, [](double v) { return !(v >= 0); }))
-      fail_at(gltf_.path, place_ + ".color", "is no colour", "three numbers from 0");
+    if (std::ranges::any_of(c, [](double v) { return !(v >= 0); }))
+      light_.fail("color", "is no colour", "three numbers from 0");
     return {c[0], c[1], c[2]};
   }
 
   void add_cone(Json& json, const std::string& label) {
-    double outer = light_.spot.outerConeAngle * kDegrees, inner = light_.spot.innerConeAngle * kDegrees;
+    const GltfRecord spot = light_.record("spot");
+    double outer = spot.number("outerConeAngle", std::numbers::pi / 4) * kDegrees,
+           inner = spot.number("innerConeAngle", 0) * kDegrees;
     // A hard rim, which glTF does not allow and Blender's exporter writes as it is: the narrowest that fades.
     constexpr double kHardRim = .999, kRounding = 1e-6;
     if (inner > kHardRim * outer && inner <= (1 + kRounding) * outer) inner = kHardRim * outer;
@@ -101,9 +103,9 @@ class LightTranslator {
     return luminance(brightness) / (distance * distance);
   }
 
-  const GltfModel& gltf_;
-  const tinygltf::Light& light_;
-  std::string place_;
+  GltfRecord light_;
+  std::string type_;
+  double intensity_;
   const Transform& to_world_;
   AssetScene& scene_;
 };
@@ -111,16 +113,16 @@ class LightTranslator {
 }  // namespace
 
 void add_camera(const GltfModel& gltf, std::size_t node, const Transform& to_world, AssetScene& scene) {
-  const int index = gltf.model.nodes[node].camera;
-  if (index < 0) return;
-  const tinygltf::Camera& camera = gltf.model.cameras[std::size_t(index)];
-  const std::string label = label_of(
-      "cameras", camera.name.empty() ? gltf.model.nodes[node].name : camera.name, std::size_t(index));
-  const double view = camera.perspective.yfov * kDegrees;
+  const std::uint32_t index = gltf.nodes[node].camera;
+  if (index == kNoRecord) return;
+  const GltfRecord camera = gltf.record("cameras", index), perspective = camera.record("perspective");
+  const std::string own_name = camera.text("name");
+  const std::string label = label_of("cameras", own_name.empty() ? gltf.nodes[node].name : own_name, index);
+  const double view = perspective.number("yfov", 0) * kDegrees;
   const Vec3d up = normalized(to_world.y);
   if (!scene.camera.is_null())
     scene.not_carried.push_back(label + ": the scene has one already");
-  else if (camera.type != "perspective")
+  else if (camera.text("type") != "perspective")
     scene.not_carried.push_back(label + ": it is orthographic");
   else if (!(view > 0 && view < 180) || length(cross(forward(to_world), up)) < 1e-6)
     scene.not_carried.push_back(label +
@@ -131,26 +133,17 @@ void add_camera(const GltfModel& gltf, std::size_t node, const Transform& to_wor
                     {"look_at", triple_json(to_world.translation + forward(to_world) * distance)},
                     {"up", triple_json(up)},
                     {"field_of_view", view}};
-    scene.film["resolution"] = picture_size(camera.perspective.aspectRatio);
+    scene.film["resolution"] = picture_size(perspective.number("aspectRatio", 0));
     scene.translated.push_back(fmt::format("{} -> camera, {:.4g} degrees high", label, view));
   }
 }
 
 void add_light(const GltfModel& gltf, std::size_t node, const Transform& to_world, UniqueNames& names,
                AssetScene& scene) {
-  const auto& extensions = gltf.model.nodes[node].extensions;
-  const auto found = extensions.find("KHR_lights_punctual");
-  if (found == extensions.end()) return;
-  const tinygltf::Value& light = found->second.Has("light") ? found->second.Get("light") : found->second;
-  const std::string place = record_name("nodes", node) + ".extensions.KHR_lights_punctual.light";
-  const std::size_t count = gltf.model.lights.size();
-  if (!light.IsInt() || light.GetNumberAsInt() < 0 || std::size_t(light.GetNumberAsInt()) >= count)
-    fail_at(gltf.path, place, "points at nothing", "one of " + std::to_string(count) + " lights",
-            light.IsInt() ? std::to_string(light.GetNumberAsInt()) : "no index");
-  const auto index = std::size_t(light.GetNumberAsInt());
-  const std::string& own_name = gltf.model.lights[index].name;
-  const std::string wanted = own_name.empty() ? gltf.model.nodes[node].name : own_name;
-  const std::string name = names.take(wanted, "light");
+  const std::uint32_t index = gltf.nodes[node].light;
+  if (index == kNoRecord) return;
+  const std::string own_name = gltf.record("lights", index).text("name");
+  const std::string name = names.take(own_name.empty() ? gltf.nodes[node].name : own_name, "light");
   LightTranslator(gltf, index, to_world, scene).run(name, "light " + in_quotes(name));
 }
 

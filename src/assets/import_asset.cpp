@@ -78,8 +78,8 @@ ImportedAsset import_asset(const std::string& path, const std::string& mesh_path
   try {
     std::string text = scene_text(scene, std::filesystem::path(path).filename().string());
     std::string summary = summary_of(scene, own_camera, own_lights);
-    return {std::move(text), std::move(scene.translated), std::move(scene.not_carried),
-            std::move(scene.missing_files), std::move(summary)};
+    return {std::move(text),           std::move(scene.translated), std::move(scene.not_carried),
+            std::move(scene.warnings), std::move(summary),          scene.bytes};
   } catch (const Json::exception&) {
     throw bad_file(path, "a scene file cannot hold a name in it", "names in UTF-8");
   }

@@ -8,7 +8,9 @@
 #include <optional>
 
 #include "assets/asset_bytes.h"
+#include "assets/asset_file.h"
 #include "assets/asset_scene.h"
+#include "assets/mtl_texture.h"
 #include "opaline/assets/obj_material.h"
 #include "opaline/core/byte_order_mark.h"
 #include "opaline/core/error.h"
@@ -36,6 +38,8 @@ std::string_view next_word(std::string_view& line) {
 /// visit: of a line and its number, from 1
 template <class Visit>
 void for_each_line(std::string_view text, const Visit& visit) {
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     visit(text.substr(0, end), number);
@@ -125,25 +129,44 @@ class ObjImporter {
     Json texture;
   };
 
+  struct Picture {
+    Json texture;
+    double gain;  ///< times its colours
+  };
+
+  /// A line of a library.
+  struct Statement {
+    const std::string& library;
+    std::size_t line;
+    const std::string &material, &keyword;
+    std::string_view text;  ///< behind the keyword
+  };
+
   /// One file, whose name may have blanks in it, or several names.
   void read_libraries(const NamedFiles& library) {
     const auto& [names, line] = library;
-    const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(folder / names, ignored))
-      return read_library((folder / names).string());
+    if (const std::string whole = find(names, path_, line, "mtllib"); !whole.empty())
+      return read_library(whole);
     std::string_view rest = names;
     for (std::string_view name = next_word(rest); !name.empty(); name = next_word(rest)) {
-      if (std::filesystem::is_regular_file(folder / name, ignored))
-        read_library((folder / name).string());
+      const std::string file = find(std::string(name), path_, line, "mtllib");
+      if (file.empty())
+        warn(path_, line, "mtllib " + in_quotes(name) + ": there is no such file");
       else
-        note_missing(path_, line, "mtllib " + in_quotes(name));
+        read_library(file);
     }
   }
 
-  void note_missing(const std::string& file, std::size_t line, const std::string& what) {
-    scene_.not_carried.push_back(what + ": there is no such file");
-    scene_.missing_files.push_back(fmt::format("{}:{}: {}: there is no such file", file, line, what));
+  void warn(const std::string& file, std::size_t line, const std::string& what) {
+    scene_.warn(fmt::format("{}:{}", file, line), what);
+  }
+
+  /// The file that a line names; empty: there is none.
+  std::string find(const std::string& name, const std::string& named_in, std::size_t line,
+                   const std::string& keyword) {
+    const NamedFile file = find_named_file(name, path_, std::filesystem::path(named_in).parent_path());
+    if (!file.warning.empty()) warn(named_in, line, keyword + ' ' + file.warning);
+    return file.path.string();
   }
 
   void read_library(const std::string& path) {
@@ -159,9 +182,9 @@ class ObjImporter {
         else
           lost_[material].insert("Kd " + in_quotes(trimmed(line)));
       } else if (keyword == "map_Kd" && !material.empty() && has_uvs_) {
-        take_picture(material, std::string(trimmed(line)), path, number);
+        take_picture({path, number, material, keyword, line});
       } else if (is_bump(keyword) && !material.empty() && has_uvs_) {
-        take_bump(material, keyword, line, path);
+        take_bump({path, number, material, keyword, line});
       } else if (is_lost(keyword, line)) {
         const bool is_laid = !has_uvs_ && (keyword == "map_Kd" || is_bump(keyword));
         lost_[material].insert(keyword + (is_laid ? " (the mesh has no UVs)" : ""));
@@ -169,25 +192,32 @@ class ObjImporter {
     });
   }
 
-  /// A file beside the library, or an empty path: there is none.
-  static std::filesystem::path beside(const std::string& library, std::string name) {
-    std::ranges::replace(name, '\\', '/');
-    const std::filesystem::path file = std::filesystem::path(library).parent_path() / name;
-    std::error_code error;
-    return std::filesystem::is_regular_file(file, error) ? file : std::filesystem::path();
+  /// A picture as a scene file has it, laid as its options say; null: there is no such file.
+  /// out   file: its path
+  Json texture_of(const Statement& statement, const MtlTexture& texture, std::string& file) {
+    file = find(texture.name, statement.library, statement.line, statement.keyword);
+    const std::string label =
+        statement.keyword + ' ' + in_quotes(texture.name) + " of material " + in_quotes(statement.material);
+    if (file.empty()) {
+      warn(statement.library, statement.line, label + ": there is no such file");
+      return {};
+    }
+    for (const std::string& option : texture.not_carried)
+      warn(statement.library, statement.line, label + ": its option " + option);
+    Json json{{"texture", scene_name_of(file, path_, mesh_path_)}};
+    const auto& [scale_u, scale_v] = texture.scale;
+    const std::array<double, 2> offset{texture.offset[0], 1 - scale_v - texture.offset[1]};
+    if (texture.scale != std::array<double, 2>{1, 1}) json["uv_scale"] = {scale_u, scale_v};
+    if (offset != std::array<double, 2>{0, 0}) json["uv_offset"] = offset;  // the scene counts v downwards
+    return json;
   }
 
-  /// Without options, which not two programs read alike.
-  void take_picture(const std::string& material, const std::string& name, const std::string& library,
-                    std::size_t line) {
-    const bool has_options = name.starts_with('-');
-    const std::filesystem::path file = has_options ? "" : beside(library, name);
-    if (has_options)
-      lost_[material].insert("map_Kd " + in_quotes(name));
-    else if (file.empty())
-      note_missing(library, line, "map_Kd " + in_quotes(name) + " of material " + in_quotes(material));
-    else
-      pictures_[material] = scene_name_of(file, path_, mesh_path_);
+  void take_picture(const Statement& statement) {
+    const MtlTexture texture = read_mtl_texture(statement.text);
+    std::string file;
+    Json json = texture_of(statement, texture, file);
+    if (json.is_null()) return;
+    pictures_[statement.material] = {std::move(json), texture.gain};
   }
 
   static bool is_bump(const std::string& keyword) {
@@ -196,31 +226,18 @@ class ObjImporter {
 
   /// The height of white is what -bm says, in the OBJ's own lengths. Some programs write maps of normals here, whose mean
   /// is blue.
-  void take_bump(const std::string& material, const std::string& keyword, std::string_view line,
-                 const std::string& library) {
-    const std::string all(trimmed(line));
-    std::string_view rest = line;
-    double height = 1;
-    if (trimmed(rest).starts_with("-bm")) {
-      next_word(rest);
-      const std::string_view word = next_word(rest);
-      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), height);
-      if (error != std::errc() || end != word.data() + word.size()) height = -1;
-    }
-    const std::string name(trimmed(rest));
-    const std::filesystem::path file = name.starts_with('-') ? "" : beside(library, name);
-    if (file.empty() || !(height >= 0)) {
-      lost_[material].insert(keyword + ' ' + in_quotes(all));
-      return;
-    }
-    Json texture{{"texture", scene_name_of(file, path_, mesh_path_)}};
-    if (height != 1) texture["scale"] = height;
+  void take_bump(const Statement& statement) {
+    const MtlTexture texture = read_mtl_texture(statement.text);
+    std::string file;
+    Json json = texture_of(statement, texture, file);
+    if (json.is_null()) return;
+    if (const double height = texture.bump * texture.gain; height != 1) json["scale"] = height;
     try {
-      const Texel mean = TextureFile::open(file.string(), ColorSpace::linear)->mean();
+      const Texel mean = TextureFile::open(file, ColorSpace::linear)->mean();
       const bool is_blue = mean[2] > .6 && mean[2] > mean[0] + .1 && mean[2] > mean[1] + .1;
-      bumps_[material] = {is_blue ? "normal_map" : "bump_map", keyword, std::move(texture)};
+      bumps_[statement.material] = {is_blue ? "normal_map" : "bump_map", statement.keyword, std::move(json)};
     } catch (const Error& failure) {
-      lost_[material].insert(keyword + ": " + failure.message);
+      lost_[statement.material].insert(statement.keyword + ": " + failure.message);
     }
   }
 
@@ -260,11 +277,13 @@ class ObjImporter {
     const Vec3d reflectance = color == colors_.end() ? kGrey : color->second;
     const std::string label = "material " + in_quotes(material);
     if (const auto picture = pictures_.find(material); picture != pictures_.end()) {
-      Json texture{{"texture", picture->second}};
+      Json texture = picture->second.texture;
+      const auto name = texture["texture"].get<std::string>();
       // Programs that write a picture may leave the colour black; grey stands for none.
       const bool has_color = reflectance != Vec3d() && reflectance != kGrey && reflectance != Vec3d(1);
-      if (has_color) texture["scale"] = triple_json(reflectance);
-      scene_.translated.push_back(fmt::format("{}: map_Kd -> reflectance {}{}", label, picture->second,
+      const double gain = picture->second.gain;
+      if (has_color || gain != 1) texture["scale"] = triple_json((has_color ? reflectance : Vec3d(1)) * gain);
+      scene_.translated.push_back(fmt::format("{}: map_Kd -> reflectance {}{}", label, name,
                                               has_color ? " times Kd " + short_triple(reflectance) : ""));
       return texture;
     }
@@ -286,7 +305,7 @@ class ObjImporter {
   UniqueNames names_;
   bool has_uvs_ = false;
   std::map<std::string, Vec3d> colors_;                // Kd, by material
-  std::map<std::string, std::string> pictures_;        // map_Kd, as the scene file calls it, by material
+  std::map<std::string, Picture> pictures_;            // map_Kd, by material
   std::map<std::string, Bump> bumps_;                  // by material
   std::map<std::string, std::set<std::string>> lost_;  // keywords without a counterpart, by material
 };

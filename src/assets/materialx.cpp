@@ -6,10 +6,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <pugixml.hpp>
 
 #include "assets/asset_bytes.h"
+#include "assets/asset_file.h"
 #include "assets/asset_scene.h"
 #include "assets/materialx_bump.h"
 #include "opaline/core/error.h"
@@ -103,7 +105,11 @@ class SurfaceReader {
       scene_.not_carried.push_back(fmt::format("{}: {}: {}", label_, model_.normal, heights.problem));
       return;
     }
-    const std::filesystem::path file = std::filesystem::path(file_).parent_path() / heights.file;
+    const NamedFile named = find_named_file(heights.file, file_, std::filesystem::path(file_).parent_path());
+    if (!named.warning.empty()) scene_.warn(file_, label_ + ": " + named.warning);
+    // Where there is none, reading the scene says so.
+    const std::filesystem::path file =
+        named.path.empty() ? std::filesystem::path(file_).parent_path() / heights.file : named.path;
     Json& map = keys["bump_map"] = {{"texture", scene_name_of(file, asset_.path, asset_.mesh_path)},
                                     {"scale", heights.scale}};
     if (heights.tiling != std::array<double, 2>{1, 1}) {
@@ -267,6 +273,15 @@ pugi::xml_node find_surface(const pugi::xml_node& root, const std::string& name)
   });
 }
 
+/// "MaterialX 1.37" of a file whose syntax is older than 1.38: shaders stand inside of materials; else empty.
+std::string old_version(const pugi::xml_node& root) {
+  const std::string version = root.attribute("version").value();
+  const bool is_old = version.starts_with("1.") && std::atoi(version.c_str() + 2) < 38;
+  const bool has_references = root.child("material").child("shaderref");
+  if (!is_old && !has_references) return {};
+  return "MaterialX " + (is_old ? version : "1.37");
+}
+
 std::string surface_names(const pugi::xml_node& root) {
   std::string names;
   for (const pugi::xml_node& node : root.children())
@@ -294,6 +309,8 @@ SurfaceTranslation translate_materialx(const std::string& file_and_name, const A
   const pugi::xml_node root = document.child("materialx");
   if (!root) throw bad_file(file, "is no MaterialX file", "the element materialx");
   const pugi::xml_node surface = find_surface(root, name);
+  if (const std::string version = old_version(root); !surface && !version.empty())
+    throw bad_file(file, version + " syntax; save it as 1.38");
   if (!surface)
     throw bad_file(file, "has no such surface", surface_names(root), name.empty() ? "" : in_quotes(name));
   return SurfaceReader(file, surface, *find_model(surface), asset, scene).run();

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "benchmark/child_process.h"
+#include "opaline/assets/import_asset.h"
 #include "opaline/core/error.h"
 #include "opaline/core/units.h"
 #include "opaline/image/image.h"
@@ -239,6 +240,7 @@ std::vector<std::string> render_arguments(const BenchArguments& arguments, const
                                           const std::vector<std::string>& overrides) {
   std::vector<std::string> line{"render", scene.file,  "--log",
                                 "json",   "--threads", std::to_string(arguments.threads)};
+  if (are_files_outside_assets_allowed()) line.push_back("--allow-outside");
   add_sets(line, scene.overrides);
   add_sets(line, overrides);
   return line;

@@ -25,6 +25,7 @@
 #include "opaline/scene/json_tree.h"
 #include "opaline/scene/nearest_name.h"
 #include "opaline/scene/schema.h"
+#include "opaline/scene/unread_format.h"
 
 namespace opaline {
 namespace {
@@ -120,6 +121,8 @@ CompareArguments checked(CompareArguments compare, const Options& options) {
 }
 
 ImportArguments checked(ImportArguments import) {
+  if (const std::string unread = unread_format(import.asset); !unread.empty())
+    throw bad_file(import.asset, unread);
   if (!is_asset_name(import.asset))
     throw bad_file(import.asset, "is no asset that can be imported",
                    "a name that ends in .glb, .gltf or .obj");

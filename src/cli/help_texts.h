@@ -55,7 +55,8 @@ inline constexpr const char* kImportNotes =
     R"(Other commands take an asset wherever they take a scene file: what they see is what is written here. Each line
 on stderr says what became of a value, or what is not carried over.
 
-  glTF    meshes, nodes, cameras, lights (KHR_lights_punctual) and materials. A material that scatters
+  glTF    meshes, nodes, skins at rest, morph targets by their weights, cameras, lights (KHR_lights_punctual)
+          and materials. A material that scatters
           (KHR_materials_volume with KHR_materials_volume_scatter or KHR_materials_scatter) becomes a medium of
           sigma_a and sigma_s in 1/mm; all others are opaque, of their base colour, metalness, roughness and specularFactor. So are
           their textures, in the file or beside it; samplers are passed over. Lengths are metres.
@@ -65,8 +66,11 @@ on stderr says what became of a value, or what is not carried over.
           colour, metalness and coat.
   OBJ     meshes, a shape for each usemtl, with the Kd and map_Kd of its MTL. Lengths are taken for millimetres.
 
+Files that an asset names lie in its folder, or below; others, also behind links, are refused unless --allow-outside
+is given. Where a name leads nowhere, as a path of another machine does, the file of that name beside is taken.
+
 Without a camera the picture is a three-quarter view of the whole, without lights there are a key, a fill and a rim
-light of a size that suits it.
+light around it, placed for the camera and unseen by it.
 
 Examples:
   opaline import statue.glb -o statue.json

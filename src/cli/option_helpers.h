@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/option_values.h"
+#include "opaline/assets/import_asset.h"
 
 namespace opaline {
 
@@ -21,6 +22,12 @@ CLI::Option* add_repeatable(CLI::App& app, const std::string& names, std::vector
 inline CLI::Option* add_size(CLI::App& app, const std::string& name, std::uint64_t& bytes,
                              const std::string& help) {
   return app.add_option(name, bytes, help)->transform(bytes_of())->type_name("SIZE");
+}
+
+/// Of commands that read assets.
+inline void add_allow_outside(CLI::App& app) {
+  app.add_flag_callback("--allow-outside", allow_files_outside_assets,
+                        "let assets name files outside of their own folders: buffers, images, libraries");
 }
 
 inline void add_threads(CLI::App& app, int& threads, const std::string& help) {

@@ -83,13 +83,17 @@ void add_group(Paragraphs& plan, const Scene& scene, const World& world, const G
 std::string marble_text(const Scene& scene, const World& world) {
   if (scene.translation.empty() || scene.shapes.empty() || !scene.media.empty()) return {};
   constexpr double kHandful = 50;  // mm
+  constexpr double kMuch = 500;    // mm: a thousand mean free paths of marble
   const Shape& shape = scene.shapes[0];
-  // An OBJ has no unit, and by its size in mm light goes through or does not.
-  const bool has_unit = !scene.file.ends_with(".obj") || scene.mm_per_unit != 1 || !(world.diagonal > 0);
+  // An OBJ has no unit, a figure in metres is as large as a person: by its size light goes through or does not.
+  const double diagonal = world.diagonal * world.unit;
+  const bool is_unitless = scene.file.ends_with(".obj") && scene.mm_per_unit == 1;
+  const bool has_lights = std::ranges::any_of(scene.lights, is_delta);  // whose brightness follows the unit
+  const bool has_unit = !(diagonal > 0) || !(is_unitless || (diagonal > kMuch && !has_lights));
   return fmt::format(
       "; --set media.marble.preset=marble --set shapes.{}.medium=marble{} makes marble of {}{}{}", shape.name,
-      has_unit ? "" : fmt::format(" --set mm_per_unit={:.2g}", kHandful / world.diagonal), shape.name,
-      has_unit ? "" : fmt::format(", {} mm across", kHandful),
+      has_unit ? "" : fmt::format(" --set mm_per_unit={:.2g}", scene.mm_per_unit * kHandful / diagonal),
+      shape.name, has_unit ? "" : fmt::format(", {} mm across", kHandful),
       shape.reflectance_texture ? " and not of its texture" : "");
 }
 

@@ -14,6 +14,7 @@ void add_import_options(CLI::App& app, ImportArguments& import) {
                  "MaterialX file (.mtlx) in place of the asset's materials; one of several surfaces in it by "
                  "its name")
       ->type_name("FILE[#NAME]");
+  add_allow_outside(app);
   app.add_flag("--overwrite", import.overwrite, "write over a scene file that says something else");
   app.add_flag("--quiet", import.log.quiet, "print what is not carried over, and errors only");
   app.footer(kImportNotes);
@@ -45,6 +46,7 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
   app.add_option("SCENE", bench.scenes, "scene files (JSON with comments), or assets")
       ->required()
       ->type_name("FILE");
+  add_allow_outside(app);
   app.add_option("-o,--output", bench.report, "write a report into this folder")->type_name("FOLDER");
   app.add_option("--csv", bench.csv, "write all figures")->type_name("FILE");
   app.add_option("--against", bench.against,

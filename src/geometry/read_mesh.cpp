@@ -11,6 +11,7 @@
 #include "opaline/core/machine_memory.h"
 #include "opaline/geometry/mesh_file.h"
 #include "opaline/scene/nearest_name.h"
+#include "opaline/scene/unread_format.h"
 
 namespace opaline {
 namespace {
@@ -75,6 +76,7 @@ std::string mesh_contents(const std::string& path) {
 SourceMesh read_mesh(const std::string& path, const std::string& part, MeshUvs uvs) {
   const MeshFormat* format = find_mesh_format(path);
   if (format == nullptr) {
+    if (const std::string unread = unread_format(path); !unread.empty()) throw bad_file(path, unread);
     const std::string extension = fs::path(path).extension().string();
     throw bad_file(path, "unknown mesh format", "a name that ends in " + known_extensions(),
                    extension.empty() ? "no extension" : "'" + extension + "'");

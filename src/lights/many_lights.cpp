@@ -18,11 +18,19 @@ bool is_dark(const Light& light) {
   return is_delta(light) && emission(light) == Rgb{};  // others hide what is behind them
 }
 
-/// Lights that trees can hold: those without an area, and those with one.
-std::array<std::vector<Light>, 2> kinds_of(std::span<const Light> lights) {
-  std::array<std::vector<Light>, 2> kinds;
+/// One tree holds lights of one kind.
+constexpr std::array<const char*, 3> kKinds{"many lights without an area", "many lights with an area",
+                                            "many lights with an area that the camera does not see"};
+
+std::size_t kind_of(const Light& light) {
+  return is_delta(light) ? 0 : light.is_seen ? 1 : 2;
+}
+
+/// Lights that trees can hold, by their kinds.
+std::array<std::vector<Light>, kKinds.size()> kinds_of(std::span<const Light> lights) {
+  std::array<std::vector<Light>, kKinds.size()> kinds;
   for (const Light& light : lights)
-    if (fits_into_tree(light)) kinds[is_delta(light) ? 0 : 1].push_back(light);
+    if (fits_into_tree(light)) kinds[kind_of(light)].push_back(light);
   return kinds;
 }
 
@@ -30,16 +38,17 @@ std::array<std::vector<Light>, 2> kinds_of(std::span<const Light> lights) {
 std::vector<Light> tree_of(std::vector<Light> lights) {
   std::erase_if(lights, is_dark);
   if (lights.size() <= kMostTraced) return lights;
-  const std::string name = is_delta(lights[0]) ? "many lights without an area" : "many lights with an area";
+  const std::string name = kKinds[kind_of(lights[0])];
+  const bool is_seen = lights[0].is_seen;
   ManyLights source{std::make_shared<const LightTree>(std::move(lights)), Rgb(1), {}};
   if (const auto& common = source.tree->common_emission()) {
     source.strength = *common;
-    return {{name, source}};
+    return {{name, source, {}, is_seen}};
   }
   std::vector<Light> channels;
   for (std::size_t c = 0; c < 3; ++c) {
     source.channel = c;
-    channels.push_back({name, source});
+    channels.push_back({name, source, {}, is_seen});
   }
   return channels;
 }
@@ -146,8 +155,8 @@ std::vector<Light> with_trees(std::vector<Light> lights) {
   if (!are_many(lights)) return lights;
   for (std::vector<Light>& kind : kinds_of(lights)) {
     if (kind.size() <= kMostTraced) continue;
-    const bool has_area = !is_delta(kind[0]);
-    std::erase_if(lights, [&](const Light& l) { return fits_into_tree(l) && is_delta(l) != has_area; });
+    const std::size_t own = kind_of(kind[0]);
+    std::erase_if(lights, [&](const Light& l) { return fits_into_tree(l) && kind_of(l) == own; });
     const std::vector<Light> tree = tree_of(std::move(kind));
     lights.insert(lights.end(), tree.begin(), tree.end());
   }

@@ -88,11 +88,11 @@ void count(SeenMeshes& seen, std::uint32_t mesh) {
     seen.push_back({mesh, 1});
 }
 
-/// Lights that hide what is behind them.
+/// Lights that hide what is behind them from the camera.
 std::vector<Light> hiding_lights(const RenderInput& input) {
   std::vector<Light> lights;
   for (const Light& light : recentred_lights(input.scene, input.world))
-    if (!is_delta(light) && extent(light).center) lights.push_back(light);
+    if (!is_delta(light) && light.is_seen && extent(light).center) lights.push_back(light);
   return lights;
 }
 

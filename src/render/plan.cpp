@@ -266,7 +266,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
   for (GroupPlan& group : plan.groups) group.model = planned_model(scene, group);
-  plan.warnings.insert(plan.warnings.end(), scene.missing_files.begin(), scene.missing_files.end());
+  plan.warnings.insert(plan.warnings.end(), scene.asset_warnings.begin(), scene.asset_warnings.end());
   std::set<std::string> said;  // by the first of several shapes from one file
   for (const MeshReport& report : world.reports)
     for (const std::string& warning : report.warnings)
@@ -282,7 +282,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   // Measured: the libraries; for pixels that are not empty 26 floats of layers, and 15 to 23 bytes on their
   // way into the layers and to the file.
   const std::size_t seen = seen_pixels(scene, world);
-  plan.bytes = 70'000'000 + seen * 136;
+  plan.bytes = 70'000'000 + scene.asset_bytes + seen * 136;
   for (const Mesh& mesh : world.meshes) {
     plan.triangles += mesh.triangles.size();
     plan.bytes += mesh.positions.size() * 48 + mesh.triangles.size() * 140;  // and Embree's tree

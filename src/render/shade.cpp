@@ -108,7 +108,10 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
   }
   for (const Light& light : lights_) emitted_.emplace_back(emission(light));
   for (const Light& light : lights_)
-    if (is_visible(light)) (extent(light).center ? emitters_ : surroundings_).push_back(light);
+    if (is_visible(light)) {
+      met_.add(light);
+      if (light.is_seen) seen_.add(light);
+    }
   std::vector<bool> follows_light(input.scene.shapes.size());
   if (has_samples(input.scene.settings.method))  // else bodies are left from another method
     for (const Body& body : input.groups)
@@ -124,7 +127,8 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
                           std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held) const {
   std::size_t queries = 0;
   const std::vector<SurfaceHits> all_hits =
-      shade_diffuse({rays, keys, out, pixel_spread_}, light_samples_, pass, held);
+      shade_diffuse({.rays = rays, .keys = keys, .out = out, .spread = pixel_spread_, .is_of_camera = true},
+                    light_samples_, pass, held);
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
     if (all_hits[f].points.empty()) continue;
     const float eta = fields_.all[f]->eta();
@@ -186,7 +190,8 @@ std::vector<RgbF> Shader::radiance_along(std::span<const TracedRay> rays, std::s
 std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedRay> rays,
                                                          std::span<const std::uint64_t> keys) const {
   std::vector<PixelSample> lights(rays.size());
-  std::vector<SurfaceHits> hits = collect({rays, keys, lights, pixel_spread_, {}}, nullptr);
+  std::vector<SurfaceHits> hits = collect(
+      {.rays = rays, .keys = keys, .out = lights, .spread = pixel_spread_, .is_of_camera = true}, nullptr);
   std::vector<SeenSurfaces> seen;
   for (std::size_t f = 0; f < hits.size(); ++f)
     if (!hits[f].points.empty() && fields_.all[f]->asks_irradiance())
@@ -202,15 +207,16 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
   std::vector<SurfaceHits> surfaces(fields_.all.size());
   const bool holds_points = held != nullptr && input_.view->has_room;
   if (holds_points && held->points.empty()) held->points = points_of(rays, input_.rays);
+  const MetLights& lights = batch.is_of_camera ? seen_ : met_;
   std::size_t hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto& [ray, hit] = rays[i];
     if (hit.mesh != Hit::kMiss) ++hits;
-    const EmitterHit emitter = nearest_emitter(ray.origin, ray.direction, ray.far);
+    const EmitterHit emitter = lights.nearest(ray.origin, ray.direction, ray.far);
     if (emitter.hit) {
       out[i].emitted = emitter.radiance;
     } else if (hit.mesh == Hit::kMiss) {
-      out[i].emitted = surroundings(ray.direction);
+      out[i].emitted = lights.radiance(ray.direction);
     } else {
       SurfaceHits& own = surfaces[fields_.of_mesh[hit.mesh]];
       if (own.points.empty()) {
@@ -294,18 +300,22 @@ void Shader::write(const SurfaceHits& hits, const LeavingLight& light, std::span
   }
 }
 
-EmitterHit Shader::nearest_emitter(const Vec3f& origin, const Vec3f& direction, float far) const {
+void Shader::MetLights::add(const Light& light) {
+  (extent(light).center ? emitters : surroundings).push_back(light);
+}
+
+EmitterHit Shader::MetLights::nearest(const Vec3f& origin, const Vec3f& direction, float far) const {
   EmitterHit nearest;
-  for (const Light& light : emitters_) {
+  for (const Light& light : emitters) {
     const EmitterHit hit = intersect_emitter(light, origin, direction, nearest.hit ? nearest.t : far);
     if (hit.hit) nearest = hit;
   }
   return nearest;
 }
 
-RgbF Shader::surroundings(const Vec3f& direction) const {
+RgbF Shader::MetLights::radiance(const Vec3f& direction) const {
   RgbF radiance;
-  for (const Light& light : surroundings_) radiance += background(light, direction);
+  for (const Light& light : surroundings) radiance += background(light, direction);
   return radiance;
 }
 

@@ -45,9 +45,19 @@ class Shader {
   void set_bounced_light(const BouncedLight* bounced) { bounced_ = bounced; }
 
   /// False where rays that hit nothing see nothing either.
-  bool has_visible_lights() const { return !emitters_.empty() || !surroundings_.empty(); }
+  bool has_visible_lights() const { return !seen_.emitters.empty() || !seen_.surroundings.empty(); }
 
  private:
+  /// Lights that rays meet.
+  struct MetLights {
+    std::vector<Light> emitters;      ///< those with an area
+    std::vector<Light> surroundings;  ///< those all around
+
+    void add(const Light& light);
+    EmitterHit nearest(const Vec3f& origin, const Vec3f& direction, float far) const;
+    RgbF radiance(const Vec3f& direction) const;
+  };
+
   struct RayBatch {
     std::span<const TracedRay> rays;
     std::span<const std::uint64_t> keys;
@@ -56,6 +66,7 @@ class Shader {
     float spread = 0;
     std::span<const float> widths = {};
     int mirrors = 0;  ///< that the rays have left, one after the other
+    bool is_of_camera = false;
   };
   /// Rays that leave surfaces, as their cones do.
   struct Cones {
@@ -64,7 +75,6 @@ class Shader {
   };
   struct GlossyHits;
 
-  RgbF surroundings(const Vec3f& direction) const;
   std::vector<SurfaceHits> collect(const RayBatch& batch, HeldView::Batch* held) const;
   void add_textures(const RayBatch& batch, std::size_t ray, bool from_behind, SurfacePoint& point,
                     SurfaceHits& hits) const;
@@ -93,14 +103,14 @@ class Shader {
   /// What boundaries mirror where no ray follows it: the irradiance there, as if it came evenly from all sides.
   void add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch) const;
   float width_at(const RayBatch& batch, std::size_t ray) const;
-  bool mirrors_surfaces() const { return has_visible_lights() || input_.scene.shapes.size() > 1; }
-  EmitterHit nearest_emitter(const Vec3f& origin, const Vec3f& direction, float far) const;
+  bool mirrors_surfaces() const {
+    return !met_.emitters.empty() || !met_.surroundings.empty() || input_.scene.shapes.size() > 1;
+  }
 
   const RenderInput& input_;
   std::vector<Light> lights_;            // recentred
   std::vector<RgbF> emitted_;            // one a light
-  std::vector<Light> emitters_;          // those with an area
-  std::vector<Light> surroundings_;      // those all around
+  MetLights met_, seen_;                 // by any ray, by those of the camera
   std::vector<Light> unit_lights_;       // all, with an emission of 1, where coats can be held
   std::vector<Appearance> appearances_;  // one a mesh
   SurfaceTextures textures_;

@@ -13,6 +13,7 @@
 #include "opaline/geometry/mesh_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/scene/nearest_name.h"
+#include "opaline/scene/unread_format.h"
 #include "scene/edited_text.h"
 #include "scene/keyed_values.h"
 #include "scene/overrides.h"
@@ -36,6 +37,7 @@ void check_is_no_other_file(const std::string& path) {
     if (extension == picture)
       throw bad_file(path, "is a picture, not a scene",
                      "a scene file (JSON), or an asset: .glb, .gltf or .obj");
+  if (const std::string unread = unread_format(path); !unread.empty()) throw bad_file(path, unread);
   if (!is_mesh_file_name(path)) return;
   throw bad_file(path, "is a mesh, not a scene",
                  "a scene file (JSON) with \"shapes\": [{\"file\": \"" +
@@ -82,7 +84,7 @@ std::vector<Light> by_channel(const std::vector<Light>& lights) {
     for (std::size_t c = 0; c < 3; ++c) {
       EnvironmentLight channel = *environment;
       channel.channel = c;
-      split.push_back({light.name, channel, light.place});
+      split.push_back({light.name, channel, light.place, light.is_seen});
     }
   }
   return split;
@@ -189,7 +191,8 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
   Scene scene = parse_scene(asset.text, path, overrides, frame);
   scene.translation = asset.summary;
-  scene.missing_files = asset.missing_files;
+  scene.asset_warnings = asset.warnings;
+  scene.asset_bytes = asset.bytes;
   if (!asset.not_carried.empty()) scene.translation += ": opaline import lists them";
   forget_places(scene);
   return scene;

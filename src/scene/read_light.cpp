@@ -14,14 +14,15 @@ std::string_view type_of(const Value& value) {
 }
 
 template <class... Kinds>
-LightSource read_kind(std::string_view type, const ObjectReader& reader, double mm_per_unit,
-                      const std::variant<Kinds...>*) {
-  LightSource source;
+void read_kind(std::string_view type, const ObjectReader& reader, double mm_per_unit, Light& light,
+               const std::variant<Kinds...>*) {
   const auto read = [&]<class Kind>(const Kind*) {
-    if (Kind::kType == type) source = LightReader<Kind>::read(reader, mm_per_unit);
+    if (Kind::kType != type) return;
+    light.source = LightReader<Kind>::read(reader, mm_per_unit);
+    if constexpr (kCanBeSeen<Kind>)
+      if (const auto visible = reader.find("visible")) light.is_seen = visible->flag();
   };
   (read(static_cast<const Kinds*>(nullptr)), ...);
-  return source;
 }
 
 }  // namespace
@@ -30,8 +31,8 @@ Light read_light(const Value& value, const std::string& name, double mm_per_unit
   const std::string_view type = type_of(value);
   const ObjectReader reader(value, "light." + std::string(type));
   const auto own_name = reader.find("name");
-  Light light{own_name ? own_name->string() : name,
-              read_kind(type, reader, mm_per_unit, static_cast<const LightSource*>(nullptr)), value.place()};
+  Light light{own_name ? own_name->string() : name, {}, value.place()};
+  read_kind(type, reader, mm_per_unit, light, static_cast<const LightSource*>(nullptr));
   if (light.name == "surroundings") own_name->fail("is taken by the scene's surroundings", "another name");
   return light;
 }

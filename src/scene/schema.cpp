@@ -44,6 +44,11 @@ void add_light_rows(std::vector<KeyInfo>& rows) {
                .default_value = "\"light0\", ...",
                .meaning = "what layers, messages and `--set` call it"};
   keys.insert(keys.begin() + 1, std::move(name));
+  if (kCanBeSeen<Kind>)
+    keys.push_back({.key = "visible",
+                    .type = ValueType::flag,
+                    .default_value = "true",
+                    .meaning = "false hides it from the camera; it shines, and is reflected, all the same"});
   for (KeyInfo& info : keys) {
     info.section = section;
     rows.push_back(std::move(info));
@@ -86,8 +91,8 @@ std::vector<KeyInfo> shape_rows() {
       row("shape", "file", file, "", kFiniteNumber, "", mesh_file_meaning()),
       row("shape", "part", text, "", kFiniteNumber, "all of the file",
           "with `file`: a part of it; of GLB and glTF, which must have it, `\"mesh/primitive\"` by their "
-          "indices, "
-          "of OBJ the material whose faces are meant"),
+          "indices, or `\"mesh/primitive/node\"` in the pose of that node, of OBJ the material whose faces "
+          "are meant"),
       row("shape", "sphere", object, "", kFiniteNumber, "", "a built-in sphere, see below"),
       row("shape", "box", object, "", kFiniteNumber, "", "a built-in box"),
       row("shape", "quad", object, "", kFiniteNumber, "", "a built-in parallelogram"),

@@ -127,7 +127,10 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
   KeyBuilder key("surfaces of the view", 1);
   key.add(settings.method).add(settings.light_samples).add(point_irradiance_seed(settings));
   for (const Light& light : lights)
-    if (!is_delta(light)) key.add(view_light_key(light));
+    if (!is_delta(light)) {
+      key.add(view_light_key(light));
+      if (!light.is_seen) key.add(std::string("unseen"));
+    }
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];
     key.add(shape.medium.has_value());

@@ -44,7 +44,8 @@ struct Asset {
   template <class T>
   int accessor(const char* type, ComponentType component, const std::vector<T>& numbers,
                bool normalized = false) {
-    const std::size_t per_element = type == std::string("SCALAR") ? 1 : std::size_t(type[3] - '0');
+    const std::string name = type;
+    const std::size_t per_element = name == "SCALAR" ? 1 : name == "MAT4" ? 16 : std::size_t(name[3] - '0');
     buffer.resize((buffer.size() + 3) / 4 * 4);
     json["bufferViews"].push_back(
         {{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", numbers.size() * sizeof(T)}});

@@ -176,7 +176,7 @@ TEST(GltfTextures, ThatCannotBeHadAreSaid) {
   const auto expect = [](const Asset& asset, const std::string& what) {
     const ImportedAsset result = imported(asset);
     EXPECT_TRUE(has(result.not_carried, "baseColorTexture: ") && has(result.not_carried, what)) << what;
-    EXPECT_TRUE(has(result.missing_files, "baseColorTexture: ") && has(result.missing_files, what)) << what;
+    EXPECT_TRUE(has(result.warnings, "baseColorTexture: ") && has(result.warnings, what)) << what;
     EXPECT_FALSE(scene_of(asset.glb(), "a.glb").shapes.at(0).reflectance_texture);
   };
   expect(textured_triangle(colored({{"index", 7}}), good), "textures[7] is not there");
@@ -190,14 +190,16 @@ TEST(GltfTextures, ThatCannotBeHadAreSaid) {
   expect(other, "no image that is read");
 }
 
-// Claim: OBJ's map_Kd is taken from beside its library, with Kd, where there are UVs; options are not understood, and
-// said. Fails if paths start at another folder.
+// Claim: OBJ's map_Kd is taken from beside its library, with Kd, where there are UVs; -s and -o scale and move UVs from
+// the lower left corner, which the scene counts from the upper one; -mm multiplies. Options that are not carried over are
+// warned of. Source: Wavefront's MTL format. Fails if paths start at another folder, or an option is taken for a name.
 TEST(ObjTextures, AreTakenFromLibraries) {
   const ScratchFolder folder;
   std::filesystem::create_directory(folder.path / "maps");
   put_bytes(folder.file("maps/p.png"), png_of(128));
   put_bytes(folder.file("maps/a.mtl"),
-            "newmtl wood\nKd .8 .6 .4\nmap_Kd p.png\nnewmtl odd\nKd 0 0 0\nmap_Kd -s 2 2 2 p.png\n");
+            "newmtl wood\nKd .8 .6 .4\nmap_Kd p.png\nnewmtl odd\nKd 0 0 0\nmap_Kd -blendu on -s 2 3 1 -o .25 "
+            ".5 -mm 0 .5 -clamp on p.png\n");
   const std::string mesh = "mtllib maps/a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
   const std::string faces = "usemtl wood\nf 1/1 2/2 3/3\nusemtl odd\nf 1/1 2/2 4/3\n";
   put_bytes(folder.file("a.obj"), mesh + "vt 0 0\nvt 1 0\nvt 0 1\n" + faces);
@@ -205,12 +207,18 @@ TEST(ObjTextures, AreTakenFromLibraries) {
   ASSERT_TRUE(scene.shapes.at(0).reflectance_texture);
   EXPECT_EQ(scene.shapes[0].reflectance_texture->scale, Rgb(.8, .6, .4));
   EXPECT_NEAR(left_texel(*scene.shapes[0].reflectance_texture->file), test::linear_of_byte(128), 2e-4);
-  EXPECT_FALSE(scene.shapes.at(1).reflectance_texture);
-  EXPECT_TRUE(has(import_asset(folder.file("a.obj"), "a.obj").not_carried, "map_Kd '-s 2 2 2 p.png'"));
+  const Texture& odd = scene.shapes.at(1).reflectance_texture.value();
+  EXPECT_EQ(odd.uv_scale, (std::array<double, 2>{2, 3}));
+  EXPECT_EQ(odd.uv_offset,
+            (std::array<double, 2>{.25, -2.5}));  // v = 0, downwards 1, becomes .5, downwards .5
+  EXPECT_EQ(odd.scale, Rgb(.5));
+  EXPECT_EQ(scene.asset_warnings,
+            (std::vector<std::string>{folder.file("maps/a.mtl") +
+                                      ":6: map_Kd 'p.png' of material 'odd': its option -clamp on"}));
 }
 
 // Claim: OBJ's bump maps are heights in the OBJ's lengths, times -bm, under any of their names; one that is blue, as maps
-// of normals are, is one of normals. Other options, and pictures that are not there, are said. Fails if -bm is taken for
+// of normals are, is one of normals. Pictures that are not there are said. Fails if -bm is taken for
 // the name, or a map of normals for heights.
 TEST(ObjTextures, OfHeightsAreBumps) {
   const ScratchFolder folder;
@@ -218,7 +226,7 @@ TEST(ObjTextures, OfHeightsAreBumps) {
   test::put_png(folder.file("a normal.png"), 4, 2, [](int x, int) { return test::Bytes{120 + x, 128, 255}; });
   put_bytes(folder.file("a.mtl"),
             "newmtl a\nmap_Bump -bm 0.25 h.png\nnewmtl b\nbump a normal.png\nnewmtl c\nmap_bump h.png\n"
-            "newmtl d\nbump -s 2 2 2 h.png\nnewmtl e\nbump -bm 2 gone.png\n");
+            "newmtl d\nbump -s 2 2 2 -bm .5 h.png\nnewmtl e\nbump -bm 2 gone.png\n");
   std::string text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n";
   for (const char* name : {"a", "b", "c", "d", "e"})
     text += std::string("usemtl ") + name + "\nf 1/1 2/2 3/3\n";
@@ -227,12 +235,13 @@ TEST(ObjTextures, OfHeightsAreBumps) {
   EXPECT_EQ(scene.shapes.at(0).bump_map.value().scale.x, .25);
   EXPECT_TRUE(scene.shapes.at(1).normal_map && !scene.shapes[1].bump_map);
   EXPECT_EQ(scene.shapes.at(2).bump_map.value().scale.x, 1);
-  EXPECT_FALSE(scene.shapes.at(3).bump_map || scene.shapes.at(4).bump_map);
+  EXPECT_EQ(scene.shapes.at(3).bump_map.value().uv_scale, (std::array<double, 2>{2, 2}));
+  EXPECT_EQ(scene.shapes[3].bump_map->scale.x, .5);
+  EXPECT_FALSE(scene.shapes.at(4).bump_map);
   const ImportedAsset import = import_asset(folder.file("a.obj"), "a.obj");
   EXPECT_TRUE(has(import.translated, "map_Bump -> bump_map h.png, white 0.25 mm high"));
   EXPECT_TRUE(has(import.translated, "bump -> normal_map a normal.png, for it is blue"));
-  EXPECT_TRUE(has(import.not_carried, "bump '-s 2 2 2 h.png'"));
-  EXPECT_TRUE(has(import.not_carried, "bump '-bm 2 gone.png'"));
+  EXPECT_TRUE(has(import.warnings, "bump 'gone.png' of material 'e': there is no such file"));
 }
 
 }  // namespace

@@ -165,6 +165,79 @@ TEST(CliAssets, MissingFilesAreWarnings) {
     EXPECT_TRUE(contains(outcome.err, said)) << outcome.err;
 }
 
+// Claim: default lights are placed for the camera in use and never seen by it: a camera that looks up from below, past where
+// they stand, sees the asset lit from its side, and nothing beside it. Fails if they stand around a default view, or in the image.
+TEST(CliAssets, DefaultLightsAreUnseen) {
+  Asset asset = asset_test::cube_asset();
+  asset.json["cameras"] = asset_test::Json::array(
+      {{{"type", "perspective"}, {"perspective", {{"yfov", 1.2}, {"znear", .001}, {"aspectRatio", 1}}}}});
+  // From below and behind, at (-3, -4, -6), which a matrix of columns right, up and backwards says.
+  asset.root(asset.node(
+      {{"camera", 0},
+       {"matrix", {-.8944, 0, .4472, 0, .2290, .8589, .4581, 0, -.3841, -.5121, -.7682, 0, -3, -4, -6, 1}}}));
+  const ScratchFolder folder;
+  put_bytes(folder.file("a.glb"), asset.glb());
+  const Outcome outcome = run_program(
+      {"render", "a.glb", "-o", "a.exr", "--resolution", "64x64", "--layers", "none"}, folder.path);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Image image = read_image(folder.file("a.exr"));
+  ASSERT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
+  double covered = 0, light = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
+    if (image.pixels[i + 3] == 0) EXPECT_EQ(image.pixels[i], 0) << i;
+    covered += double(image.pixels[i + 3]);
+    light += double(image.pixels[i]);
+  }
+  EXPECT_GT(covered, 300);
+  EXPECT_GT(light / covered, .25);
+}
+
+// Claim: --allow-outside lets assets name files outside of their folders, with every command that reads them; without it
+// they are refused. Fails if a command lacks the option.
+TEST(CliAssets, FilesOutsideAreAllowedOnDemand) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder.file("asset"));
+  const Asset cube = asset_test::cube_asset();
+  put_bytes(folder.file("outside.bin"), cube.buffer);
+  put_bytes(folder.file("asset/a.gltf"), cube.gltf("../outside.bin"));
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"info", "asset/a.gltf"},
+        {"render", "asset/a.gltf", "-o", "a.png", "--resolution", "8x8"},
+        {"import", "asset/a.gltf", "-o", "a.json"}}) {
+    const Outcome refused = run_program(words, folder.path);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_TRUE(contains(refused.err, "'../outside.bin' lies outside of the asset's folder")) << refused.err;
+    std::vector<std::string> allowed = words;
+    allowed.push_back("--allow-outside");
+    EXPECT_EQ(run_program(allowed, folder.path).exit_code, 0) << words[0];
+  }
+  for (const char* command : {"view", "precompute", "bench"})
+    EXPECT_TRUE(contains(run_program({command, "--help"}, folder.path).out, "--allow-outside")) << command;
+}
+
+// Claim: what of a glTF is not drawn as it says, and changes the image, is a warning of `render`; a skin, which is drawn,
+// is none. Fails if it is only counted among what is not carried over.
+TEST(CliAssets, WhatChangesTheImageIsAWarning) {
+  const ScratchFolder folder;
+  std::filesystem::copy(OPALINE_TEST_INPUTS "/mask.glb", folder.file("mask.glb"));
+  const Outcome mask = run_program({"render", "mask.glb", "-o", "a.png", "--resolution", "8x8"}, folder.path);
+  EXPECT_EQ(mask.exit_code, 0);
+  EXPECT_TRUE(contains(mask.err, "warning: mask.glb: material 'leaf': alphaMode 'MASK': shown whole"))
+      << mask.err;
+}
+
+// Claim: the plan of a figure of metres says a size at which marble lets light through. Fails if 2,000,000 samples are
+// what the hint leads to.
+TEST(CliAssets, MarbleOfAFigureInMetresHasASize) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("a.glb"), asset_test::cube_asset().glb());  // 2 m
+  const Outcome info = run_program({"info", "a.glb"}, folder.path);
+  EXPECT_TRUE(contains(info.out,
+                       "; --set media.marble.preset=marble --set shapes.cube.medium=marble --set "
+                       "mm_per_unit=14 makes marble of cube, 50 mm across"))
+      << info.out;
+}
+
 // Claim: an asset that is broken, or is none, ends with code 2, its name, and without a scene file. Fails if the file
 // is written before it is checked.
 TEST(CliAssets, BrokenAssetsAreNamed) {
@@ -172,6 +245,9 @@ TEST(CliAssets, BrokenAssetsAreNamed) {
   put_bytes(folder.file("bad.gltf"), "{}");
   put_bytes(folder.file("wax.txt"), "wax");
   put_bytes(folder.file("wax.glb"), "wax of bees, for candles");
+  for (const char* name : {"b.fbx", "b.USDZ", "ball.blend"})
+    put_bytes(folder.file(name), "Kaydara FBX Binary");
+  put_bytes(folder.file("ball.json"), R"({"shapes": [{"file": "ball.blend"}]})");
   put_bytes(folder.file("dusk.json"),
             "{\n\"lights\": [{\"type\": \"environment\",\n\"file\": \"gone.exr\"}]}");
   const struct {
@@ -184,6 +260,9 @@ TEST(CliAssets, BrokenAssetsAreNamed) {
       {{"render", "wax.txt", "-o", "a.png"}, "wax.txt: does not begin as a scene does"},
       {{"render", "dusk.json", "-o", "a.png"}, "dusk.json:3:9: gone.exr: no such image file"},
       {{"import", "gone.glb", "-o", "a.json"}, "gone.glb: no such file"},
+      {{"render", "b.fbx", "-o", "a.png"}, "b.fbx: FBX is not read; export GLB"},
+      {{"import", "b.USDZ", "-o", "a.json"}, "b.USDZ: USD is not read; export GLB"},
+      {{"info", "ball.json"}, "ball.blend: Blender's .blend is not read; export GLB"},
       {{"import", "cubes.glb", "--material", "gone.mtlx", "-o", "a.json"}, "gone.mtlx: no such file"},
       {{"import", "wax.txt", "-o", "a.json"}, "wax.txt: is no asset that can be imported"},
       {{"import", "cubes.glb", "-o", "a.gltf"}, "a name that ends in .json"},

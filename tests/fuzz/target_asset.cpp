@@ -4,31 +4,28 @@
 #include "fuzz_target.h"
 
 namespace opaline::fuzz {
-
 namespace {
 
-/// The cube on two joints, below a node whose transform a skinned mesh ignores.
-void add_skin(asset_test::Asset& asset) {
+/// A cube that two joints and a morph target move, and three of it in a row.
+asset_test::Asset posed_cubes() {
   using namespace asset_test;
-  const std::size_t vertices = asset.json["accessors"][0]["count"];
-  std::vector<std::uint8_t> joints(4 * vertices);
-  std::vector<float> weights(4 * vertices), bind(32);
-  for (std::size_t v = 0; v < vertices; ++v) {
-    joints[4 * v + 1] = 1;
-    weights[4 * v] = .25f, weights[4 * v + 1] = .75f;
-  }
-  for (std::size_t i = 0; i < 8; ++i) bind[16 * (i / 4) + 5 * (i % 4)] = 1;
-  nlohmann::json& primitive = asset.json["meshes"][0]["primitives"][0];
+  Asset asset = cube_mesh();
+  const std::vector<std::uint8_t> joints(24 * 4, 1);
+  const std::vector<float> weights(24 * 4, .25f), moved(24 * 3, .5f),
+      bind{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 3, 0, 1};
+  Json& primitive = asset.json["meshes"][0]["primitives"][0];
   primitive["attributes"]["JOINTS_0"] = asset.accessor("VEC4", kUnsignedByte, joints);
   primitive["attributes"]["WEIGHTS_0"] = asset.accessor("VEC4", kFloat, weights);
-  const int matrices = asset.accessor("SCALAR", kFloat, bind);
-  asset.json["accessors"][std::size_t(matrices)]["type"] = "MAT4";
-  asset.json["accessors"][std::size_t(matrices)]["count"] = 2;
-  const int tip = asset.node({{"translation", {0, 1, 0}}, {"rotation", {0, 0, .6, .8}}});
-  const int base = asset.node({{"children", {tip}}});
-  asset.json["skins"] = {{{"joints", {base, tip}}, {"inverseBindMatrices", matrices}, {"skeleton", base}}};
-  asset.root(base);
-  asset.root(asset.node({{"mesh", 0}, {"skin", 0}, {"scale", {100, 100, 100}}}));
+  primitive["targets"] = {{{"POSITION", asset.accessor("VEC3", kFloat, moved)}}};
+  asset.json["skins"] = {{{"joints", {2, 3}}, {"inverseBindMatrices", asset.accessor("MAT4", kFloat, bind)}}};
+  const int places = asset.accessor<float>("VEC3", kFloat, {0, 0, 0, 3, 0, 0, 6, 0, 0});
+  asset.root(asset.node({{"mesh", 0}, {"skin", 0}, {"weights", {.5}}}));
+  asset.root(asset.node(
+      {{"mesh", 0},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}}));
+  asset.root(asset.node({{"translation", {1, 2, 3}}, {"children", {3}}}));
+  asset.node({{"rotation", {0, 0, 1, 1}}});
+  return asset;
 }
 
 }  // namespace
@@ -49,9 +46,7 @@ std::vector<std::string> seeds() {
                                                                {{"type", "directional"}}};
   asset.root(asset.node(
       {{"camera", 0}, {"scale", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
-  asset_test::Asset skinned = asset_test::cube_asset();
-  add_skin(skinned);
-  return {asset.gltf(), asset.glb(), skinned.gltf(), skinned.glb()};
+  return {asset.gltf(), asset.glb(), posed_cubes().gltf(), posed_cubes().glb()};
 }
 
 std::vector<std::string> words() {
@@ -82,6 +77,10 @@ std::vector<std::string> words() {
           "null",
           "{}",
           "[]",
+          "\"skin\":",
+          "\"joints\":[",
+          "\"targets\":[{\"POSITION\":",
+          "\"weights\":[",
           "\"spot\":{",
           "\"type\":\"spot\""};
 }

@@ -8,15 +8,20 @@
 namespace opaline {
 
 struct ImportedAsset {
-  std::string text;                        ///< a scene file, see scenes/README.md
-  std::vector<std::string> translated;     ///< what became of its values, a line each
-  std::vector<std::string> not_carried;    ///< what the scene lacks of the asset, a line each
-  std::vector<std::string> missing_files;  ///< that it names, or that cannot be read, and where; a line each
-  std::string summary;                     ///< one line
+  std::string text;                      ///< a scene file, see scenes/README.md
+  std::vector<std::string> translated;   ///< what became of its values, a line each
+  std::vector<std::string> not_carried;  ///< what the scene lacks of the asset, a line each
+  std::vector<std::string> warnings;  ///< of what changes the image: files that are missing, ...; a line each
+  std::string summary;                ///< one line
+  std::size_t bytes = 0;              ///< memory that its records take while it is read
 };
 
 /// Whether a file's name ends as an asset's does, in upper or lower case.
 bool is_asset_name(const std::string& path);
+
+/// From now on the files that assets name may lie outside of the assets' folders.
+void allow_files_outside_assets();
+bool are_files_outside_assets_allowed();
 
 /// in    path: an asset; mesh_path: how the scene file calls it, relative to its own folder; material: a MaterialX
 ///       file in place of the asset's materials, "skin.mtlx" or "skin.mtlx#name" of a surface or material in it

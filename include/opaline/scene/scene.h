@@ -283,6 +283,7 @@ struct Light {
   std::string name;  ///< the channels of one picture have the same
   LightSource source;
   SourcePlace place{};
+  bool is_seen = true;  ///< by the camera; others see it all the same, boundaries that reflect it among them
   friend bool operator==(const Light&, const Light&) = default;
 };
 
@@ -337,9 +338,10 @@ struct Settings {
 struct Scene {
   std::string file;         ///< for messages
   std::string translation;  ///< of an asset: what its import made of it, in a line; empty: a scene file
-  /// That an asset names and that are not there or cannot be read, and where it does; a line each.
-  std::vector<std::string> missing_files;
-  double mm_per_unit = 1;  ///< of the file, for what is written in its units; nothing here is
+  /// Of an asset: what is not as it says, and changes the image; a line each.
+  std::vector<std::string> asset_warnings;
+  std::size_t asset_bytes = 0;  ///< of an asset: memory that its records take
+  double mm_per_unit = 1;       ///< of the file, for what is written in its units; nothing here is
   std::vector<Medium> media;
   std::vector<Shape> shapes;
   std::vector<Light> lights;

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files of other programs that are known, but not read.
+#pragma once
+
+#include <string>
+
+namespace opaline {
+
+/// "FBX is not read; export GLB" by the end of a file's name; empty for every other one.
+std::string unread_format(const std::string& path);
+
+}  // namespace opaline

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "assets/mtl_texture.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace opaline {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\v\f";
+
+/// An option of the format and how many words follow it, at most.
+struct Option {
+  std::string_view name;
+  std::size_t words;
+  bool are_numbers = true;
+};
+
+// Wavefront's "MTL material format", version 4.2.
+constexpr std::array<Option, 13> kOptions{{{"-blendu", 1, false},
+                                           {"-blendv", 1, false},
+                                           {"-bm", 1},
+                                           {"-boost", 1},
+                                           {"-cc", 1, false},
+                                           {"-clamp", 1, false},
+                                           {"-imfchan", 1, false},
+                                           {"-mm", 2},
+                                           {"-o", 3},
+                                           {"-s", 3},
+                                           {"-t", 3},
+                                           {"-texres", 1},
+                                           {"-type", 1, false}}};
+
+std::optional<double> number_of(std::string_view word) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+class StatementReader {
+ public:
+  explicit StatementReader(std::string_view text) : rest_(text) {}
+
+  MtlTexture run() {
+    for (const Option* option = next_option(); option != nullptr; option = next_option()) {
+      take_word();
+      read(*option);
+    }
+    skip_blanks();
+    rest_ = rest_.substr(0, rest_.find_last_not_of(kBlanks) + 1);
+    if (rest_.size() > 1 && rest_.front() == '"' && rest_.back() == '"')
+      rest_ = rest_.substr(1, rest_.size() - 2);
+    texture_.name = rest_;
+    return std::move(texture_);
+  }
+
+ private:
+  void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size())); }
+
+  std::string_view next_word() {
+    skip_blanks();
+    return rest_.substr(0, rest_.find_first_of(kBlanks));
+  }
+
+  std::string_view take_word() {
+    const std::string_view word = next_word();
+    rest_.remove_prefix(word.size());
+    return word;
+  }
+
+  const Option* next_option() {
+    const auto found = std::ranges::find(kOptions, next_word(), &Option::name);
+    return found == kOptions.end() ? nullptr : &*found;
+  }
+
+  /// Numbers of an option may be fewer: the file's name is then next.
+  void read(const Option& option) {
+    std::string text(option.name);
+    std::vector<double> numbers;
+    std::string word;
+    for (std::size_t i = 0; i < option.words; ++i) {
+      const std::optional<double> number = number_of(next_word());
+      if (option.are_numbers && !number) break;
+      word = take_word();
+      text += ' ' + word;
+      if (number) numbers.push_back(*number);
+    }
+    if (!apply(option.name, numbers, word)) texture_.not_carried.push_back(text);
+  }
+
+  /// False where it cannot be carried over.
+  bool apply(std::string_view name, const std::vector<double>& numbers, const std::string& word) {
+    if (name == "-clamp" || name == "-cc") return word == "off";
+    if (name == "-t") return std::ranges::all_of(numbers, [](double n) { return n == 0; });
+    if (numbers.empty()) return name != "-bm" && name != "-mm" && name != "-o" && name != "-s";
+    if (name == "-s") return set_pair(numbers, 1, texture_.scale);
+    if (name == "-o") return set_pair(numbers, 0, texture_.offset);
+    if (name == "-bm") return set(numbers[0], texture_.bump);
+    if (name == "-mm") return numbers.size() == 2 && set(numbers[1], texture_.gain) && numbers[0] == 0;
+    return true;  // resolution, sharpness and the like
+  }
+
+  static bool set_pair(const std::vector<double>& numbers, double otherwise, std::array<double, 2>& pair) {
+    pair = {numbers[0], numbers.size() > 1 ? numbers[1] : otherwise};
+    return true;
+  }
+
+  static bool set(double number, double& value) {
+    if (number >= 0) value = number;
+    return number >= 0;
+  }
+
+  std::string_view rest_;
+  MtlTexture texture_;
+};
+
+}  // namespace
+
+MtlTexture read_mtl_texture(std::string_view text) {
+  return StatementReader(text).run();
+}
+
+}  // namespace opaline
