@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/report.h"
 #include "opaline/core/units.h"
 #include "opaline/lights/light.h"
 #include "opaline/render/across_air.h"
+#include "opaline/render/expected_seconds.h"
+#include "opaline/render/plan_texts.h"
 #include "opaline/scene/names.h"
 
 namespace opaline {
 namespace {
+
+constexpr double kLong = 5;             // seconds
+constexpr std::size_t kMostShown = 50;  // bodies
 
 /// The labels make a column.
 void print_row(const std::string& label, const std::string& text) {
@@ -56,12 +62,11 @@ void print_model(const GroupPlan& group, double across_air) {
 
 void print_group(const Scene& scene, const World& world, const GroupPlan& group) {
   print_row("translucent",
-            fmt::format("{} in {}: {:.4g} mm^2, mean free path {:.4g} mm (its smallest channel)", group.name,
-                        scene.media[group.medium].name, group.area, group.smallest_mean_free_path));
+            fmt::format("{} in {}: {:.4g} mm^2, {}", group.name, scene.media[group.medium].name, group.area,
+                        mean_free_path_text(group)));
   print_model(group, share_across_air(scene, world, group));
   if (!has_samples(scene.settings.method)) return;
-  print_row("", fmt::format("{}, {:.4g} mm apart: {}", counted(group.samples, "sample"), group.spacing,
-                            group.reason));
+  print_row("", samples_text(group));
 }
 
 /// How an asset without a translucent material gets one: few formats can name it.
@@ -84,11 +89,18 @@ void print_text(const Scene& scene, const World& world, const Plan& plan) {
   if (!scene.translation.empty()) print_row("asset", scene.translation);
   print_row("picture", picture_text(scene.film));
   print_row("lights", lights_text(scene.lights));
-  for (const GroupPlan& group : plan.groups) print_group(scene, world, group);
+  for (std::size_t g = 0; g < std::min(plan.groups.size(), kMostShown); ++g)
+    print_group(scene, world, plan.groups[g]);
+  if (plan.groups.size() > kMostShown)
+    print_row("", fmt::format("and {} bodies more", grouped(plan.groups.size() - kMostShown)));
   if (plan.groups.empty())
     print_row("translucent", "nothing: no samples are needed" + marble_text(scene, world));
   for (std::size_t i = 0; i < plan.stages.size(); ++i) print_row(i == 0 ? "stages" : "", plan.stages[i]);
   print_row("memory", "about " + short_bytes(plan.bytes) + " at the peak");
+  if (const double seconds = expected_seconds(scene, plan); seconds > kLong)
+    print_row("time",
+              fmt::format("about {} s of CPU{}", grouped(std::uint64_t(seconds)),
+                          scene.settings.until_error ? ", more for the error that is asked for" : ""));
 }
 
 Json model_json(const BodyModel& model) {
@@ -101,7 +113,8 @@ Json model_json(const BodyModel& model) {
   return json;
 }
 
-Json group_json(const Scene& scene, const World& world, const GroupPlan& group) {
+/// asks_air: what jumps across the air takes a moment to find
+Json group_json(const Scene& scene, const World& world, const GroupPlan& group, bool asks_air) {
   Json shapes = Json::array();
   for (const std::uint32_t mesh : group.meshes) shapes.push_back(scene.shapes[mesh].name);
   return {{"name", group.name},
@@ -110,7 +123,7 @@ Json group_json(const Scene& scene, const World& world, const GroupPlan& group) 
           {"area_mm2", group.area},
           {"smallest_mean_free_path_mm", group.smallest_mean_free_path},
           {"model", model_json(group.model)},
-          {"across_air", share_across_air(scene, world, group)},
+          {"across_air", asks_air ? share_across_air(scene, world, group) : 0},
           {"spacing_mm", group.spacing},
           {"samples", group.samples},
           {"reason", group.reason}};
@@ -121,7 +134,8 @@ Json plan_json(const Scene& scene, const World& world, const Plan& plan) {
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
     if (l == 0 || !share_rays(scene.lights[l - 1], scene.lights[l]))
       lights.push_back({{"name", scene.lights[l].name}, {"type", name_of(scene.lights[l].source)}});
-  for (const GroupPlan& group : plan.groups) groups.push_back(group_json(scene, world, group));
+  for (const GroupPlan& group : plan.groups)
+    groups.push_back(group_json(scene, world, group, plan.groups.size() <= kMostShown));
   Json json{{"scene", scene.file},
             {"method", name_of(scene.settings.method)},
             {"evaluator", name_of(scene.settings.evaluator)},
@@ -133,7 +147,8 @@ Json plan_json(const Scene& scene, const World& world, const Plan& plan) {
             {"lights", lights},
             {"groups", groups},
             {"stages", plan.stages},
-            {"memory_bytes", plan.bytes}};
+            {"memory_bytes", plan.bytes},
+            {"cpu_seconds", expected_seconds(scene, plan)}};
   if (!scene.translation.empty()) json["asset"] = scene.translation;
   if (scene.film.crop) json["crop"] = *scene.film.crop;
   return json;
@@ -203,6 +218,13 @@ void print_decisions(const Log& log, const std::vector<std::string>& decisions, 
   for (std::size_t i = 0; i < decisions.size() && !log.quiet && log.format == LogFormat::text; ++i)
     print_row(i == 0 ? "reuse" : "", decisions[i]);
   if (!warning.empty()) print_warning(log, warning);
+}
+
+void print_trial(const Log& log, double seconds) {
+  if (!log.quiet && log.format == LogFormat::text && seconds > kLong)
+    print_row("time",
+              fmt::format("about {} s of CPU for a first trial, as much or more for each that follows",
+                          grouped(std::uint64_t(seconds))));
 }
 
 void print_target(const Log& log, double target, const TargetError& chosen, const Settings& settings) {
