@@ -9,10 +9,15 @@
 #include "opaline/core/units.h"
 #include "opaline/lights/light.h"
 #include "opaline/render/across_air.h"
+#include "opaline/render/expected_seconds.h"
+#include "opaline/render/plan_texts.h"
 #include "opaline/scene/names.h"
 
 namespace opaline {
 namespace {
+
+constexpr double kLong = 5;             // seconds
+constexpr std::size_t kMostShown = 50;  // bodies
 
 /// The labels make a column.
 void print_row(const std::string& label, const std::string& text) {
@@ -70,13 +75,11 @@ void add_model(Paragraphs& plan, const GroupPlan& group, double across_air) {
 
 void add_group(Paragraphs& plan, const Scene& scene, const World& world, const GroupPlan& group) {
   add_row(plan, "translucent",
-          fmt::format("{} in {}: {:.4g} mm^2, mean free path {:.4g} mm (its smallest channel)", group.name,
-                      scene.media[group.medium].name, group.area, group.smallest_mean_free_path));
+          fmt::format("{} in {}: {:.4g} mm^2, {}", group.name, scene.media[group.medium].name, group.area,
+                      mean_free_path_text(group)));
   add_model(plan, group, share_across_air(scene, world, group));
   if (!has_samples(scene.settings.method)) return;
-  add_row(
-      plan, "",
-      fmt::format("{}, {:.4g} mm apart: {}", counted(group.samples, "sample"), group.spacing, group.reason));
+  add_row(plan, "", samples_text(group));
 }
 
 /// How an asset without a translucent material gets one: few formats can name it.
@@ -105,11 +108,18 @@ Paragraphs paragraphs_of(const Scene& scene, const World& world, const Plan& pla
   if (!scene.translation.empty()) add_row(text, "asset", scene.translation);
   add_row(text, "picture", picture_text(scene.film));
   add_row(text, "lights", lights_text(scene.lights));
-  for (const GroupPlan& group : plan.groups) add_group(text, scene, world, group);
+  for (std::size_t g = 0; g < std::min(plan.groups.size(), kMostShown); ++g)
+    add_group(text, scene, world, plan.groups[g]);
+  if (plan.groups.size() > kMostShown)
+    add_row(text, "", fmt::format("and {} bodies more", grouped(plan.groups.size() - kMostShown)));
   if (plan.groups.empty())
     add_row(text, "translucent", "nothing: no samples are needed" + marble_text(scene, world));
   for (std::size_t i = 0; i < plan.stages.size(); ++i) add_row(text, i == 0 ? "stages" : "", plan.stages[i]);
   add_row(text, "memory", "about " + short_bytes(plan.bytes) + " at the peak");
+  if (const double seconds = expected_seconds(scene, plan); seconds > kLong)
+    add_row(text, "time",
+            fmt::format("about {} s of CPU{}", grouped(std::uint64_t(seconds)),
+                        scene.settings.until_error ? ", more for the error that is asked for" : ""));
   return text;
 }
 
@@ -123,7 +133,8 @@ Json model_json(const BodyModel& model) {
   return json;
 }
 
-Json group_json(const Scene& scene, const World& world, const GroupPlan& group) {
+/// asks_air: what jumps across the air takes a moment to find
+Json group_json(const Scene& scene, const World& world, const GroupPlan& group, bool asks_air) {
   Json shapes = Json::array();
   for (const std::uint32_t mesh : group.meshes) shapes.push_back(scene.shapes[mesh].name);
   return {{"name", group.name},
@@ -132,7 +143,7 @@ Json group_json(const Scene& scene, const World& world, const GroupPlan& group) 
           {"area_mm2", group.area},
           {"smallest_mean_free_path_mm", group.smallest_mean_free_path},
           {"model", model_json(group.model)},
-          {"across_air", share_across_air(scene, world, group)},
+          {"across_air", asks_air ? share_across_air(scene, world, group) : 0},
           {"spacing_mm", group.spacing},
           {"samples", group.samples},
           {"reason", group.reason}};
@@ -143,7 +154,8 @@ Json plan_json(const Scene& scene, const World& world, const Plan& plan) {
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
     if (l == 0 || !share_rays(scene.lights[l - 1], scene.lights[l]))
       lights.push_back({{"name", scene.lights[l].name}, {"type", name_of(scene.lights[l].source)}});
-  for (const GroupPlan& group : plan.groups) groups.push_back(group_json(scene, world, group));
+  for (const GroupPlan& group : plan.groups)
+    groups.push_back(group_json(scene, world, group, plan.groups.size() <= kMostShown));
   Json json{{"scene", scene.file},
             {"method", name_of(scene.settings.method)},
             {"evaluator", name_of(scene.settings.evaluator)},
@@ -155,7 +167,8 @@ Json plan_json(const Scene& scene, const World& world, const Plan& plan) {
             {"lights", lights},
             {"groups", groups},
             {"stages", plan.stages},
-            {"memory_bytes", plan.bytes}};
+            {"memory_bytes", plan.bytes},
+            {"cpu_seconds", expected_seconds(scene, plan)}};
   if (!scene.translation.empty()) json["asset"] = scene.translation;
   if (scene.film.crop) json["crop"] = *scene.film.crop;
   return json;
@@ -235,6 +248,13 @@ void print_decisions(const Log& log, const std::vector<std::string>& decisions, 
   for (std::size_t i = 0; i < decisions.size() && !log.quiet && log.format == LogFormat::text; ++i)
     print_row(i == 0 ? "reuse" : "", decisions[i]);
   if (!warning.empty()) print_warning(log, warning);
+}
+
+void print_trial(const Log& log, double seconds) {
+  if (!log.quiet && log.format == LogFormat::text && seconds > kLong)
+    print_row("time",
+              fmt::format("about {} s of CPU for a first trial, as much or more for each that follows",
+                          grouped(std::uint64_t(seconds))));
 }
 
 void print_target(const Log& log, double target, const TargetError& chosen, const Settings& settings) {

@@ -21,12 +21,15 @@
 #include "opaline/core/error.h"
 #include "opaline/core/units.h"
 #include "opaline/render/direct.h"
+#include "opaline/render/expected_error.h"
+#include "opaline/render/expected_seconds.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/walk_warnings.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
 #include "opaline/session/scene_hash.h"
 #include "opaline/session/session.h"
+#include "opaline/volume/volume_diffusion.h"
 
 namespace opaline {
 namespace {
@@ -124,6 +127,7 @@ Shading shade(StageRunner& stages, const RenderArguments& arguments, Session& se
 Summary summarize(const Session& session, const Shading& shading) {
   Summary summary;
   summary.peak_memory = peak_memory();
+  summary.model_error = expected_model_error(session.plan());
   summary.queries = shading.picture.queries;
   summary.estimated_error = estimated_relative_error(shading.picture.image, shading.picture.translucent);
   if (shading.direct) {
@@ -221,6 +225,13 @@ std::optional<std::string> load(StageRunner& stages, const RenderArguments& argu
   });
 }
 
+/// Of the first trial of --target-error.
+double seconds_of_trial(const Session& session) {
+  Scene trial = session.scene();
+  if (trial.settings.method == Method::volume_diffusion) trial.settings.cell_size = kWidestCell;
+  return expected_seconds(trial, make_plan(trial, session.world()));
+}
+
 /// Chooses settings that are left open, and says what will be done.
 /// error Error{bad_input}: what is asked for does not go together, or does not fit into memory
 KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session& session,
@@ -231,6 +242,7 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   check_precompute(arguments, scene, session.plan());
   const std::size_t layer_bytes = asked_layer_bytes(arguments.layers, scene);
   check_memory(scene, session.plan(), layer_bytes);
+  if (arguments.target_error) print_trial(arguments.log, seconds_of_trial(session));
   KnownErrors errors = choose_settings(stages, arguments, session);
   print_plan(arguments.log, scene, session.world(), announced_plan(arguments, session), shared.last_plan);
   check_memory(scene, session.plan(), layer_bytes);  // of the settings that were chosen
@@ -248,7 +260,8 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
     print_decisions(arguments.log, session.decisions(),
                     shared.cache != nullptr ? shared.cache->warning() : "");
   for (const Body& body : session.bodies())
-    for (const std::string& text : walk_warnings(body)) print_warning(arguments.log, text);
+    for (const std::string& text : walk_warnings(body, session.world().unit))
+      print_warning(arguments.log, text);
   if (partial != nullptr) show_refinement(stages, session, *partial);
   Shading shading = shade(stages, arguments, session, partial);
   if (shading.picture.non_finite > 0)
@@ -256,6 +269,7 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
                                      " pixels are not finite and were written as 0; this is a defect");
   for (const std::string& text : picture_warnings(session.scene(), session.world(), shading.picture.image))
     print_warning(arguments.log, text);
+  for (const std::string& text : model_warnings(session.plan())) print_warning(arguments.log, text);
   return shading;
 }
 

@@ -29,6 +29,9 @@ void print_plates(const Log& log, const std::vector<PlateModel>& plates);
 /// the warning alone.
 void print_decisions(const Log& log, const std::vector<std::string>& decisions, const std::string& warning);
 
+/// Before settings are chosen: how long a trial of them takes, where that is long.
+void print_trial(const Log& log, double seconds);
+
 /// What was chosen for --target-error, and a warning where that does not reach it.
 void print_target(const Log& log, double target, const TargetError& chosen, const Settings& settings);
 /// The same for volume_diffusion.
@@ -71,7 +74,8 @@ struct Summary {
   std::size_t peak_memory = 0;  ///< bytes
   std::size_t samples = 0, queries = 0;
   std::vector<LightNoise> noise;
-  double estimated_error = 0;  ///< of `hierarchical`, see estimated_relative_error; 0: there is none
+  double estimated_error = 0;         ///< of `hierarchical`, see estimated_relative_error; 0: there is none
+  std::optional<double> model_error;  ///< expected_model_error
   KnownErrors errors;
   std::optional<SpentBudget> budget;
   std::string

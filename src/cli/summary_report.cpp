@@ -51,7 +51,8 @@ void print_costs(const Summary& summary) {
                                    cost.cpu_seconds, cost.stage == "choosing" ? of_trials : ""));
 }
 
-std::string error_text(const Summary& summary) {
+/// Of what settings decide: samples, tolerance, shadow rays, cells.
+std::string settings_error_text(const Summary& summary) {
   const KnownErrors& errors = summary.errors;
   std::string text;
   if (errors.predicted)
@@ -62,7 +63,12 @@ std::string error_text(const Summary& summary) {
   if (const auto& measured = errors.measured; measured && measured->points > 0)
     text += fmt::format(", measured {:.2g} % +- {:.1g} % at {} points", 100 * measured->error,
                         100 * measured->standard_error, measured->points);
-  return text + " (mean relative error of the diffuse light, worst channel)";
+  return "settings " + text + " (mean relative error of the diffuse light, worst channel)";
+}
+
+std::string model_error_text(double error) {
+  return fmt::format("model about {:.2g} % (expected against random walks, rms, worst body and channel)",
+                     100 * error);
 }
 
 void print_text(const Summary& summary) {
@@ -85,7 +91,9 @@ void print_text(const Summary& summary) {
         fmt::format("{} a sample, channel and light; noise {:.3g} % (standard error of a cell, rms over the "
                     "surface)",
                     grouped(summary.walks), 100 * summary.walk_noise));
-  if (const std::string error = error_text(summary); !error.empty()) row("error", error);
+  const std::string settings_error = settings_error_text(summary);
+  if (!settings_error.empty()) row("error", settings_error);
+  if (summary.model_error) row(settings_error.empty() ? "error" : "", model_error_text(*summary.model_error));
   constexpr std::size_t kMostLines = 3;
   std::vector<LightNoise> worst = summary.noise;
   std::ranges::stable_sort(worst, std::greater(), &LightNoise::relative_error);
@@ -136,6 +144,7 @@ Json done_json(const Summary& summary) {
             {"shading_cpu_seconds", summary.shading_seconds},
             {"embree_cpu_seconds", summary.embree_seconds},
             {"outputs", summary.outputs}};
+  if (summary.model_error) json["model_error"] = *summary.model_error;
   if (summary.budget) json["budget"] = budget_json(*summary.budget);
   if (!summary.again_by.empty()) json["again_by"] = summary.again_by;
   return json;

@@ -145,7 +145,8 @@ DiffuseProfile make_diffuse_profile(const Medium& medium, double unit) {
     reduced.thickness = profile_thickness(medium) / unit;
     profile.channels[c] = make_channel_profile(kind, reduced);
     profile.mean_free_path[c] = reduced.mean_free_path;
-    profile.diffuse_mean_free_path[c] = reduced.mean_free_path / std::sqrt(3 * reduced.absorbed);
+    if (reduced.mean_free_path > 0)
+      profile.diffuse_mean_free_path[c] = reduced.mean_free_path / std::sqrt(3 * reduced.absorbed);
     profile.total[c] = total_diffuse_reflectance(profile.channels[c]);
     profile.has_far_side = profile.has_far_side || has_far_side(profile.channels[c]);
     profile.translucent = profile.translucent || profile.total[c] > 0;

@@ -2,9 +2,11 @@
 // The cells, samples and shadow rays of volume_diffusion that keep an error against random walks.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "opaline/lights/light.h"
 #include "opaline/quality/target_error.h"
+#include "opaline/volume/volume_diffusion.h"
 #include "quality/probe.h"
 #include "quality/settings_search.h"
 
@@ -21,6 +23,7 @@ constexpr double kMargin = .85;                 // of the error that is aimed at
 constexpr int kMostSteps = 6, kMostLightSamples = 4096;
 constexpr double kProbePixels = 64 * 64;
 constexpr std::size_t kEnoughPoints = 1500;
+constexpr double kQuickCells = 3e5;  // solved in about a second
 
 /// Of the worst body; none where a mesh is open, or so thin that light crosses it almost without scattering, or so large
 /// that it has no cells.
@@ -43,6 +46,13 @@ double smallest_cell(const Plan& plan) {
   return smallest;
 }
 
+double all_cells(const Plan& plan) {
+  double cells = 0;
+  for (const GroupPlan& group : plan.groups)
+    if (group.method == Method::volume_diffusion) cells += expected_cells(group.area, group.cell);
+  return cells;
+}
+
 class VolumeSearch {
  public:
   VolumeSearch(Session& session, Scene scene, Monitor* monitor)
@@ -58,26 +68,37 @@ class VolumeSearch {
   double estimated() const { return estimated_; }
   Scene take() { return std::move(search_.scene); }
 
-  /// Cells of this size. Whether the plan allows for them.
+  /// Cells of this size. Whether the plan allows for them; else all is as before.
   bool try_cells(double mean_free_paths) {
     Settings& settings = search_.scene.settings;
-    settings.cell_size = mean_free_paths;
+    const double before = std::exchange(settings.cell_size, mean_free_paths);
     search_.session.edit(search_.scene);
     const double planned = smallest_cell(plan());
+    if (!(planned < .95 * cell_)) {
+      settings.cell_size = before;
+      search_.session.edit(search_.scene);
+      return false;
+    }
     search_.prepare();
     picture_ = search_.first_picture();
-    const bool is_finer = planned < .95 * cell_;
-    cell_ = std::min(cell_, planned);
+    cell_ = planned;
     estimated_ = search_.estimated;
-    return is_finer;
+    return true;
   }
 
   bool sees_translucent() const { return translucent_points(picture_) > 0; }
 
-  /// Four times the shadow rays, as long as they change the picture by more than this.
+  /// Four times the shadow rays, as long as they change the picture by more than this. Where cells are many, as told by
+  /// larger ones: those make the light's noise no smaller.
   void settle_light(double most) {
     Settings& settings = search_.scene.settings;
     if (std::ranges::all_of(search_.scene.lights, is_delta)) return;
+    const double cell_size = settings.cell_size, cells = all_cells(plan());
+    if (cells > kQuickCells) {
+      settings.cell_size *= std::sqrt(cells / kQuickCells);
+      search_.prepare();
+      picture_ = search_.picture();
+    }
     for (double change = 2 * most; change > most && settings.light_samples < kMostLightSamples;) {
       settings.light_samples *= 4;
       const Image before = std::move(picture_);
@@ -86,6 +107,7 @@ class VolumeSearch {
       picture_ = search_.picture();
       change = probe_difference(before, picture_);
     }
+    settings.cell_size = cell_size;
   }
 
  private:

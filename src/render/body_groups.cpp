@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "opaline/core/error.h"
@@ -14,12 +15,13 @@
 namespace opaline {
 namespace {
 
+/// 0: of no channel that scatters is it longer.
 double smallest_mean_free_path(const DiffuseProfile& profile) {
   double smallest = INFINITY;
   for (std::size_t c = 0; c < 3; ++c)
     if (profile.total[c] > 0 && profile.mean_free_path[c] > 0)
       smallest = std::min(smallest, profile.mean_free_path[c]);
-  return smallest;
+  return std::isfinite(smallest) ? smallest : 0;
 }
 
 /// mm; 0 where a mesh is open
@@ -63,11 +65,14 @@ void check_profile(const Scene& scene, const Medium& medium) {
 std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
                                    std::vector<std::string>& warnings) {
   std::vector<GroupPlan> groups;
+  std::vector<std::optional<DiffuseProfile>> profiles(scene.media.size());
   for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
     const Shape& shape = scene.shapes[i];
     if (!shape.medium) continue;
     check_profile(scene, scene.media[*shape.medium]);
-    const DiffuseProfile profile = make_diffuse_profile(scene.media[*shape.medium]);
+    std::optional<DiffuseProfile>& known = profiles[*shape.medium];
+    if (!known) known = make_diffuse_profile(scene.media[*shape.medium]);
+    const DiffuseProfile& profile = *known;
     if (!profile.translucent) {
       const Medium& medium = scene.media[*shape.medium];
       warnings.push_back(

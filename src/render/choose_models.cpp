@@ -4,14 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <vector>
 
 #include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/render/expected_error.h"
 #include "opaline/scene/names.h"
 #include "render/body_groups.h"
+#include "render/local_media.h"
 
 namespace opaline {
 namespace {
@@ -26,7 +29,8 @@ constexpr double kCrossed = 4;
 /// What counts of a medium, over the channels that scatter.
 struct MediumExtremes {
   double mean_free_path = 0, diffuse_mean_free_path = 0;  ///< the longest, mm
-  double absorbed = 0;                                    ///< 1 - reduced albedo, the largest
+  std::string channels;  ///< whose mean free path is the longest: "red", "red, green"
+  double absorbed = 0;   ///< 1 - reduced albedo, the largest
 };
 
 /// An expected error: a base, and what thin bodies and dark media add.
@@ -40,13 +44,18 @@ struct ErrorPlane {
 constexpr ErrorPlane kErrorOfBodies{.05, .9, .5}, kErrorOfPlates{.07, .25, .55},
     kErrorOfDiffusion{.0254, 0, .143};
 
+constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
+
 MediumExtremes extremes_of(Medium medium) {
   medium.profile = kOfBodies;
   const DiffuseProfile profile = make_diffuse_profile(medium);
   MediumExtremes extremes;
   for (std::size_t c = 0; c < 3; ++c) {
-    if (!(profile.total[c] > 0)) continue;
+    if (!(profile.total[c] > 0) || is_local(profile, c)) continue;
     const double length = profile.mean_free_path[c], decay = length / profile.diffuse_mean_free_path[c];
+    if (length > extremes.mean_free_path) extremes.channels.clear();
+    if (length >= extremes.mean_free_path)
+      extremes.channels += (extremes.channels.empty() ? "" : ", ") + std::string(kChannels[c]);
     extremes.mean_free_path = std::max(extremes.mean_free_path, length);
     extremes.diffuse_mean_free_path =
         std::max(extremes.diffuse_mean_free_path, profile.diffuse_mean_free_path[c]);
@@ -57,6 +66,14 @@ MediumExtremes extremes_of(Medium medium) {
 
 BodyShape shape_of(const GroupPlan& group) {
   return {group.area, group.thickness, group.alignment};
+}
+
+std::string two_digits(double value) {
+  return value < 100 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+}
+
+std::string percent_text(double error) {
+  return fmt::format("{:.{}f} %", 100 * error, error < .0995 ? 1 : 0);
 }
 
 }  // namespace
@@ -79,20 +96,24 @@ BodyModel choose_model(const Medium& medium, const BodyShape& shape) {
   const bool is_flat = shape.is_flat();
   const double thickness = is_flat ? shape.plate_thickness() : shape.thickness;
   const MediumExtremes extremes = extremes_of(medium);
+  if (!(extremes.mean_free_path > 0)) {
+    model.reason = "no mean free path: diffuse reflection";
+    return model;
+  }
   const double mean_free_paths = thickness / extremes.mean_free_path;
   model.expected_error = (is_flat ? kErrorOfPlates : kErrorOfBodies).at(mean_free_paths, extremes);
   model.expected_error_of_diffusion = kErrorOfDiffusion.at(mean_free_paths, extremes);
+  const std::string size = fmt::format("{} mm = {} mean free paths ({})", two_digits(thickness),
+                                       two_digits(mean_free_paths), extremes.channels);
   if (is_flat && thickness < kCrossed * extremes.diffuse_mean_free_path) {
     model.profile = {ProfileKind::multipole, thickness};
-    model.reason = fmt::format("flat, {:.3g} mm thick", thickness);
+    model.reason = "flat, thickness " + size;
   } else if (is_flat) {
     model.profile.kind = kOfThickPlates;
-    model.reason = fmt::format("flat, {:.3g} mm thick, too thick for light to cross", thickness);
+    model.reason = "flat, too thick for light to cross, thickness " + size;
   } else {
-    model.reason = fmt::format("{:.3g} mm thick in the mean", thickness);
+    model.reason = "mean thickness " + size;
   }
-  model.reason +=
-      fmt::format(": {:.3g} mean free paths of the channel where they are longest", mean_free_paths);
   return model;
 }
 
@@ -101,18 +122,13 @@ std::string model_text(const BodyModel& model) {
 }
 
 std::string model_error_text(const BodyModel& model, Method method) {
-  const auto percent = [](double error) {
-    return fmt::format("{:.{}f} %", 100 * error, error < .0995 ? 1 : 0);
-  };
-  if (method == Method::volume || method == Method::lambert) return {};
-  const std::optional<double>& own =
-      method == Method::volume_diffusion ? model.expected_error_of_diffusion : model.expected_error;
+  const std::optional<double> own = expected_error(model, method);
   if (!own) return {};
-  std::string text =
-      fmt::format("about {} off random walks is expected, rms of the worst channel", percent(*own));
-  if (method != Method::volume_diffusion && model.expected_error_of_diffusion)
-    text += "; --method volume_diffusion: " + percent(*model.expected_error_of_diffusion);
-  return text;
+  const std::string text = "expected model error " + percent_text(*own);
+  if (method == Method::volume_diffusion || !model.expected_error_of_diffusion)
+    return text + " (without re-entry)";
+  return text + "; --method volume_diffusion: " + percent_text(*model.expected_error_of_diffusion) +
+         " (both without re-entry)";
 }
 
 BodyModel planned_model(const Scene& scene, const GroupPlan& group) {

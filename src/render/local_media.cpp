@@ -79,11 +79,11 @@ void for_places(const World& world, const GroupPlan& group, std::size_t places, 
   }
 }
 
-/// Over the channels that scatter; infinite where none does.
+/// Over the channels that scatter and have a mean free path; infinite where none does.
 double shortest_length(const std::array<ReducedMedium, 3>& media) {
   double shortest = INFINITY;
   for (const ReducedMedium& medium : media)
-    if (medium.absorbed < 1)
+    if (medium.absorbed < 1 && medium.mean_free_path > 0)
       shortest = std::min(shortest, length_to_resolve(medium.mean_free_path, medium.absorbed));
   return shortest;
 }

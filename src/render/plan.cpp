@@ -21,9 +21,11 @@
 #include "opaline/scene/names.h"
 #include "opaline/volume/volume_diffusion.h"
 #include "opaline/volume/volume_exitance.h"
+#include "opaline/volume/walk_memory.h"
 #include "render/body_groups.h"
 #include "render/check_reach.h"
 #include "render/light_distance.h"
+#include "render/local_media.h"
 #include "render/plan_samples.h"
 #include "render/seen_pixels.h"
 
@@ -40,6 +42,31 @@ void warn_of_thin_body(const GroupPlan& group, std::vector<std::string>& warning
                   "tell its sides apart; "
                   "take {:.2g} samples (settings.samples, settings.max_samples)",
                   group.name, thickness, group.spacing, group.area / (thickness * thickness)));
+}
+
+/// Whether the cells of volume_diffusion suit a body; else its radial profile answers for it.
+/// out   why not; empty: they do
+std::string reason_against_cells(const Scene& scene, const World& world, const GroupPlan& group) {
+  if (!(group.smallest_mean_free_path > 0)) return "it has no mean free path: diffuse reflection";
+  const auto is_open = [&](std::uint32_t mesh) { return world.reports[mesh].open_edges > 0; };
+  if (std::ranges::any_of(group.meshes, is_open)) return "its mesh is open and encloses no volume";
+  if (!varies_inside(scene.media[group.medium], Method::volume_diffusion) &&
+      is_too_large_for_cells(scene.settings, group))
+    return fmt::format(
+        "it takes more than {:.2g} cells of {:.3g} mean free paths, and its surface is flat on "
+        "the scale of one",
+        kMostCells, widest_cell(scene.settings));
+  return {};
+}
+
+void leave_to_profile(const Scene& scene, const World& world, GroupPlan& group,
+                      std::vector<std::string>& warnings) {
+  const std::string reason = reason_against_cells(scene, world, group);
+  if (reason.empty()) return;
+  group.method = Method::hierarchical;
+  if (!(group.thickness > 0) && group.smallest_mean_free_path > 0)
+    warnings.push_back(group.name + ": " + reason +
+                       "; its radial profile is used in place of volume_diffusion; close it (fill_holes)");
 }
 
 void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan& group,
@@ -157,7 +184,7 @@ std::string irradiance_stage(const Scene& scene, std::span<const Light> traced) 
   return fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample{}", lights, rays, drawn);
 }
 
-void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) {
+void list_stages(const Scene& scene, const World& world, std::span<const Light> lights, Plan& plan) {
   const Method method = scene.settings.method;
   const bool has_tree = std::ranges::any_of(
       plan.groups, [](const GroupPlan& group) { return group.method == Method::hierarchical; });
@@ -176,11 +203,8 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
                         expected_cells(group.area, group.cell), group.name, group.cell,
                         group.cell / group.smallest_mean_free_path));
       else if (method == Method::volume_diffusion)
-        plan.stages.push_back(
-            fmt::format("{} by a radial profile: it takes more than {:.2g} cells of {:.3g} mean free paths, "
-                        "and its surface is flat "
-                        "on the scale of one",
-                        group.name, kMostCells, widest_cell(scene.settings)));
+        plan.stages.push_back(group.name +
+                              " by a radial profile: " + reason_against_cells(scene, world, group));
     for (const GroupPlan& group : plan.groups)
       if (const Medium& medium = scene.media[group.medium]; !medium_stage(medium, method).empty())
         plan.stages.push_back(group.name + ": " + medium_stage(medium, method));
@@ -292,18 +316,18 @@ Plan make_plan(const Scene& scene, const World& world) {
   }
   plan.bytes += picture_bytes(scene, environments);
   std::size_t samples = 0;
+  double walked = 0;  // one body after the other
+  const double fewest = fewest_samples(plan.groups.size());
   for (GroupPlan& group : plan.groups) {
     group.method = scene.settings.method;
     const bool varies = varies_inside(scene.media[group.medium], group.method);
     // Measured for media that are one throughout.
     if (is_too_thin_for_cells(group) || varies) group.model.expected_error_of_diffusion.reset();
-    if (is_too_large_for_cells(scene.settings, group)) {
-      group.model.expected_error_of_diffusion.reset();
-      if (group.method == Method::volume_diffusion && !varies) group.method = Method::hierarchical;
-    }
+    if (is_too_large_for_cells(scene.settings, group)) group.model.expected_error_of_diffusion.reset();
+    if (group.method == Method::volume_diffusion) leave_to_profile(scene, world, group, plan.warnings);
     if (group.method == Method::volume_diffusion) {
       choose_cells(scene, world, group, plan.warnings);
-      choose_cut(scene.settings, group, plan.warnings);
+      choose_cut(scene.settings, fewest, group, plan.warnings);
       const double in_wires =
           group.thickness > 0 ? 1.2 * needle_share(world, group) * group.cell / group.thickness : 0;
       plan.bytes +=
@@ -313,10 +337,13 @@ Plan make_plan(const Scene& scene, const World& world) {
                                 expected_cells(group.area, group.cell));
       continue;
     }
-    choose_samples(scene, group, plan.warnings);
-    if (group.method == Method::volume)
+    choose_samples(scene, fewest, group, plan.warnings);
+    if (group.method == Method::volume) {
       plan.bytes += group.samples *
                     (191 + kBytesOfWalkedCell + 6 * kBytesOfWalkedChannel + lights.size() * kBytesOfWalkSums);
+      walked = std::max(walked,
+                        expected_walk_bytes(world, group.meshes, walked_mean_free_path(scene, world, group)));
+    }
     if (group.method != Method::hierarchical) continue;
     warn_of_near_lights(scene, world, group, plan.warnings);
     warn_of_thin_body(group, plan.warnings);
@@ -331,8 +358,9 @@ Plan make_plan(const Scene& scene, const World& world) {
   // finest level; and surface caches have their places, more as there are more pixels. Measured on bunnies: 30 bytes a
   // pixel at 512 x 512, 300 to 500 a sample above.
   plan.bytes += std::min(45 * seen, 500 * samples);
+  plan.bytes += std::size_t(walked);
   plan.rays = cheaper_build(scene, lights, plan);
-  list_stages(scene, lights, plan);
+  list_stages(scene, world, lights, plan);
   return plan;
 }
 

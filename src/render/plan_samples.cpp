@@ -7,7 +7,9 @@
 #include <cmath>
 #include <optional>
 
+#include "opaline/core/units.h"
 #include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/render/plan_texts.h"
 #include "opaline/volume/volume_diffusion.h"
 #include "render/local_media.h"
 
@@ -15,9 +17,10 @@ namespace opaline {
 namespace {
 
 // Fewer leave the irradiance itself unresolved, however far light travels inside; more than enough for any
-// preview.
-constexpr double kFewestSamples = 10000;
+// preview. Where bodies are many, each is small in the picture, and all together have no more than kFewestOfAll.
+constexpr double kFewestSamples = 10000, kFewestOfAll = 2e6, kFewestOfMany = 100;
 constexpr double kSuspiciouslyFew = 100;
+constexpr const char* kTheMinimum = "the minimum";
 
 // As far apart as samples may be. Light that enters at a point leaves within a few mean free paths around it;
 // what is nearer than the spacing comes from the irradiance at the shading point itself (SplitKernel), so
@@ -55,26 +58,30 @@ double shortest_fading(Medium medium) {
   const DiffuseProfile profile = make_diffuse_profile(medium);
   double shortest = INFINITY;
   for (std::size_t c = 0; c < 3; ++c)
-    if (profile.total[c] > 0) shortest = std::min(shortest, profile.diffuse_mean_free_path[c]);
+    if (profile.total[c] > 0 && !is_local(profile, c))
+      shortest = std::min(shortest, profile.diffuse_mean_free_path[c]);
   return shortest;
 }
 
 }  // namespace
 
-void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings) {
+double fewest_samples(std::size_t bodies) {
+  return std::clamp(kFewestOfAll / double(bodies), kFewestOfMany, kFewestSamples);
+}
+
+void choose_samples(const Scene& scene, double fewest, GroupPlan& group, std::vector<std::string>& warnings) {
   const Settings& settings = scene.settings;
   const double mean_free_path = group.smallest_mean_free_path,
                spacing = widest_spacing(make_diffuse_profile(scene.media[group.medium]));
   // Without any mean free path light leaves where it enters, and no number of samples is asked for.
-  const double wanted = std::isfinite(spacing) ? group.area / (spacing * spacing) : kFewestSamples;
-  double count = set_samples(settings, group.area).value_or(std::max(wanted, kFewestSamples));
+  const double wanted = std::isfinite(spacing) ? group.area / (spacing * spacing) : fewest;
+  double count = set_samples(settings, group.area).value_or(std::max(wanted, fewest));
   if (settings.samples) {
     group.reason = "settings.samples";
   } else if (settings.sample_spacing) {
     group.reason = fmt::format("settings.sample_spacing of {:.4g} mm", *settings.sample_spacing);
-  } else if (wanted < kFewestSamples) {
-    group.reason =
-        fmt::format("the least; the mean free path of {:.4g} mm asks for {:.0f}", mean_free_path, wanted);
+  } else if (wanted <= fewest) {
+    group.reason = kTheMinimum;
   } else {
     group.reason =
         fmt::format("{:.2f} mean free paths of {:.4g} mm", spacing / mean_free_path, mean_free_path);
@@ -91,6 +98,17 @@ void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::strin
   warn_of_few_samples(group, wanted, warnings);
   group.samples = std::max<std::size_t>(1, std::size_t(std::ceil(count)));
   group.spacing = std::sqrt(group.area / double(group.samples));
+}
+
+std::string samples_text(const GroupPlan& group) {
+  const std::string count = grouped(group.samples) + (group.samples == 1 ? " sample" : " samples");
+  if (group.reason == kTheMinimum) return fmt::format("{} ({})", count, group.reason);
+  return fmt::format("{}, {:.4g} mm apart: {}", count, group.spacing, group.reason);
+}
+
+std::string mean_free_path_text(const GroupPlan& group) {
+  if (!(group.smallest_mean_free_path > 0)) return "no mean free path (diffuse reflection)";
+  return fmt::format("mean free path {:.4g} mm (its smallest channel)", group.smallest_mean_free_path);
 }
 
 double widest_cell(const Settings& settings) {
@@ -140,9 +158,10 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
 
 // At least one sample where a cell cuts the surface; the number of parts of a cell's edge that comes nearest to what is
 // asked for.
-void choose_cut(const Settings& settings, GroupPlan& group, std::vector<std::string>& warnings) {
+void choose_cut(const Settings& settings, double fewest, GroupPlan& group,
+                std::vector<std::string>& warnings) {
   const double whole = kCutSamplesPerFace * group.area / (group.cell * group.cell);
-  const double wanted = set_samples(settings, group.area).value_or(kFewestSamples);
+  const double wanted = set_samples(settings, group.area).value_or(fewest);
   double parts = std::min(std::round(std::sqrt(wanted / whole)),
                           std::floor(std::sqrt(double(settings.max_samples) / whole)));
   // A wire thinner than a cell meets cells by its length, not by its area: finer ones would be many, and tell nothing.
@@ -155,7 +174,7 @@ void choose_cut(const Settings& settings, GroupPlan& group, std::vector<std::str
   group.reason =
       fmt::format("where cubes of {:.4g} mm cut the surface", group.cell / double(group.cell_parts));
   const double length = group.smallest_mean_free_path;
-  warn_of_few_samples(group, length > 0 ? group.area / (length * length) : kFewestSamples, warnings);
+  warn_of_few_samples(group, length > 0 ? group.area / (length * length) : fewest, warnings);
 }
 
 }  // namespace opaline

@@ -20,12 +20,15 @@ bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group);
 /// Whether light crosses the body almost without scattering, which diffusion cannot tell.
 bool is_too_thin_for_cells(const GroupPlan& group);
 
+/// Samples that a body gets at least: fewer where bodies are many.
+double fewest_samples(std::size_t bodies);
 /// Samples spread over the surface: as the settings have it, or by the medium's mean free path.
-void choose_samples(const Scene& scene, GroupPlan& group, std::vector<std::string>& warnings);
+void choose_samples(const Scene& scene, double fewest, GroupPlan& group, std::vector<std::string>& warnings);
 /// The edge of the cells of volume_diffusion.
 void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
                   std::vector<std::string>& warnings);
 /// After choose_cells: the parts of that edge whose cubes cut the surface into samples.
-void choose_cut(const Settings& settings, GroupPlan& group, std::vector<std::string>& warnings);
+void choose_cut(const Settings& settings, double fewest, GroupPlan& group,
+                std::vector<std::string>& warnings);
 
 }  // namespace opaline

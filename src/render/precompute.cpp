@@ -9,6 +9,7 @@
 #include "opaline/exitance/cloud_error.h"
 #include "opaline/lights/light.h"
 #include "opaline/lights/light_tree.h"
+#include "opaline/volume/cut_outer_surface.h"
 #include "render/local_media.h"
 
 namespace opaline {
@@ -111,14 +112,32 @@ HomogeneousMedium walked_medium(const ReducedMedium& reduced, double g, double l
   return {absorbed / length, (1 - absorbed) / (length * (1 - g)), g, reduced.eta};
 }
 
+/// Of what random walks take, so that no flight is shorter than rays start off the surface.
+double least_walked(const World& world, std::span<const std::uint32_t> meshes) {
+  return kLeastOffsets * 0x1p-18 * diagonal_of(world, meshes);
+}
+
 }  // namespace
+
+double walked_mean_free_path(const Scene& scene, const World& world, const GroupPlan& group) {
+  const Medium& medium = scene.media[group.medium];
+  const DiffuseProfile profile = make_diffuse_profile(medium, world.unit);
+  const Rgb absorbed = reduced_absorption(medium);
+  double shortest = INFINITY;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (profile.total[c] > 0)
+      shortest =
+          std::min(shortest, 1 / walked_medium({profile.mean_free_path[c], absorbed[c], profile.eta},
+                                               anisotropy_of(medium), least_walked(world, group.meshes))
+                                     .sigma_t());
+  return shortest;
+}
 
 VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
   const Medium& medium = input.scene.media[body.plan.medium];
   const Rgb absorbed = reduced_absorption(medium);
-  const double g = anisotropy_of(medium),
-               least = kLeastOffsets * 0x1p-18 * diagonal_of(input.world, body.plan.meshes);
+  const double g = anisotropy_of(medium), least = least_walked(input.world, body.plan.meshes);
   VolumeInput walks{input.rays, input.world, body.plan.meshes, body.surface.samples, {}, lights};
   for (std::size_t c = 0; c < 3; ++c) {
     walks.media[c].eta = body.profile.eta;
@@ -135,7 +154,8 @@ VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span
 }
 
 CutSurface cut_surface(const PrecomputeInput& input, const Body& body) {
-  return cut_surface(input.world, body.plan.meshes, body.plan.cell / input.world.unit, body.plan.cell_parts);
+  return cut_outer_surface(input.rays, input.world, body.plan.meshes, body.plan.cell / input.world.unit,
+                           body.plan.cell_parts);
 }
 
 // Of a medium that varies, what the cells do not resolve is stretched until they do. It still returns as much light, and
@@ -144,7 +164,10 @@ VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body, std
   const double cell = body.plan.cell / input.world.unit, least = cell / input.scene.settings.cell_size;
   const auto resolved = [least](ReducedMedium reduced) {
     const double length = length_to_resolve(reduced.mean_free_path, reduced.absorbed);
-    if (length > 0 && length < least) reduced.mean_free_path *= least / length;
+    if (!(length > 0))
+      reduced.mean_free_path = least / length_to_resolve(1, reduced.absorbed);
+    else if (length < least)
+      reduced.mean_free_path *= least / length;
     return isotropic_medium(reduced);
   };
   return VolumeDiffusion({input.world, body.plan.meshes, body.surface.samples, normals,

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "opaline/core/random.h"
 #include "opaline/transport/fresnel.h"
+#include "opaline/transport/shared_roughness.h"
 #include "render/bounced_light.h"
 #include "render/camera_rays.h"
 
@@ -16,9 +19,9 @@ void roughen(Appearance& appearance, double roughness, bool is_texture, const Gr
   const float anisotropy = float(grain.anisotropy);
   appearance.roughness = float(roughness);
   if (is_texture)
-    appearance.roughnesses = std::make_shared<const RoughnessRange>(eta, anisotropy);
+    appearance.roughnesses = shared_roughness(eta, anisotropy);
   else if (roughness > 0 && anisotropy > 0)
-    appearance.roughnesses = std::make_shared<const RoughnessRange>(eta, anisotropy, appearance.roughness);
+    appearance.roughnesses = shared_roughness(eta, anisotropy, appearance.roughness);
   else if (roughness > 0)
     appearance.rough.emplace(roughness, eta);
 }
@@ -116,8 +119,15 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
   if (has_samples(input.scene.settings.method))  // else bodies are left from another method
     for (const Body& body : input.groups)
       for (const std::uint32_t mesh : body.plan.meshes) follows_light[mesh] = has_cells(body.plan.method);
-  for (std::size_t i = 0; i < input.scene.shapes.size(); ++i)
-    appearances_.push_back(mesh_appearance(input.scene, input.scene.shapes[i], follows_light[i]));
+  std::map<std::pair<std::size_t, bool>, std::size_t> of_medium;  // the first shape
+  for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
+    const Shape& shape = input.scene.shapes[i];
+    const auto known =
+        shape.medium ? of_medium.try_emplace({*shape.medium, follows_light[i]}, i).first : of_medium.end();
+    appearances_.push_back(known != of_medium.end() && known->second < i
+                               ? appearances_[known->second]
+                               : mesh_appearance(input.scene, shape, follows_light[i]));
+  }
   light_samples_ = light_samples_of_ray(input.scene);
   if (input.view != nullptr && can_hold_coats())
     for (const Light& light : lights_) unit_lights_.push_back(with_emission(light, {1, 1, 1}));

@@ -5,9 +5,25 @@
 
 namespace opaline {
 
-std::vector<std::string> walk_warnings(const Body& body) {
+namespace {
+
+constexpr double kLeastLeftOut = 1e-4;  // of the area: above rounding
+
+/// What cells have left out of the area of a body's meshes.
+double share_left_out(const Body& body, double unit) {
+  if (body.plan.method != Method::volume_diffusion || body.surface.samples.empty()) return 0;
+  return 1 - body.surface.area * unit * unit / body.plan.area;
+}
+
+}  // namespace
+
+std::vector<std::string> walk_warnings(const Body& body, double unit) {
   constexpr double kMuch = 1e-3;  // of the light that entered
   std::vector<std::string> warnings;
+  if (const double left_out = share_left_out(body, unit); left_out > kLeastLeftOut)
+    warnings.push_back(fmt::format(
+        "{}: {:.2g} % of its surface lies inside of it or is folded; volume_diffusion leaves that out",
+        body.plan.name, 100 * left_out));
   if (!body.volume) return warnings;
   if (const double lost = max_component(body.volume->lost); lost > kMuch)
     warnings.push_back(

@@ -10,7 +10,7 @@ namespace opaline {
 namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
-constexpr std::uint64_t kSamplesVersion = 2, kCutSurfaceVersion = 1, kCarriedVersion = 3,
+constexpr std::uint64_t kSamplesVersion = 2, kCutSurfaceVersion = 2, kCarriedVersion = 3,
                         kTransferVersion = 4, kOctreeVersion = 1, kExitanceVersion = 8, kWalksVersion = 3,
                         kWalkedProfileVersion = 1;
 

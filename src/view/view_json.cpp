@@ -8,6 +8,8 @@
 
 #include "core/log.h"
 #include "opaline/core/units.h"
+#include "opaline/render/expected_error.h"
+#include "opaline/render/plan_texts.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
 #include "opaline/scene/schema.h"
@@ -78,14 +80,11 @@ Json preset_json(std::string_view name) {
 }
 
 Json group_json(const Scene& scene, const GroupPlan& group) {
-  std::string text =
-      fmt::format("{} in {}: {:.4g} mm², mean free path {:.4g} mm (its smallest channel)", group.name,
-                  scene.media[group.medium].name, group.area, group.smallest_mean_free_path);
-  if (has_samples(scene.settings.method))
-    text +=
-        fmt::format("; {} samples, {:.4g} mm apart: {}", grouped(group.samples), group.spacing, group.reason);
+  std::string text = fmt::format("{} in {}: {:.4g} mm², {}", group.name, scene.media[group.medium].name,
+                                 group.area, mean_free_path_text(group));
+  if (has_samples(scene.settings.method)) text += "; " + samples_text(group);
   text += "; profile " + model_text(group.model);
-  const std::string error = model_error_text(group.model, scene.settings.method);
+  const std::string error = model_error_text(group.model, group.method);
   if (!error.empty()) text += "; " + error;
   return {{"name", group.name},
           {"medium", scene.media[group.medium].name},
@@ -125,6 +124,7 @@ std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& pl
                   {"groups", groups},
                   {"stages", plan.stages},
                   {"warnings", plan.warnings},
+                  {"model_error", expected_model_error(plan).value_or(0)},
                   {"memory", "about " + short_bytes(plan.bytes) + " at the peak"}});
 }
 

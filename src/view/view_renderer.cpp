@@ -10,6 +10,7 @@
 #include "opaline/core/stopwatch.h"
 #include "opaline/core/units.h"
 #include "opaline/render/direct.h"
+#include "opaline/render/expected_error.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/walk_warnings.h"
 #include "view/lit_anew.h"
@@ -240,7 +241,9 @@ void ViewRenderer::report(const Wanted& wanted, const Image& image, double error
   report.costs.push_back(std::move(shading));
   report.warnings = picture_warnings(wanted.scene, session_->world(), image);
   for (const Body& body : session_->bodies())
-    for (std::string& text : walk_warnings(body)) report.warnings.push_back(std::move(text));
+    for (std::string& text : walk_warnings(body, session_->world().unit))
+      report.warnings.push_back(std::move(text));
+  for (std::string& text : model_warnings(session_->plan())) report.warnings.push_back(std::move(text));
   events_.report(report);
 }
 

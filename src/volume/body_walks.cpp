@@ -203,6 +203,18 @@ BodyWalks::BodyWalks(const VolumeInput& input, std::size_t starts)
       cells_(input.samples, &input.world),
       starts_(starts) {}
 
+double BodyWalks::expected_bytes(const World& world, std::span<const std::uint32_t> meshes,
+                                 double mean_free_path) {
+  Bounds box;
+  double area = 0;
+  for (const std::uint32_t m : meshes) {
+    const Bounds other = bounds(world.meshes[m]);
+    box = {component_min(box.low, other.low), component_max(box.high, other.high)};
+    area += world.measures[m].area;
+  }
+  return FreeDistance::expected_bytes(box, kVoxel * mean_free_path, area);
+}
+
 SphereExits BodyWalks::exits_of(std::size_t pass) const {
   constexpr std::size_t kFewest = 64, kMost = 8192, kStarts = 8;
   return {std::clamp(starts_ / kStarts, kFewest, kMost), hash_bits(input_.seed + 1, pass)};

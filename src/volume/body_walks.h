@@ -38,6 +38,10 @@ class BodyWalks {
   /// starts: of a pass
   BodyWalks(const VolumeInput& input, std::size_t starts);
 
+  /// expected_walk_bytes
+  static double expected_bytes(const World& world, std::span<const std::uint32_t> meshes,
+                               double mean_free_path);
+
   /// For all walks of a pass, whatever their light and channel. Each pass has its own, so that what is chance in
   /// them is chance of the pass.
   SphereExits exits_of(std::size_t pass) const;

@@ -7,7 +7,9 @@
 #include <numeric>
 #include <tuple>
 
+#include "opaline/core/parallel.h"
 #include "opaline/geometry/surface_point.h"
+#include "volume/outer_surface.h"
 
 namespace opaline {
 namespace {
@@ -19,22 +21,25 @@ struct ElementSum {
   Vec3d position{}, normal{};  // times area
   double area = 0;
   std::uint32_t next = kNone;  // of the same cell
+  bool faces_back = false;     // of another element of the cell
 };
 
 /// The elements of each cell of a lattice.
 class ElementTable {
  public:
   explicit ElementTable(const Lattice& lattice)
-      : lattice_(lattice),
+      : lattice_(&lattice),
         bricks_of_{(lattice.nx + 7) / 8, (lattice.ny + 7) / 8, (lattice.nz + 7) / 8},
         bricks_(std::size_t(bricks_of_[0]) * std::size_t(bricks_of_[1]) * std::size_t(bricks_of_[2]), kNone) {
   }
 
   /// Adds to the element of the cell around a place whose sheet it is on, which is made if there is none.
   std::uint32_t add(const Vec3d& position, const Vec3d& normal, double area) {
-    std::uint32_t& first = head(lattice_.into(position));
+    std::uint32_t& first = head(lattice_->into(position));
     std::uint32_t found = first;
-    while (found != kNone && !is_of(sums_[found], position, normal)) found = sums_[found].next;
+    bool faces_back = false;
+    for (; found != kNone && !is_of(sums_[found], position, normal); found = sums_[found].next)
+      if (is_opposite(sums_[found], normal)) faces_back = sums_[found].faces_back = true;
     if (found == kNone) {
       found = std::uint32_t(sums_.size());
       sums_.push_back({{}, {}, 0, first});
@@ -43,8 +48,12 @@ class ElementTable {
     sums_[found].position += position * area;
     sums_[found].normal += normal * area;
     sums_[found].area += area;
+    sums_[found].faces_back |= faces_back;
     return found;
   }
+
+  /// Whether another sheet in the element's cell faces the other way: a thin part, or a fold.
+  bool faces_back(std::uint32_t element) const { return sums_[element].faces_back; }
 
   std::vector<BoundaryElement> elements() const {
     std::vector<BoundaryElement> elements;
@@ -60,12 +69,18 @@ class ElementTable {
     constexpr double kFarthest = .3;        // cells, above or below it
     const double along = length(sum.normal);
     if (dot(sum.normal, normal) < kLeastAgreement * along) return false;
-    return std::abs(dot(position - sum.position / sum.area, sum.normal)) <= kFarthest * lattice_.cell * along;
+    return std::abs(dot(position - sum.position / sum.area, sum.normal)) <=
+           kFarthest * lattice_->cell * along;
+  }
+
+  static bool is_opposite(const ElementSum& sum, const Vec3d& normal) {
+    constexpr double kOpposite = -.5;
+    return dot(sum.normal, normal) < kOpposite * length(sum.normal);
   }
 
   std::uint32_t& head(const Vec3d& place) {
     const auto at = [](double c, int count) { return std::clamp(int(std::floor(c)), 0, count - 1); };
-    const int x = at(place.x, lattice_.nx), y = at(place.y, lattice_.ny), z = at(place.z, lattice_.nz);
+    const int x = at(place.x, lattice_->nx), y = at(place.y, lattice_->ny), z = at(place.z, lattice_->nz);
     std::uint32_t& brick = bricks_[std::size_t(((z / 8) * bricks_of_[1] + y / 8) * bricks_of_[0] + x / 8)];
     if (brick == kNone) {
       brick = std::uint32_t(heads_.size() / 512);
@@ -74,7 +89,7 @@ class ElementTable {
     return heads_[std::size_t(brick) * 512 + std::size_t(((z & 7) * 8 + (y & 7)) * 8 + (x & 7))];
   }
 
-  const Lattice& lattice_;
+  const Lattice* lattice_;
   std::array<int, 3> bricks_of_;
   std::vector<std::uint32_t> bricks_, heads_;
   std::vector<ElementSum> sums_;
@@ -118,6 +133,8 @@ void cut(Polygon polygon, std::size_t axis, const Found& found) {
 struct Part {
   Vec3f position;  // mean
   std::uint32_t mesh, triangle, element;
+  float area;
+  bool is_turned = false;  // its triangle faces into the body
 };
 
 class Cutter {
@@ -143,6 +160,22 @@ class Cutter {
             [&](const Polygon& y) { cut(y, 2, [&](const Polygon& part) { add(part, normal, m, t); }); });
       });
     }
+  }
+
+  /// Leaves out what does not bound the solid.
+  void keep_outer(const RayScene& rays, std::span<const std::uint32_t> meshes) {
+    constexpr double kLeastGap = .05;  // cells
+    const OuterSurface outer(rays, meshes, kLeastGap * lattice_.cell);
+    std::vector<SurfacePiece> pieces;
+    for (const Part& part : parts_) pieces.push_back({part.position, part.mesh, part.triangle});
+    const bool has_inner = outer.has_inner(pieces);  // else folds at the most
+    std::vector<Boundedness> bounds(pieces.size());
+    parallel_chunks(pieces.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (has_inner || table_.faces_back(parts_[i].element)) bounds[i] = outer.of(pieces[i]);
+    });
+    if (std::ranges::all_of(bounds, [](const Boundedness& b) { return b == Boundedness{}; })) return;
+    keep(bounds);
   }
 
   CutSurface take() const {
@@ -177,16 +210,34 @@ class Cutter {
     if (!(area > kLeastArea)) return;
     const Vec3d position = sum / (6 * area) * lattice_.cell + lattice_.low;
     area *= lattice_.cell * lattice_.cell;
-    parts_.push_back({Vec3f(position), mesh, triangle, table_.add(position, normal, area)});
+    parts_.push_back({Vec3f(position), mesh, triangle, table_.add(position, normal, area), float(area)});
   }
 
-  // Of each element the part next to its middle.
+  void keep(std::span<const Boundedness> bounds) {
+    std::vector<Part> kept;
+    table_ = ElementTable(lattice_);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      Part part = parts_[i];
+      const auto& [share, is_turned] = bounds[i];
+      const double area = double(share) * double(part.area);
+      if (!(area > 0)) continue;
+      const Vec3d normal(surface_point(world_.meshes[part.mesh], part.triangle, 0, 0).geometric);
+      part.element = table_.add(Vec3d(part.position), is_turned ? -normal : normal, area);
+      part.is_turned = is_turned;
+      kept.push_back(part);
+    }
+    parts_ = std::move(kept);
+  }
+
+  // Of each element the part next to its middle; the light that enters is found by the triangle's normal, so one that is
+  // turned stands for the element only where there is no other.
   std::vector<const Part*> middles_of(std::span<const BoundaryElement> elements) const {
     std::vector<const Part*> middles(elements.size());
     std::vector<float> distances(elements.size(), INFINITY);
+    const auto behind_others = float(1e6 * lattice_.cell * lattice_.cell);
     for (const Part& part : parts_) {
       const Vec3f apart = part.position - elements[part.element].position;
-      const float distance = dot(apart, apart);
+      const float distance = dot(apart, apart) + (part.is_turned ? behind_others : 0);
       if (!(distance < distances[part.element])) continue;
       distances[part.element] = distance;
       middles[part.element] = &part;
@@ -221,9 +272,11 @@ class Cutter {
 
 }  // namespace
 
-CutSurface cut_by_lattice(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice) {
+CutSurface cut_by_lattice(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice,
+                          const RayScene* rays) {
   Cutter cutter(world, lattice);
   for (const std::uint32_t m : meshes) cutter.add(m);
+  if (rays != nullptr) cutter.keep_outer(*rays, meshes);
   return cutter.take();
 }
 

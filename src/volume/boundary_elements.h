@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "opaline/geometry/ray_scene.h"
 #include "opaline/geometry/world.h"
 #include "opaline/volume/cut_surface.h"
 #include "volume/inside_lines.h"
@@ -26,7 +27,9 @@ struct Boundary {
 };
 
 /// Triangles clipped at the planes of the lattice, so that each cell has the area that is in it.
-CutSurface cut_by_lattice(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice);
+/// rays: of the world; pieces that do not bound the solid are left out (OuterSurface). Null: every piece counts
+CutSurface cut_by_lattice(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice,
+                          const RayScene* rays);
 
 /// The elements of a lattice's cells, merged from samples that lie in one of them each.
 Boundary merged(std::span<const BoundaryElement> samples, const Lattice& lattice);

@@ -26,18 +26,39 @@ bool crosses(const Vec3d& corner, const Vec3d& normal, const Vec3d& middle, doub
 
 }  // namespace
 
+Vec3d FreeDistance::counts_of(const Vec3d& size, double edge) {
+  const auto count = [edge](double length) { return std::floor(length / edge) + 3; };
+  return {count(size.x), count(size.y), count(size.z)};
+}
+
+double FreeDistance::edge_for(const Vec3d& size, double edge) {
+  edge = std::clamp(edge, max_component(size) * 1e-3,
+                    max_component(size) * 1e6);  // a clear medium's is infinite
+  if (!(edge > 0)) edge = 1;
+  const auto voxels = [&] {
+    const Vec3d counts = counts_of(size, edge);
+    return counts.x * counts.y * counts.z;
+  };
+  while (voxels() > double(kMostVoxels)) edge *= 1.1;
+  return edge;
+}
+
+double FreeDistance::expected_bytes(const Bounds& box, double edge, double area) {
+  constexpr double kPerFace = 8;  // pieces in voxels, for an area of a voxel's face
+  constexpr double kOfVoxel = sizeof(std::uint8_t) + sizeof(Plane) + 2 * sizeof(std::uint32_t);
+  const Vec3d size = box.high - box.low;
+  const double used = edge_for(size, edge);
+  const Vec3d counts = counts_of(size, used);
+  return counts.x * counts.y * counts.z * kOfVoxel + area / (used * used) * kPerFace * 3 * sizeof(Corner);
+}
+
 FreeDistance::FreeDistance(const World& world, const Bounds& box, double edge, double reach) {
   const Vec3d size = box.high - box.low;
-  const auto count = [](double length, double e) { return std::floor(length / e) + 3; };
-  edge_ = std::clamp(edge, max_component(size) * 1e-3,
-                     max_component(size) * 1e6);  // a clear medium's is infinite
-  if (!(edge_ > 0)) edge_ = 1;
-  while (count(size.x, edge_) * count(size.y, edge_) * count(size.z, edge_) > double(kMostVoxels))
-    edge_ *= 1.1;
+  edge_ = edge_for(size, edge);
   inverse_edge_ = 1 / edge_;
   reach_ = reach * edge_;
   reach_steps_ = reach / kOffsetUnit;
-  counts_ = {count(size.x, edge_), count(size.y, edge_), count(size.z, edge_)};
+  counts_ = counts_of(size, edge_);
   nx_ = std::size_t(counts_.x), ny_ = std::size_t(counts_.y), nz_ = std::size_t(counts_.z);
   low_ = .5 * (box.low + box.high) - .5 * edge_ * counts_;
   for (std::size_t i = 0; i < distances_.size(); ++i)

@@ -23,6 +23,8 @@ class FreeDistance {
   FreeDistance(const World& world, const Bounds& box, double edge, double reach);
 
   static constexpr std::size_t kMostVoxels = std::size_t(1) << 23;
+  /// What making one takes at the most, of a surface of that area in the box.
+  static double expected_bytes(const Bounds& box, double edge, double area);
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   /// Where a point is in the grid.
@@ -71,6 +73,9 @@ class FreeDistance {
     std::vector<std::uint32_t> first;  ///< one a voxel, and the end
     std::vector<Corner> corners;
   };
+
+  static Vec3d counts_of(const Vec3d& size, double edge);
+  static double edge_for(const Vec3d& size, double edge);
 
   Vec3d middle_of(std::size_t voxel) const {
     const std::size_t x = voxel % nx_, y = voxel / nx_ % ny_, z = voxel / (nx_ * ny_);

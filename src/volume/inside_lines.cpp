@@ -78,11 +78,14 @@ InsideLines::InsideLines(const World& world, std::span<const std::uint32_t> mesh
   std::size_t next = 0;
   for (std::uint32_t line = 0; line < std::uint32_t(columns_) * std::uint32_t(rows_); ++line) {
     first_.push_back(std::uint32_t(bounds_.size()));
-    int sheets = 0;
-    for (; next < crossings.size() && crossings[next].line == line; ++next) {
+    std::size_t end = next;
+    int all = 0;  // 0: the meshes are closed on this line
+    for (; end < crossings.size() && crossings[end].line == line; ++end)
+      all += crossings[end].enters ? 1 : -1;
+    for (int sheets = 0; next < end; ++next) {
       const int before = std::exchange(sheets, sheets + (crossings[next].enters ? 1 : -1));
-      if ((before == 0 && sheets == 1) || (before == 1 && sheets == 0)) bounds_.push_back(crossings[next].z);
-      if (sheets < 0) sheets = 0;  // left what was never entered
+      if (all != 0 && sheets < 0) sheets = 0;  // left what was never entered
+      if ((before == 0) != (sheets == 0)) bounds_.push_back(crossings[next].z);
     }
     if ((bounds_.size() - first_.back()) % 2 == 1) bounds_.pop_back();
   }

@@ -24,7 +24,7 @@ struct Lattice {
 /// x = column / 2, y = row / 2 of the lattice.
 class InsideLines {
  public:
-  /// Inside is where more sheets have been entered than left; what an open mesh never closes is outside.
+  /// Inside is where not as many sheets have been entered as left; what an open mesh never closes is outside.
   InsideLines(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice);
 
   /// How much of [low, high] of a line is inside, in its length.

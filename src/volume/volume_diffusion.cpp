@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "opaline/volume/cut_outer_surface.h"
 #include "volume/diffusion_body.h"
 
 namespace opaline {
@@ -51,11 +52,25 @@ struct VolumeDiffusion::State {
   DiffusionBody fine, coarse;
 };
 
-CutSurface cut_surface(const World& world, std::span<const std::uint32_t> meshes, double cell, int parts) {
+namespace {
+
+CutSurface cut_by_parts(const World& world, std::span<const std::uint32_t> meshes, double cell, int parts,
+                        const RayScene* rays) {
   Lattice lattice = lattice_around(world, meshes, cell);
   lattice.cell /= parts;
   for (int* count : {&lattice.nx, &lattice.ny, &lattice.nz}) *count *= parts;
-  return cut_by_lattice(world, meshes, lattice);
+  return cut_by_lattice(world, meshes, lattice, rays);
+}
+
+}  // namespace
+
+CutSurface cut_surface(const World& world, std::span<const std::uint32_t> meshes, double cell, int parts) {
+  return cut_by_parts(world, meshes, cell, parts, nullptr);
+}
+
+CutSurface cut_outer_surface(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
+                             double cell, int parts) {
+  return cut_by_parts(world, meshes, cell, parts, &rays);
 }
 
 double length_to_resolve(double mean_free_path, double absorbed) {

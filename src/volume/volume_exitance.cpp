@@ -7,6 +7,7 @@
 
 #include "opaline/core/parallel.h"
 #include "opaline/lights/light.h"
+#include "opaline/volume/walk_memory.h"
 #include "volume/body_walks.h"
 
 namespace opaline {
@@ -296,6 +297,10 @@ class Progress {
 };
 
 }  // namespace
+
+double expected_walk_bytes(const World& world, std::span<const std::uint32_t> meshes, double mean_free_path) {
+  return BodyWalks::expected_bytes(world, meshes, mean_free_path);
+}
 
 bool walks_by_light(const VolumeInput& input) {
   return input.lights.size() <= kMostSeparate &&

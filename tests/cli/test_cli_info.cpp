@@ -60,8 +60,8 @@ TEST(CliInfo, ModelErrorOfPlates) {
 TEST(CliInfo, ModelAndItsError) {
   const std::string plate = std::string(OPALINE_SCENES_DIR) + "/backlit-slab.json";
   const Outcome text = run_program({"info", plate});
-  for (const char* part : {"profile multipole: flat, 1.99 mm thick", "off random walks is expected",
-                           "--method volume_diffusion: "})
+  for (const char* part : {"profile multipole: flat, thickness 2 mm = ", "expected model error ",
+                           "; --method volume_diffusion: ", " % (both without re-entry)"})
     EXPECT_TRUE(contains(text.out, part)) << "no \"" << part << "\" in:\n" << text.out;
   const auto model_of = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words{"info", plate, "--log", "json"};
@@ -76,8 +76,28 @@ TEST(CliInfo, ModelAndItsError) {
   EXPECT_EQ(named["profile"], "better_dipole");
   EXPECT_EQ(named["is_chosen"], false);
   EXPECT_FALSE(named.contains("expected_error"));
-  EXPECT_TRUE(contains(run_program({"info", plate, "--method", "volume_diffusion"}).out, "about 2.7 %"))
+  EXPECT_TRUE(contains(run_program({"info", plate, "--method", "volume_diffusion"}).out,
+                       "expected model error 2.7 % (without"))
       << text.out;
+}
+
+// Claim: a body whose mean free path asks for few samples has the least, and says so; where bodies are many the least
+// falls. Source: plan_samples.cpp. Fails if: 300 bodies have 10,000 samples each.
+TEST(CliInfo, FewerSamplesWhereBodiesAreMany) {
+  const SceneFolder folder;
+  const auto plan_of = [&](int bodies) {
+    std::string shapes;
+    for (int i = 0; i < bodies; ++i)
+      shapes += (i > 0 ? "," : "") + std::string(R"({"box":{"low":[)") + std::to_string(3 * i) +
+                R"(,0,0],"high":[)" + std::to_string(3 * i + 2) + R"(,2,2]},"medium":"marble"})";
+    const std::vector<std::string> line{"info",  folder.scene, "--set", "shapes=[" + shapes + "]",
+                                        "--set", "settings={}"};
+    return run_program(line).out;
+  };
+  EXPECT_TRUE(contains(plan_of(2), "10,000 samples (the minimum)")) << plan_of(2);
+  const std::string many = plan_of(300);
+  EXPECT_TRUE(contains(many, "6,667 samples (the minimum)")) << many;
+  EXPECT_TRUE(contains(many, "and 250 bodies more")) << many;
 }
 
 // Claim: a plan's warnings are on stderr, or events. Source: plan.h. Fails if: warnings are dropped.

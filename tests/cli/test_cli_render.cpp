@@ -330,6 +330,14 @@ TEST(CliRender, PlansTheMemoryItTakes) {
   }
 }
 
+// Claim: so it is of random walks in plates whose voxels are many. Tolerance: 1.5. Fails if: voxels of free distances are
+// left out (3.6 times).
+TEST(CliRender, PlansTheMemoryOfWalks) {
+  const PlannedMemory memory = planned_memory(std::string(OPALINE_TEST_INPUTS) + "/mem-volume.json", {});
+  EXPECT_LE(memory.taken, memory.planned);
+  EXPECT_LE(memory.planned, 1.5 * memory.taken);
+}
+
 // Claim: so it is in the light of a picture, small and of 2048 x 1024 pixels. Fails if: the library that reads it is
 // left out (.54 of what is taken), or the picture (.94).
 TEST(CliRender, PlansTheMemoryOfEnvironments) {
@@ -359,6 +367,26 @@ TEST(CliRender, TextLogAndQuiet) {
   const Outcome quiet = run_program({"render", folder.scene, "-o", out, "--quiet"});
   EXPECT_EQ(quiet.exit_code, 0);
   EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+// Claim: the closing line tells the settings' error and the model's apart, and warns of a model that is off by more than
+// 20 %. Source: expected_error.h. Fails if: the settings' error stands for all.
+TEST(CliRender, TellsTheModelsError) {
+  const SceneFolder folder;
+  const std::string plate = std::string(OPALINE_SCENES_DIR) + "/backlit-slab.json";
+  const Outcome thin = run_program({"render", plate, "-o", folder.file("a.exr"), "--resolution", "32x32",
+                                    "--set", "settings.samples=2000"});
+  EXPECT_TRUE(contains(thin.out, "error       settings estimated ")) << thin.out;
+  EXPECT_TRUE(contains(thin.out, "model about ")) << thin.out;
+  EXPECT_EQ(contains(thin.err, "expected model error "), contains(thin.out, "expected model error 2"))
+      << thin.err;
+  const Outcome thinner =
+      run_program({"render", plate, "-o", folder.file("a.exr"), "--resolution", "32x32", "--set",
+                   "settings.samples=2000", "--set", "shapes.slab.slab.thickness=0.5"});
+  EXPECT_TRUE(contains(thinner.err, "slab: expected model error ")) << thinner.err;
+  const Outcome thick = run_program({"render", folder.scene, "-o", folder.file("a.exr")});
+  EXPECT_TRUE(contains(thick.out, "model about ")) << thick.out;
+  EXPECT_EQ(thick.err, "");
 }
 
 // Claim: the exposure brightens the PNG alone. Source: scene.h. Fails if: it is applied to the EXR, or not at

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `opaline render --method volume`: stopped and gone on with, and ended by its noise.
+#include <algorithm>
+
+#include "opaline/image/image.h"
 #include "opaline/session/walk_file.h"
 #include "run_program.h"
 
@@ -131,6 +134,81 @@ TEST(CliVolume, WarnsOfBadBodies) {
       "parts of its surface lie inside"));
   EXPECT_TRUE(contains(said("[" + ball + R"(,{"sphere":{"radius":6,"center":[9,0,0]}}])"),
                        "ended at other shapes inside"));
+}
+
+double mean_of(const std::string& path, const char* channel) {
+  const Image image = read_image(path);
+  const std::size_t stride = image.channels.size(),
+                    place = std::size_t(std::ranges::find(image.channels, channel) - image.channels.begin());
+  double sum = 0;
+  for (std::size_t at = place; at < image.pixels.size(); at += stride) sum += double(image.pixels[at]);
+  return sum / double(image.pixels.size() / stride);
+}
+
+bool says_not_finite(const std::string& text) {
+  for (const char* word : {" inf", "inf ", "nan"})
+    if (contains(text, word)) return true;
+  return false;
+}
+
+// Claim: a channel without a mean free path is diffuse reflection, by each method, alone or all three, and no text says inf
+// or nan. Source: the limit of a vanishing mean free path. Tolerance: 2 %, 8 % of walks' noise. Fails if: cells
+// take it for no matter (0), or a length is a quotient of zeros.
+TEST(CliVolume, NoMeanFreePathIsDiffuseReflection) {
+  const ScratchFolder folder;
+  const std::string scene = std::string(OPALINE_TEST_INPUTS) + "/radius0.json", out = folder.file("a.exr");
+  for (const std::string radius : {"[3, 0.5, 0]", "[0, 0, 0]"}) {
+    const auto blue_of = [&](const std::string& method) {
+      const Outcome outcome =
+          run_program({"render", scene, "-o", out, "--method", method, "--set",
+                       "media.a.subsurface_radius=" + radius, "--set", "film.resolution=[48,48]"});
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      EXPECT_FALSE(says_not_finite(outcome.out + outcome.err)) << outcome.out << outcome.err;
+      return mean_of(out, "B");
+    };
+    const double expected = blue_of("lambert");
+    EXPECT_NEAR(expected, .0215, .0005);
+    for (const char* method : {"hierarchical", "volume_diffusion", "direct"})
+      EXPECT_NEAR(blue_of(method) / expected, 1, .02) << method << " " << radius;
+    EXPECT_NEAR(blue_of("volume") / expected, 1, .08) << radius;
+    const Outcome plan = run_program({"info", scene, "--set", "media.a.subsurface_radius=" + radius});
+    EXPECT_FALSE(says_not_finite(plan.out)) << plan.out;
+  }
+}
+
+// Claim: a body whose mesh is open is left to its radial profile, pixel by pixel as by hierarchical, and render says so. Source:
+// an open mesh encloses no volume. Fails if: cells are made in it, or nothing is said.
+TEST(CliVolume, CellsLeaveOpenMeshesToProfiles) {
+  const SceneFolder folder;
+  const auto render = [&](const std::string& method) {
+    const Outcome outcome = run_program(
+        {"render", folder.scene, "-o", folder.file("a.exr"), "--method", method, "--set",
+         R"(shapes=[{"name":"leaf","quad":{"corner":[-5,-5,0],"u":[10,0,0],"v":[0,10,0]},"medium":"marble"}])"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(contains(outcome.err, "leaf: its mesh is open and encloses no volume"),
+              method != "hierarchical")
+        << outcome.err;
+    return read_image(folder.file("a.exr")).pixels;
+  };
+  EXPECT_EQ(render("volume_diffusion"), render("hierarchical"));
+}
+
+// Claim: what cells leave out of a body's surface is said. Source: walk_warnings.h. Fails if: a ball in a ball is no
+// warning, or two apart are one.
+TEST(CliVolume, CellsSayWhatTheyLeaveOut) {
+  const SceneFolder folder;
+  const auto said = [&](const std::string& place) {
+    const std::string balls = R"(shapes=[{"name":"a","sphere":{"radius":10},"medium":"marble","group":"g"},)"
+                              R"({"name":"b","sphere":{"radius":4,"center":)" +
+                              place + R"(},"medium":"marble","group":"g"}])";
+    const Outcome outcome =
+        run_program({"render", folder.scene, "-o", folder.file("a.exr"), "--method", "volume_diffusion",
+                     "--set", balls, "--set", "settings.cell_size=4"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_TRUE(contains(said("[1,0,0]"), "g: 14 % of its surface lies inside of it or is folded"));
+  EXPECT_EQ(said("[30,0,0]"), "");
 }
 
 }  // namespace

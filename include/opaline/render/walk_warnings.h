@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What random walks found wrong with a body's meshes.
+// What random walks and cells found wrong with a body's meshes.
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@
 namespace opaline {
 
 /// Light that was lost through holes or stopped by other shapes inside the body; sheets inside of it. One line each;
-/// none without walks.
-std::vector<std::string> walk_warnings(const Body& body);
+/// none without walks or cells.
+/// unit: the world's, mm
+std::vector<std::string> walk_warnings(const Body& body, double unit);
 
 }  // namespace opaline

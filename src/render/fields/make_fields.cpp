@@ -20,6 +20,15 @@ bool has_mesh(const std::vector<std::uint32_t>& meshes, std::size_t mesh) {
   return std::ranges::find(meshes, mesh) != meshes.end();
 }
 
+/// Of each mesh, or null.
+std::vector<const Body*> bodies_of_meshes(const RenderInput& input) {
+  std::vector<const Body*> bodies(input.world.meshes.size());
+  if (!has_samples(input.scene.settings.method)) return bodies;
+  for (const Body& body : input.groups)
+    for (const std::uint32_t mesh : body.plan.meshes) bodies[mesh] = &body;
+  return bodies;
+}
+
 /// What meshes must have in common to share a field: one of the first two, or none of them and the boundary.
 struct Source {
   const Body* group = nullptr;
@@ -29,14 +38,12 @@ struct Source {
   friend bool operator==(const Source&, const Source&) = default;
 };
 
-Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_samplers, std::size_t mesh) {
+Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_samplers, const Body* body,
+                 std::size_t mesh) {
   const Shape& shape = input.scene.shapes[mesh];
   if (!shape.medium) return {.eta = shape.gloss ? float(shape.gloss->eta) : 0};
   const Medium& medium = input.scene.media[*shape.medium];
-  Source source{.eta = float(medium.eta), .is_partly_opaque = is_partly_opaque(medium)};
-  if (has_samples(input.scene.settings.method))
-    for (const Body& group : input.groups)
-      if (has_mesh(group.plan.meshes, mesh)) source.group = &group;
+  Source source{.group = body, .eta = float(medium.eta), .is_partly_opaque = is_partly_opaque(medium)};
   for (const EntrySampler& sampler : entry_samplers)
     if (has_mesh(sampler.meshes(), mesh)) source.entries = &sampler;
   return source;
@@ -45,17 +52,18 @@ Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_s
 std::unique_ptr<Field> make_field(const RenderInput& input, const Source& source,
                                   const SurfaceTextures& textures, std::span<const RgbF> albedos) {
   if (source.group != nullptr && has_cells(source.group->plan.method))
-    return std::make_unique<VolumeField>(*source.group);
+    return std::make_unique<VolumeField>(input, *source.group);
   if (source.group != nullptr) return std::make_unique<SampleField>(input, *source.group);
   if (source.entries != nullptr) return std::make_unique<DirectField>(*source.entries, textures, source.eta);
   return std::make_unique<LocalField>(input, albedos, source.eta);
 }
 
 std::vector<RgbF> albedos_of(const Scene& scene) {
+  std::vector<Rgb> totals;
+  for (const Medium& medium : scene.media) totals.push_back(make_diffuse_profile(medium).total);
   std::vector<RgbF> albedos;
   for (const Shape& shape : scene.shapes)
-    albedos.push_back(
-        RgbF(shape.medium ? make_diffuse_profile(scene.media[*shape.medium]).total : shape.reflectance));
+    albedos.emplace_back(shape.medium ? totals[*shape.medium] : shape.reflectance);
   return albedos;
 }
 
@@ -64,10 +72,11 @@ std::vector<RgbF> albedos_of(const Scene& scene) {
 Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
                    std::span<const EntrySampler> entry_samplers) {
   const std::vector<RgbF> albedos = albedos_of(input.scene);
+  const std::vector<const Body*> bodies = bodies_of_meshes(input);
   Fields fields;
   std::vector<Source> sources;
   for (std::size_t mesh = 0; mesh < input.world.meshes.size(); ++mesh) {
-    const Source source = source_of(input, entry_samplers, mesh);
+    const Source source = source_of(input, entry_samplers, bodies[mesh], mesh);
     const auto known = std::ranges::find(sources, source);
     fields.of_mesh.push_back(std::size_t(known - sources.begin()));
     if (known != sources.end()) continue;

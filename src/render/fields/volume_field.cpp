@@ -6,6 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "render/fields/make_fields.h"
+#include "render/local_media.h"
+
 namespace opaline {
 namespace {
 
@@ -31,10 +34,38 @@ Blocks blocks_of(const SurfaceHits& hits) {
   return blocks;
 }
 
+RgbF local_reflectance(const Scene& scene, const Body& body) {
+  RgbF local;
+  if (body.plan.method != Method::volume_diffusion ||
+      varies_inside(scene.media[body.plan.medium], body.plan.method))
+    return local;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (is_local(body.profile, c)) local[c] = float(body.profile.total[c]);
+  return local;
+}
+
 }  // namespace
 
-LeavingLight VolumeField::at(const SurfaceHits& hits, PointIrradianceInput, const Pass&,
-                             HeldView::Surface*) const {
+VolumeField::VolumeField(const RenderInput& input, const Body& body)
+    : body_(body),
+      local_(local_reflectance(input.scene, body)),
+      is_noisy_(has_area_lights(input.scene)),
+      samples_per_pixel_(input.scene.film.samples_per_pixel) {}
+
+void VolumeField::add_local(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
+                            HeldView::Surface* held, LeavingLight& light) const {
+  if (is_noisy_) light.noise.resize(hits.points.size());
+  lighting.variance = light.noise;
+  light.irradiance = irradiance_at_hits(lighting, pass.is_seen ? samples_per_pixel_ : 1, held);
+  tint_entering(hits.textures, light.irradiance, light.noise);
+  for (std::size_t i = 0; i < hits.points.size(); ++i) {
+    light.exitance[i] += local_ * light.irradiance[i];
+    if (is_noisy_) light.noise[i] = light.noise[i] * Rgb(local_ * local_);
+  }
+}
+
+LeavingLight VolumeField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
+                             HeldView::Surface* held) const {
   LeavingLight light;
   light.exitance.resize(hits.points.size());
   light.error.resize(hits.points.size());
@@ -56,6 +87,7 @@ LeavingLight VolumeField::at(const SurfaceHits& hits, PointIrradianceInput, cons
       }
     }
   }
+  if (local_ != RgbF{}) add_local(hits, lighting, pass, held, light);
   return light;
 }
 

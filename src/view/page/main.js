@@ -244,7 +244,7 @@ function takeFrames({frames, frame: now}) {
 }
 
 function sizeWarnings(groups) {
-  return groups.filter((group) => group.thickness > kLooksOpaque * group.mean_free_path).map((group) =>
+  return groups.filter((group) => group.mean_free_path > 0 && group.thickness > kLooksOpaque * group.mean_free_path).map((group) =>
     `${group.name} is ${group.thickness.toPrecision(3)} mm thick on average, ${Math.round(group.thickness / group.mean_free_path)} mean free paths of ${group.medium}: it looks like paint. Is its size right (mm_per_unit, fit_size)?`);
 }
 
@@ -281,7 +281,8 @@ const takes = {
     if (message.revision !== plan.revision) return;
     report = message;
     one("error").dataset.revision = message.revision;
-    one("error").textContent = message.error > 0 ? `error about ${(100 * message.error).toPrecision(2)} %` : "";
+    one("error").textContent = [[message.error, "settings"], [plan.model_error, "model"]].filter(([error]) => error > 0)
+      .map(([error, of]) => `${of} error about ${(100 * error).toPrecision(2)} %`).join(", ");
     showPlan();
   },
   work: ({stage, done, total}) => {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/render/expected_error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace opaline {
+
+std::optional<double> expected_error(const BodyModel& model, Method method) {
+  if (method == Method::volume || method == Method::lambert) return {};
+  return method == Method::volume_diffusion ? model.expected_error_of_diffusion : model.expected_error;
+}
+
+std::optional<double> expected_model_error(const Plan& plan) {
+  std::optional<double> largest;
+  for (const GroupPlan& group : plan.groups)
+    if (const std::optional<double> error = expected_error(group.model, group.method))
+      largest = std::max(largest.value_or(0), *error);
+  return largest;
+}
+
+std::vector<std::string> model_warnings(const Plan& plan) {
+  constexpr double kLarge = .2, kBetter = .7;  // of the error
+  std::vector<std::string> warnings;
+  for (const GroupPlan& group : plan.groups) {
+    const std::optional<double> error = expected_error(group.model, group.method);
+    if (!error || *error <= kLarge) continue;
+    const std::optional<double>& other = group.model.expected_error_of_diffusion;
+    const std::string better = group.method != Method::volume_diffusion && other && *other < kBetter * *error
+                                   ? fmt::format("--method volume_diffusion: {:.2g} %", 100 * *other)
+                                   : "--method volume is the reference";
+    warnings.push_back(
+        fmt::format("{}: expected model error {:.2g} %; {}", group.name, 100 * *error, better));
+  }
+  return warnings;
+}
+
+}  // namespace opaline

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/render/expected_seconds.h"
+
+#include <algorithm>
+
+#include "opaline/lights/light.h"
+#include "opaline/render/direct.h"
+#include "opaline/volume/volume_diffusion.h"
+#include "opaline/volume/volume_exitance.h"
+
+namespace opaline {
+namespace {
+
+// Measured by bench_plan, CPU seconds.
+constexpr double kTriangle = 4e-6;  // read, mended, in the rays' tree
+constexpr double kShadowRay = 1e-6;
+constexpr double kSample = 1.5e-5;       // placed, in the tree
+constexpr double kCutSample = 1.5e-5;    // cut, and its fit
+constexpr double kCell = 1.2e-5;         // made and solved, three channels
+constexpr double kOfVaryingCell = 2e-5;  // its own medium
+constexpr double kEntry = 5e-6;          // a light's first collisions at a sample
+constexpr double kWalk = 1e-5;
+constexpr double kPixel = 3e-6;          // a camera ray, shaded
+constexpr double kEntrySample = 1.5e-6;  // of `direct`, beside its shadow rays
+constexpr double kSmallestWalks = 32;    // a sample, before an error is estimated
+
+struct Lighting {
+  double rays = 0;  // shadow rays from a point
+  double lights = 0;
+};
+
+Lighting lighting_of(const Scene& scene) {
+  Lighting all;
+  for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+    if (l > 0 && share_rays(scene.lights[l - 1], scene.lights[l])) continue;
+    all.rays += shadow_rays(scene.lights[l], scene.settings.light_samples);
+    all.lights += 1;
+  }
+  return all;
+}
+
+double seconds_of_body(const Scene& scene, const GroupPlan& group, const Lighting& lighting) {
+  const auto samples = double(group.samples);
+  const double solutions = bounces_of(scene) > 0 ? 2 : 1;
+  switch (group.method) {
+    case Method::hierarchical:
+      return samples * (kSample + kShadowRay * lighting.rays);
+    case Method::volume_diffusion: {
+      const double cell =
+          kCell * solutions + (varies_inside(scene.media[group.medium], group.method) ? kOfVaryingCell : 0);
+      return expected_cells(group.area, group.cell) * cell +
+             samples * (kCutSample + (kShadowRay + kEntry) * lighting.rays);
+    }
+    case Method::volume:
+      return samples * kWalk * 3 * std::clamp(lighting.lights, 1., 4.) *
+             (scene.settings.until_error ? kSmallestWalks : double(kDefaultWalks));
+    default:
+      return 0;
+  }
+}
+
+double seconds_of_shading(const Scene& scene, const Lighting& lighting) {
+  const Film& film = scene.film;
+  const double pixels = double(film.resolution[0]) * double(film.resolution[1]);
+  double seconds = pixels * double(film.samples_per_pixel) * (kPixel + kShadowRay * lighting.lights);
+  seconds += pixels * kShadowRay * lighting.rays;
+  if (scene.settings.method == Method::direct)
+    seconds += pixels * double(scene.settings.entry_samples.value_or(kDefaultEntrySamples)) *
+               (kEntrySample + kShadowRay * lighting.lights);
+  return seconds;
+}
+
+}  // namespace
+
+double expected_seconds(const Scene& scene, const Plan& plan) {
+  const Lighting lighting = lighting_of(scene);
+  double seconds = kTriangle * double(plan.triangles) + seconds_of_shading(scene, lighting);
+  for (const GroupPlan& group : plan.groups) seconds += seconds_of_body(scene, group, lighting);
+  return seconds;
+}
+
+}  // namespace opaline

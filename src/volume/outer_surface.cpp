@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/outer_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "opaline/core/random.h"
+
+namespace opaline {
+namespace {
+
+constexpr int kMostSheets = 64;  // that a ray goes through
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kFacing = -.5;        // cosine between the normals of sheets that touch
+constexpr std::size_t kTested = 4096;  // pieces
+
+/// Calls met(traced) for each triangle along a ray, as long as it returns true.
+template <class Met>
+void follow(const RayScene& rays, const Vec3d& from, const Vec3d& direction, double far, const Met& met) {
+  TracedRay traced{Ray(Vec3f(from), Vec3f(direction), float(far)), {}};
+  for (int sheets = 0; sheets < kMostSheets; ++sheets) {
+    rays.intersect_one(traced);
+    if (traced.hit.mesh == Hit::kMiss || !met(traced)) return;
+    traced.ray.near = std::nextafter(traced.ray.far, std::numeric_limits<float>::infinity());
+    traced.ray.far = float(far);
+    traced.hit = {};
+  }
+}
+
+bool leaves(const TracedRay& traced) {
+  return dot(traced.hit.edges_cross, traced.ray.direction) > 0;
+}
+
+}  // namespace
+
+/// Winding numbers of the meshes on both sides of a piece.
+struct OuterSurface::Windings {
+  int behind = 0, before = 0;  ///< before: on the side that its normal points to
+
+  bool are_plain() const { return behind == 1 && before == 0; }
+  friend bool operator==(const Windings&, const Windings&) = default;
+};
+
+OuterSurface::OuterSurface(const RayScene& rays, std::span<const std::uint32_t> meshes, double least_gap)
+    : rays_(rays), least_gap_(least_gap) {
+  for (const std::uint32_t m : meshes) {
+    if (m >= is_body_.size()) is_body_.resize(m + 1);
+    is_body_[m] = true;
+  }
+}
+
+// A ray from behind the piece to the outside; what it meets next to the piece lies in the same place.
+OuterSurface::Windings OuterSurface::windings_at(const SurfacePoint& point, const Vec3d& direction) const {
+  const Vec3d normal(point.geometric);
+  const double offset = double(rays_.offset(point)), cosine = dot(normal, direction);
+  Windings windings;
+  follow(rays_, Vec3d(point.position) - normal * offset, direction, kEndless, [&](const TracedRay& traced) {
+    if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
+    const int step = leaves(traced) ? 1 : -1;
+    windings.behind += step;
+    if (double(traced.ray.far) * cosine > 2 * offset) windings.before += step;
+    return true;
+  });
+  return windings;
+}
+
+/// Whether another sheet of the body faces it from nearby: light that leaves enters again.
+bool OuterSurface::touches(const SurfacePoint& point, const Vec3d& outward) const {
+  const double offset = double(rays_.offset(point));
+  bool found = false;
+  follow(rays_, Vec3d(point.position) + outward * offset, outward, least_gap_, [&](const TracedRay& traced) {
+    if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
+    const double cosine = std::abs(dot(normalized(Vec3d(traced.hit.edges_cross)), outward));
+    found = cosine > -kFacing;
+    return !found;
+  });
+  return found;
+}
+
+// By two of three rays: one may run along an edge.
+Boundedness OuterSurface::of(const SurfacePiece& piece) const {
+  SurfacePoint point = rays_.surface_point(piece.mesh, piece.triangle, 1 / 3.f, 1 / 3.f);
+  point.position = piece.middle;
+  const Vec3d normal(point.geometric);
+  Vec3f x, y;
+  tangent_frame(point.geometric, x, y);
+  Windings windings = windings_at(point, normal);
+  if (windings.are_plain()) return {};
+  const Windings second = windings_at(point, normalized(normal + .3 * Vec3d(x) + .1 * Vec3d(y)));
+  if (second != windings) {
+    const Windings third = windings_at(point, normalized(normal - .2 * Vec3d(x) + .25 * Vec3d(y)));
+    if (third == second) windings = second;
+  }
+  if (windings.are_plain()) return {};
+  const bool is_turned = windings.before != 0;
+  if ((windings.behind != 0) == is_turned) return {0, false};
+  if (touches(point, is_turned ? -normal : normal)) return {0, false};
+  return {1 / float(std::abs(windings.behind - windings.before)), is_turned};
+}
+
+bool OuterSurface::has_inner(std::span<const SurfacePiece> pieces) const {
+  const std::size_t step = std::max<std::size_t>(1, pieces.size() / kTested);
+  for (std::size_t i = 0; i < pieces.size(); i += step)
+    if (of(pieces[i]) != Boundedness{}) return true;
+  return false;
+}
+
+}  // namespace opaline

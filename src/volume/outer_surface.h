@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which pieces of a body's meshes bound the solid that they enclose: meshes may cross themselves, fold back or lie
+// within each other.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "opaline/geometry/ray_scene.h"
+
+namespace opaline {
+
+/// A small flat piece of a body's meshes.
+struct SurfacePiece {
+  Vec3f middle;  ///< world units
+  std::uint32_t mesh = 0, triangle = 0;
+};
+
+/// A piece of the meshes as a boundary of the solid, where the winding number is not 0.
+struct Boundedness {
+  float share = 1;  ///< of the piece's area that counts: 0 inside the solid, 1/2 of two sheets in one place
+  bool is_turned = false;  ///< its triangle faces into the solid
+
+  friend bool operator==(const Boundedness&, const Boundedness&) = default;
+};
+
+class OuterSurface {
+ public:
+  /// in    meshes: the body's, closed
+  ///       least_gap: sheets nearer than this that face each other touch; world units
+  OuterSurface(const RayScene& rays, std::span<const std::uint32_t> meshes, double least_gap);
+
+  Boundedness of(const SurfacePiece& piece) const;
+  /// Whether some pieces, of a few thousand tested, are no plain boundary.
+  bool has_inner(std::span<const SurfacePiece> pieces) const;
+
+ private:
+  struct Windings;
+  Windings windings_at(const SurfacePoint& point, const Vec3d& direction) const;
+  bool touches(const SurfacePoint& point, const Vec3d& outward) const;
+
+  const RayScene& rays_;
+  std::vector<bool> is_body_;
+  double least_gap_;
+};
+
+}  // namespace opaline
