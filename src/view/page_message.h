@@ -63,9 +63,9 @@ struct LookBack {};
 /// The view's own camera becomes the scene's.
 struct KeepLook {};
 
-using PageMessage = std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer,
-                                 WorkBehind, ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack,
-                                 KeepLook>;
+using PageMessage =
+    std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer, WorkBehind,
+                 ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack, KeepLook>;
 
 /// in    text: {"do": "set", "values": {"media.marble.eta": 1.4}, "stroke": 7}, {"do": "undo"}, {"do": "redo"},
 ///       {"do": "reset"}, {"do": "restore", "edits": ["media.marble.eta=1.4"]}, {"do": "save", "name": "a.json"},

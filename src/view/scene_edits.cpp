@@ -75,7 +75,8 @@ const Json* child_of(const Json& owner, const std::string& name) {
   if (!owner.is_array()) return nullptr;
   for (std::size_t i = 0; i < owner.size(); ++i) {
     const Json& element = owner.at(i);
-    if (name == std::to_string(i) || (element.is_object() && element.value("name", "") == name)) return &element;
+    if (name == std::to_string(i) || (element.is_object() && element.value("name", "") == name))
+      return &element;
   }
   return nullptr;
 }
@@ -135,7 +136,7 @@ Scene SceneEdits::read(const Edits& edits, const Look& look, int frame) const {
 
 /// The change of one key where the scene has keys for the value.
 Assignment SceneEdits::with_key(const Assignment& change) const {
-  if (frames_.empty() || is_keyed(Json::parse(change.value))) return change;
+  if (frames_.empty() || is_keyed(Json::parse(change.value, nullptr, false))) return change;
   const Json scene = Json::parse(merged_scene(text_, file_, overrides()));
   const Json* const value = value_at(scene, change.path);
   if (value == nullptr || !is_keyed(*value)) return change;

@@ -411,7 +411,7 @@ void ViewServer::run() {
   while (!state.io.stopped()) try {
       state.io.run();
     } catch (const std::exception& failure) {
-      state.hooks.refused(failure.what());
+      state.hooks.refused(std::string("a page: ") + failure.what());
     }
 }
 
