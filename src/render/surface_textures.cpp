@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/cancel_check.h"
 #include "opaline/core/error.h"
 #include "opaline/core/random.h"
 #include "opaline/image/texture_file.h"
@@ -272,7 +273,9 @@ std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<cons
   if (std::ranges::none_of(samples, [&](const SurfaceSample& s) { return textures.tints_entering(s.mesh); }))
     return tints;
   tints.reserve(samples.size());
+  const CancelCheck check;
   for (const SurfaceSample& s : samples) {
+    check();
     Footprint footprint;
     tangent_frame(s.normal, footprint.x, footprint.y);
     footprint.x *= std::sqrt(s.area);
