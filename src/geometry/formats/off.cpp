@@ -22,6 +22,7 @@ class OffReader {
     for (std::int64_t i = 0; i < faces_; ++i) face();
     require_faces(path_, std::size_t(vertices_), std::size_t(faces_));
     check_.throw_if_any(path_);
+    cut_polygons(path_, mesh_, fans_);
     return std::move(mesh_);
   }
 
@@ -99,7 +100,7 @@ class OffReader {
     if (corners > std::int64_t(bytes_.size() - at_.offset()) / 2 + 1)
       throw bad_line(path_, at_.line(), "a face claims more corners than the file holds", "",
                      std::to_string(corners));
-    PolygonFan fan(mesh_);
+    PolygonFan fan(mesh_, fans_);
     for (std::int64_t i = 0; i < corners; ++i) {
       const std::int64_t vertex = integer("vertex index in a face");
       if (vertex >= vertices_)
@@ -115,6 +116,7 @@ class OffReader {
   std::string& bytes_;
   TextCursor at_;
   SourceMesh mesh_;
+  std::vector<Fan> fans_;
   VertexCheck check_;
   std::int64_t vertices_ = 0, faces_ = 0;
   bool has_normals_ = false;

@@ -132,6 +132,7 @@ class PlyReader {
   SourceMesh run() {
     for (const PlyElement* element : wanted_elements()) rows(*element);
     check_.throw_if_any(path_);
+    cut_polygons(path_, mesh_, fans_);
     give_uvs(mesh_, uvs_);
     return std::move(mesh_);
   }
@@ -228,7 +229,7 @@ class PlyReader {
         values_.skip(p);
         continue;
       }
-      PolygonFan fan(mesh_);
+      PolygonFan fan(mesh_, fans_);
       for (std::uint64_t left = values_.next_list_size(p); left > 0; --left) {
         const double vertex = values_.next(p.type);
         if (vertex < 0 || vertex >= double(vertices_->count))
@@ -251,6 +252,7 @@ class PlyReader {
   bool has_normals_ = false, has_uvs_;
   std::vector<std::array<float, 2>> uvs_;
   SourceMesh mesh_;
+  std::vector<Fan> fans_;
   VertexCheck check_;
 };
 
