@@ -14,17 +14,6 @@
 namespace opaline {
 namespace {
 
-// Spheres and tubes of sines and cosines end at sin(2 pi), -2.4e-16 radii from where they begin.
-std::vector<Vec3d> without_residues(std::vector<Vec3d> positions) {
-  Vec3d extent;
-  for (const Vec3d& p : positions)
-    for (std::size_t axis = 0; axis < 3; ++axis) extent[axis] = std::max(extent[axis], std::abs(p[axis]));
-  for (Vec3d& p : positions)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (std::abs(p[axis]) < std::ldexp(extent[axis], -40)) p[axis] = 0;
-  return positions;
-}
-
 class MeshChecker {
  public:
   MeshChecker(SourceMesh source, const CheckSettings& settings, CheckMemory* memory)
@@ -66,12 +55,11 @@ class MeshChecker {
   /// site_: the first vertex at the same position, which is what neighbourhood goes by. The mesh itself keeps
   /// vertices apart only where their normals differ.
   void find_same_vertices() {
-    if (!settings_.smooth) source_.normals.clear();
     for (Vec3f& n : source_.normals)
       if (!is_finite(n)) n = {};
-    const std::vector<Vec3d> places = without_residues(source_.positions);
-    same_ = weld(places, source_.normals);
-    site_ = source_.normals.empty() ? same_ : weld(places);
+    if (!settings_.smooth) facet_normals_ = std::exchange(source_.normals, {});
+    same_ = weld(source_.positions, source_.normals);
+    site_ = source_.normals.empty() ? same_ : weld(source_.positions);
   }
 
   void merge_vertices() {
@@ -83,14 +71,21 @@ class MeshChecker {
   bool recall() {
     if (memory_ == nullptr || !memory_->holds || memory_->fill_holes != settings_.fill_holes ||
         memory_->may_be_open != settings_.may_be_open || memory_->same != same_ || memory_->site != site_ ||
-        memory_->given != source_.triangles || memory_->origins.empty() != origins_.empty() ||
-        any_inward(source_.positions, memory_->mended, memory_->part, memory_->parts))
+        memory_->has_inside != settings_.has_inside || memory_->given != source_.triangles ||
+        memory_->origins.empty() != origins_.empty() || would_turn(memory_->mended, memory_->parts))
       return false;
     memory_->recalled = true;
     source_.triangles = memory_->mended;
     origins_ = memory_->origins;
     report_ = memory_->report;
     return true;
+  }
+
+  const std::vector<Vec3f>& normals() const { return settings_.smooth ? source_.normals : facet_normals_; }
+
+  bool would_turn(const std::vector<Triangle>& triangles, const MeshParts& parts) const {
+    const std::vector<Inward> inward = inward_parts({source_.positions, triangles, normals()}, parts);
+    return std::ranges::any_of(inward, [](Inward reason) { return reason != Inward::no; });
   }
 
   void start_memory() {
@@ -106,6 +101,7 @@ class MeshChecker {
     if (places_matter_) return;
     memory_->fill_holes = settings_.fill_holes;
     memory_->may_be_open = settings_.may_be_open;
+    memory_->has_inside = settings_.has_inside;
     memory_->same = std::move(same_);
     memory_->site = std::move(site_);
     memory_->mended = source_.triangles;
@@ -150,20 +146,20 @@ class MeshChecker {
     std::vector<Triangle> triangles = all_sites();
     EdgeTable edges(triangles, source_.positions.size());
     if (settings_.fill_holes && !open_edges(edges).empty()) {
-      apply(find_winding(source_.positions, triangles, edges), false);
+      apply(find_winding(wound(), triangles, edges, false), false);
       fill(edges);
       places_matter_ = true;
       triangles = all_sites();
       edges = EdgeTable(triangles, source_.positions.size());
     }
-    Winding winding = find_winding(source_.positions, triangles, edges);
+    Winding winding = find_winding(wound(), triangles, edges, settings_.has_inside);
     apply(winding, true);
     count_edges(edges);
-    places_matter_ = places_matter_ || winding.inside_out > 0;
-    if (memory_ == nullptr) return;
-    memory_->part = std::move(winding.part);
-    memory_->parts = winding.parts;
+    for (const TurnedParts& turned : winding.turned) places_matter_ |= turned.parts > 0;
+    if (memory_ != nullptr) memory_->parts = std::move(winding.parts);
   }
+
+  WoundMesh wound() const { return {source_.positions, source_.triangles, normals()}; }
 
   static std::vector<Edge> open_edges(const EdgeTable& edges) {
     std::vector<Edge> open;
@@ -182,10 +178,20 @@ class MeshChecker {
     }
     if (winding.inconsistent > 0)
       warn(std::to_string(winding.inconsistent) + " triangles wound against their neighbours were flipped");
-    if (winding.inside_out > 0)
-      warn(std::to_string(winding.inside_out) + " triangles of closed parts wound inward were flipped");
+    const auto turned = [&](Inward reason) { return winding.turned[std::size_t(reason)]; };
+    if (const TurnedParts closed = turned(Inward::by_volume); closed.parts > 0)
+      warn(std::to_string(closed.triangles) + " triangles of closed parts wound inward were flipped");
+    warn_of_open(turned(Inward::by_normals), "against the file's normals");
+    warn_of_open(turned(Inward::by_volume_if_closed), "by the volume with holes closed");
     if (final && winding.unorientable_edges > 0)
       warn("one-sided surface: no winding suits " + std::to_string(winding.unorientable_edges) + " edges");
+  }
+
+  void warn_of_open(const TurnedParts& turned, const char* reason) {
+    if (turned.parts > 0)
+      warn(std::to_string(turned.triangles) + " triangles of " + std::to_string(turned.parts) +
+           (turned.parts == 1 ? " open part" : " open parts") + " wound inward, " + reason +
+           ", were flipped");
   }
 
   void fill(const EdgeTable& edges) {
@@ -216,10 +222,7 @@ class MeshChecker {
     const std::vector<Vec3d>& p = source_.positions;
     report_.zero_area_dropped += drop_triangles([&](std::size_t t) {
       const auto [a, b, c] = source_.triangles[t];
-      const Vec3d ab = p[b] - p[a], bc = p[c] - p[b], ca = p[a] - p[c];
-      const Vec3d twice_area = cross(ab, ca);
-      const double longest = std::max({dot(ab, ab), dot(bc, bc), dot(ca, ca)});
-      return dot(twice_area, twice_area) <= 1e-24 * longest * longest;
+      return is_sliver(p[a], p[b], p[c]);
     });
   }
 
@@ -301,6 +304,7 @@ class MeshChecker {
   std::vector<std::uint32_t> origins_;  // see CheckMemory; empty: nothing is given by triangle
   CheckMemory* memory_;
   MeshReport report_;
+  std::vector<Vec3f> facet_normals_;  // the file's, where the mesh is not to be smooth
   std::vector<std::uint32_t> same_, site_;
   bool places_matter_ = false;
 };

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "geometry/mesh_parts.h"
 #include "geometry/source_mesh.h"
 #include "opaline/geometry/mesh.h"
 
@@ -14,26 +15,25 @@ struct CheckSettings {
   bool fill_holes = false;
   bool smooth = true;        ///< give vertices normals
   bool may_be_open = false;  ///< say nothing of boundary edges
+  bool has_inside = false;   ///< wind open parts outward, too
 };
 
 /// What checking a mesh found that depends on which triangles meet where, and not on the places themselves.
 struct CheckMemory {
   bool holds = false, recalled = false;  ///< recalled: the last call made use of it
-  bool fill_holes = false, may_be_open = false;
+  bool fill_holes = false, may_be_open = false, has_inside = false;
   std::vector<Triangle> given;  ///< before anything was done to them
   std::vector<std::uint32_t> same,
       site;                      ///< of each vertex the first at its place, with its normal and without
   std::vector<Triangle> mended;  ///< without doubles, and wound
   std::vector<std::uint32_t>
       origins;  ///< of these, twice the number of that given, one more if flipped; where something is given by triangle
-  std::vector<std::uint32_t> part;  ///< Winding::part of these
-  std::uint32_t parts = 0;
+  MeshParts parts;    ///< of these
   MeshReport report;  ///< warnings do not name the mesh
 };
 
-/// Welds vertices that are exactly equal (what is below 1e-12 of the largest along an axis counts as 0), drops and counts
-/// zero-area and duplicate triangles, winds what is left consistently and closed components outward, fills holes if asked,
-/// counts open and non-manifold edges, and completes the normals.
+/// Welds vertices that are exactly equal, drops and counts zero-area and duplicate triangles, winds what is left
+/// consistently and outward, fills holes if asked, counts open and non-manifold edges, and completes the normals.
 /// in    positions finite; normals of any length, zero or not finite where there
 /// is none
 /// out   at least one triangle, only vertices that a triangle uses. A vertex at which the source has
@@ -41,7 +41,7 @@ struct CheckMemory {
 ///       stays several vertices at exactly the same position. Multiplying all positions by a power of two
 ///       changes nothing but the positions
 /// error Error{bad_input} if no triangle with an area is left
-/// A triangle counts as zero-area if twice its area is at most 1e-12 of the square of its longest side.
+/// A triangle counts as zero-area if is_sliver says so.
 /// in    memory: null, or what earlier calls found, which serves again where the same triangles meet in the
 ///       same places; the result is the same
 CheckedMesh check_mesh(SourceMesh source, const CheckSettings& settings, CheckMemory* memory = nullptr);

@@ -121,6 +121,7 @@ CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh me
   const bool is_part =
       file != nullptr && !file->part.empty();  // of an asset, whose surfaces need not be closed
   settings.may_be_open = (is_part || std::holds_alternative<QuadShape>(shape.source)) && !shape.medium;
+  settings.has_inside = shape.medium.has_value();
   if (file != nullptr) settings.fill_holes = file->fill_holes;
   place(mesh, shape.to_world, name);
   return check_mesh(std::move(mesh), settings, memory);

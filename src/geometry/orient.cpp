@@ -2,12 +2,10 @@
 #include "geometry/orient.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "geometry/topology.h"
-#include "opaline/geometry/mesh.h"
 
 namespace opaline {
 namespace {
@@ -55,39 +53,22 @@ class WindingSets {
 struct Component {
   std::uint32_t first = 0, count = 0;  // in Orienter::order_
   std::uint32_t opposite = 0;          // how many are wound against the first one
-  bool closed = true;
+  bool closed = true, one_sided = false;
 };
-
-/// A closed component with a volume.
-struct Solid {
-  std::uint32_t component = 0;
-  double volume = 0;
-  Bounds box;
-};
-
-/// Of the tetrahedron below the triangle, times 6.
-double signed_volume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& origin) {
-  return dot(a - origin, cross(b - origin, c - origin));
-}
-
-/// A flat double sheet has no outside. size: sum of the magnitudes that sum to the volume.
-bool is_flat(double volume, double size) {
-  return std::abs(volume) <= 1e-12 * size;
-}
 
 class Orienter {
  public:
-  Orienter(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-           const EdgeTable& edges)
-      : positions_(positions), triangles_(triangles), edges_(edges), sets_(triangles.size()) {}
+  Orienter(const WoundMesh& mesh, const std::vector<Triangle>& sites, const EdgeTable& edges,
+           bool decide_open)
+      : mesh_(mesh), triangles_(sites), edges_(edges), decide_open_(decide_open), sets_(sites.size()) {}
 
   Winding run() {
     result_.flip.resize(triangles_.size());
     join_neighbours();
     collect_components();
     for (const Component& component : components_) agree(component);
-    find_closed();
-    number_closed();
+    find_rims();
+    name_parts();
     turn_outward();
     return std::move(result_);
   }
@@ -115,7 +96,7 @@ class Orienter {
       components_[component_of_[t]].opposite += opposite;
       result_.flip[t] = opposite;
     }
-    for (const std::uint32_t t : unorientable_) components_[component_of_[t]].closed = false;
+    for (const std::uint32_t t : unorientable_) components_[component_of_[t]].one_sided = true;
     sort_by_component();
   }
 
@@ -143,132 +124,72 @@ class Orienter {
     for (const std::uint32_t t : members(component)) result_.flip[t] = !result_.flip[t];
   }
 
-  /// A component is closed if an even number of its triangles meets in each of its edges.
-  void find_closed() {
-    edges_.for_each([&](std::uint32_t, std::uint32_t, std::span<const std::uint32_t> corners) {
-      for (const std::uint32_t corner : corners) {
-        const std::uint32_t own = component_of_[corner / 3];
-        const auto meets = std::count_if(corners.begin(), corners.end(), [&](std::uint32_t other) {
-          return component_of_[other / 3] == own;
-        });
+  /// A component is closed if an even number of its triangles meets in each of its edges. The rims of the others are where
+  /// more of its triangles go one way than the other.
+  void find_rims() {
+    edges_.for_each([&](std::uint32_t low, std::uint32_t high, std::span<const std::uint32_t> corners) {
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const std::uint32_t own = component_of_[corners[i] / 3];
+        std::uint32_t meets = 0, before = 0;
+        int upward = 0;  // triangles that go from low to high, less those that go back
+        for (std::size_t j = 0; j < corners.size(); ++j) {
+          if (component_of_[corners[j] / 3] != own) continue;
+          ++meets;
+          before += j < i;
+          upward += (start(corners[j]) == low) != result_.flip[corners[j] / 3] ? 1 : -1;
+        }
         if (meets % 2 != 0) components_[own].closed = false;
+        if (before > 0) continue;
+        for (; upward > 0; --upward) rims_.push_back({own, low, high});
+        for (; upward < 0; ++upward) rims_.push_back({own, high, low});
       }
     });
   }
 
-  void number_closed() {
-    std::vector<std::uint32_t> number(components_.size(), Winding::kOpen);
-    for (std::uint32_t i = 0; i < components_.size(); ++i)
-      if (components_[i].closed) number[i] = result_.parts++;
-    result_.part.resize(triangles_.size());
-    for (std::size_t t = 0; t < triangles_.size(); ++t) result_.part[t] = number[component_of_[t]];
-  }
-
-  /// The triangle with its corners in the order found so far.
-  Triangle wound(std::uint32_t t) const {
-    const Triangle& c = triangles_[t];
-    return result_.flip[t] ? Triangle{c[0], c[2], c[1]} : c;
-  }
-
-  Solid measure(std::uint32_t index) const {
-    Solid solid;
-    solid.component = index;
-    const std::span<const std::uint32_t> own = members(components_[index]);
-    const Vec3d origin = positions_[triangles_[own[0]][0]];
-    double size = 0;
-    for (const std::uint32_t t : own) {
-      const auto [a, b, c] = wound(t);
-      const double part = signed_volume(positions_[a], positions_[b], positions_[c], origin);
-      solid.volume += part;
-      size += std::abs(part);
-      for (const std::uint32_t v : {a, b, c}) {
-        solid.box.low = component_min(solid.box.low, positions_[v]);
-        solid.box.high = component_max(solid.box.high, positions_[v]);
-      }
-    }
-    if (is_flat(solid.volume, size)) solid.volume = 0;
-    return solid;
+  void name_parts() {
+    MeshParts& parts = result_.parts;
+    for (const Component& component : components_)
+      parts.kinds.push_back(component.one_sided ? MeshParts::Kind::ignored
+                            : component.closed  ? MeshParts::Kind::closed
+                            : decide_open_      ? MeshParts::Kind::open
+                                                : MeshParts::Kind::ignored);
+    parts.of = component_of_;
+    for (const MeshParts::RimEdge& edge : rims_)
+      if (parts.kinds[edge.part] == MeshParts::Kind::open) parts.rims.push_back(edge);
   }
 
   void turn_outward() {
-    bool any_inward = false;
-    for (std::uint32_t i = 0; i < components_.size(); ++i) {
-      if (!components_[i].closed) continue;
-      solids_.push_back(measure(i));
-      any_inward |= solids_.back().volume < 0;
-    }
-    if (!any_inward) return;
-    std::vector<std::uint32_t> inverted;
-    for (const Solid& solid : solids_)
-      if (solid.volume != 0 && outermost_around(solid).volume < 0) inverted.push_back(solid.component);
-    for (const std::uint32_t i : inverted) {
+    std::vector<Triangle> wound = mesh_.triangles;
+    for (std::size_t t = 0; t < wound.size(); ++t)
+      if (result_.flip[t]) std::swap(wound[t][1], wound[t][2]);
+    const std::vector<Inward> inward = inward_parts({mesh_.positions, wound, mesh_.normals}, result_.parts);
+    for (std::size_t i = 0; i < inward.size(); ++i) {
+      if (inward[i] == Inward::no) continue;
       flip_all(components_[i]);
-      result_.inside_out += components_[i].count;
+      TurnedParts& turned = result_.turned[std::size_t(inward[i])];
+      ++turned.parts;
+      turned.triangles += components_[i].count;
     }
+    for (MeshParts::RimEdge& edge : result_.parts.rims)
+      if (inward[edge.part] != Inward::no) std::swap(edge.from, edge.to);
   }
 
-  /// The largest solid around this one, or itself.
-  const Solid& outermost_around(const Solid& inner) const {
-    const Vec3d& point = positions_[triangles_[members(components_[inner.component])[0]][0]];
-    const Solid* best = &inner;
-    for (const Solid& outer : solids_) {
-      const bool encloses = component_min(outer.box.low, inner.box.low) == outer.box.low &&
-                            component_max(outer.box.high, inner.box.high) == outer.box.high;
-      if (encloses && std::abs(outer.volume) > std::abs(best->volume) && contains(outer, point))
-        best = &outer;
-    }
-    return *best;
-  }
-
-  /// By the winding number: the solid angle of the whole component seen from the point, after van Oosterom &
-  /// Strackee 1983.
-  bool contains(const Solid& solid, const Vec3d& point) const {
-    double angle = 0;
-    for (const std::uint32_t t : members(components_[solid.component])) {
-      const auto [ia, ib, ic] = wound(t);
-      const Vec3d a = positions_[ia] - point, b = positions_[ib] - point, c = positions_[ic] - point;
-      const double la = length(a), lb = length(b), lc = length(c);
-      angle += 2 * std::atan2(dot(a, cross(b, c)),
-                              la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-    }
-    constexpr double half_sphere = 6.283185307179586;
-    return std::abs(angle) > half_sphere;
-  }
-
-  const std::vector<Vec3d>& positions_;
-  const std::vector<Triangle>& triangles_;
+  const WoundMesh& mesh_;
+  const std::vector<Triangle>& triangles_;  // by sites
   const EdgeTable& edges_;
+  bool decide_open_;
   WindingSets sets_;
   std::vector<std::uint32_t> component_of_, order_, unorientable_;
   std::vector<Component> components_;
-  std::vector<Solid> solids_;
+  std::vector<MeshParts::RimEdge> rims_;
   Winding result_;
 };
 
 }  // namespace
 
-Winding find_winding(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                     const EdgeTable& edges) {
-  return Orienter(positions, triangles, edges).run();
-}
-
-bool any_inward(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                const std::vector<std::uint32_t>& part, std::uint32_t parts) {
-  struct Sum {
-    const Vec3d* origin = nullptr;
-    double volume = 0, size = 0;
-  };
-  std::vector<Sum> sums(parts);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    if (part[t] == Winding::kOpen) continue;
-    Sum& sum = sums[part[t]];
-    const auto& [a, b, c] = triangles[t];
-    if (sum.origin == nullptr) sum.origin = &positions[a];
-    const double volume = signed_volume(positions[a], positions[b], positions[c], *sum.origin);
-    sum.volume += volume;
-    sum.size += std::abs(volume);
-  }
-  return std::ranges::any_of(sums, [](const Sum& s) { return s.volume < 0 && !is_flat(s.volume, s.size); });
+Winding find_winding(const WoundMesh& mesh, const std::vector<Triangle>& sites, const EdgeTable& edges,
+                     bool decide_open) {
+  return Orienter(mesh, sites, edges, decide_open).run();
 }
 
 }  // namespace opaline

@@ -1,38 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Winding: neighbours alike, closed components outward.
+// Winding: neighbours alike, parts outward.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
-#include "geometry/source_mesh.h"
+#include "geometry/outward.h"
 #include "geometry/topology.h"
 
 namespace opaline {
 
+struct TurnedParts {
+  std::size_t parts = 0, triangles = 0;
+};
+
 struct Winding {
   std::vector<bool> flip;              ///< one a triangle: swap two corners to mend it
   std::size_t inconsistent = 0;        ///< triangles of `flip` that were wound against their neighbours
-  std::size_t inside_out = 0;          ///< triangles of `flip` whose whole component was wound inward
+  std::array<TurnedParts, 4> turned;   ///< parts wound inward, by Inward
   std::size_t unorientable_edges = 0;  ///< edges that no winding satisfies (Moebius strips)
-  std::vector<std::uint32_t> part;     ///< one a triangle: the number of its closed component, or kOpen
-  std::uint32_t parts = 0;             ///< how many closed components
-  static constexpr std::uint32_t kOpen = ~0u;
+  MeshParts parts;                     ///< of the mesh as mended
 };
 
-/// Whether any closed component is wound inward, the only matter of winding that hangs on positions.
-/// in    triangles: as wound by a Winding, part and parts: its own
-bool any_inward(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                const std::vector<std::uint32_t>& part, std::uint32_t parts);
-
-/// Which triangles to flip so that triangles sharing an edge of exactly two agree, and closed components face
-/// outward. Where neighbours disagree the larger part of the component wins. A closed component wound inward
-/// inside another one is a cavity and stays, unless the outermost one around it is flipped: then it is
-/// flipped with it.
-/// in    vertices shared by neighbours (welded); no triangle with a vertex twice; edges: of
-/// these
-///       triangles
-Winding find_winding(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                     const EdgeTable& edges);
+/// Which triangles to flip so that triangles sharing an edge of exactly two agree, and parts face outward. Where
+/// neighbours disagree the larger half of the part wins. See inward_parts.
+/// in    mesh: as read; sites: its triangles, of vertices shared by neighbours (welded), no triangle with a vertex
+///       twice; edges: of these; decide_open: open parts, too, else they keep their winding
+Winding find_winding(const WoundMesh& mesh, const std::vector<Triangle>& sites, const EdgeTable& edges,
+                     bool decide_open);
 
 }  // namespace opaline

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/formats/mesh_format.h"
+#include "geometry/topology.h"
 #include "opaline/core/error.h"
 #include "opaline/core/input_file.h"
 #include "opaline/core/machine_memory.h"
@@ -86,6 +87,7 @@ SourceMesh read_mesh(const std::string& path, const std::string& part, MeshUvs u
   std::string bytes = read_mesh_bytes(path);
   SourceMesh mesh = part.empty() ? format->read(path, bytes, uvs) : format->read_part(path, part, bytes, uvs);
   require_indexable(path, mesh);
+  join_seams(mesh);
   return mesh;
 }
 

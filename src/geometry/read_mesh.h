@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// The triangles of a mesh file, polygons cut into fans.
+/// The triangles of a mesh file, polygons cut into triangles, and seams that rounding opens closed.
 /// in    part: see MeshFile::part
 /// out   at least one triangle unless all were collapsed; every index in range, every position finite and
 ///       below 1e18; positions as exact as the file has them (STL: float); the file's normals, not

@@ -2,6 +2,8 @@
 #include "geometry/topology.h"
 
 #include <bit>
+#include <cmath>
+#include <limits>
 
 namespace opaline {
 namespace {
@@ -25,8 +27,17 @@ class FirstEqual {
     return slots_[slot];
   }
 
- private:
   static constexpr std::uint32_t none = 0xffffffff;
+
+  /// none if there is none
+  template <class Equal>
+  std::uint32_t find(std::uint32_t index, std::uint64_t hash, Equal equal) const {
+    std::size_t slot = hash & mask_;
+    while (slots_[slot] != none && !equal(slots_[slot], index)) slot = (slot + 1) & mask_;
+    return slots_[slot];
+  }
+
+ private:
   std::vector<std::uint32_t> slots_;
   std::size_t mask_;
 };
@@ -54,7 +65,80 @@ std::vector<std::uint32_t> weld_all(const std::vector<Position>& positions,
   return same;
 }
 
+/// Finds vertices that differ by rounding, by the cells of a grid four times as wide.
+class SeamFinder {
+ public:
+  SeamFinder(const std::vector<Vec3d>& positions, double reach)
+      : positions_(positions), reach_(reach), first_(positions.size()) {}
+
+  /// For each vertex the first one within reach of it that has none itself.
+  std::vector<std::uint32_t> run() {
+    std::vector<std::uint32_t> same(positions_.size());
+    for (std::uint32_t v = 0; v < same.size(); ++v) same[v] = find(v);
+    return same;
+  }
+
+ private:
+  static constexpr double kCell = 4;  // over the reach
+
+  std::uint32_t find(std::uint32_t v) {
+    const Vec3d place =
+        positions_[v] / (kCell * reach_) + Vec3d(.5);  // round numbers lie in the middle of cells
+    Vec3d cell, step;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      cell[axis] = std::floor(place[axis]);
+      const double within = place[axis] - cell[axis];
+      step[axis] = within < 1 / kCell ? -1 : within > 1 - 1 / kCell ? 1 : 0;
+    }
+    const auto is_near = [&](std::uint32_t a, std::uint32_t b) {
+      const Vec3d apart = positions_[a] - positions_[b];
+      return max_component(component_max(apart, -apart)) <= reach_;
+    };
+    std::uint32_t found = FirstEqual::none;
+    for (unsigned corner = 1; corner < 8;
+         ++corner) {  // the cells on the other side of near faces, edges and corners
+      Vec3d other = cell;
+      bool is_other = true;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if ((corner >> axis & 1) == 0) continue;
+        other[axis] += step[axis];
+        is_other &= step[axis] != 0;
+      }
+      if (is_other) found = std::min(found, first_.find(v, hash_vector(0, other), is_near));
+    }
+    return found != FirstEqual::none ? found : first_.find_or_insert(v, hash_vector(0, cell), is_near);
+  }
+
+  const std::vector<Vec3d>& positions_;
+  double reach_;
+  FirstEqual first_;
+};
+
 }  // namespace
+
+bool is_sliver(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d ab = b - a, bc = c - b, ca = a - c;
+  const Vec3d twice_area = cross(ab, ca);
+  const double longest = std::max({dot(ab, ab), dot(bc, bc), dot(ca, ca)});
+  return dot(twice_area, twice_area) <= 1e-24 * longest * longest;
+}
+
+void join_seams(SourceMesh& mesh) {
+  std::vector<Vec3d>& p = mesh.positions;
+  double extent = 0;
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle)
+      extent = std::max(extent, max_component(component_max(p[v], -p[v])));
+  constexpr int kReach = -44;
+  if (!(extent > std::ldexp(std::numeric_limits<double>::min(), -kReach))) return;
+  const double reach = std::ldexp(1., std::ilogb(extent) + kReach);
+  const std::vector<std::uint32_t> same = SeamFinder(p, reach).run();
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const bool collapses = same[a] == same[b] || same[b] == same[c] || same[c] == same[a];
+    if (collapses && !is_sliver(p[a], p[b], p[c])) return;
+  }
+  for (std::size_t v = 0; v < p.size(); ++v) p[v] = p[same[v]];
+}
 
 std::vector<std::uint32_t> weld(const std::vector<Vec3d>& positions, const std::vector<Vec3f>& normals) {
   return weld_all(positions, normals);

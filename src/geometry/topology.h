@@ -17,6 +17,13 @@ namespace opaline {
 std::vector<std::uint32_t> weld(const std::vector<Vec3d>& positions, const std::vector<Vec3f>& normals = {});
 std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions);
 
+/// Moves vertices onto the first one that differs from them by rounding alone: by 2^-44 of the largest coordinate along each
+/// axis. Nothing moves where a triangle with an area would lose it.
+void join_seams(SourceMesh& mesh);
+
+/// Whether a triangle counts as having no area: twice it is at most 1e-12 of the square of its longest side.
+bool is_sliver(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+
 /// For each triangle whether an earlier one has the same three vertices, in whatever order.
 std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles);
 

@@ -15,7 +15,7 @@ namespace opaline {
 ///       true one
 /// out   at least one triangle; every position finite and below 1e18; zero-area and duplicate triangles
 /// dropped;
-///       closed components wound outward; holes filled if asked; normals as shape.normals says
+///       parts wound outward, open ones where the shape has a medium; holes filled if asked; normals as shape.normals says
 /// error Error{bad_input} naming the file: missing, empty, truncated or unreadable mesh, NaN or huge
 /// coordinates,
 ///       index out of range, no area; no UVs where they are required

@@ -38,6 +38,18 @@ Vec3f usable_normal(const Vec3d& normal) {
   return is_in_range(normal) ? Vec3f(normal) : Vec3f();
 }
 
+std::vector<Recut> cut_polygons(const std::string& path, SourceMesh& mesh, const std::vector<Fan>& fans) {
+  PolygonCuts result = cut_concave_polygons(mesh.positions, mesh.triangles, fans);
+  recut(result.cuts, mesh.triangles);
+  if (result.crossing > 0)
+    mesh.warnings.push_back(path + ": " +
+                            (result.crossing == 1
+                                 ? "1 face crosses itself; its"
+                                 : std::to_string(result.crossing) + " faces cross themselves; their") +
+                            " triangles overlap");
+  return std::move(result.cuts);
+}
+
 void give_uvs(SourceMesh& mesh, const std::vector<std::array<float, 2>>& uvs) {
   if (uvs.empty()) return;
   mesh.uvs.reserve(mesh.triangles.size());

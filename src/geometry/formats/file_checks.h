@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "geometry/cut_polygons.h"
 #include "geometry/source_mesh.h"
 #include "opaline/core/error.h"
 #include "opaline/core/vec3.h"
@@ -34,7 +36,8 @@ Vec3f usable_normal(const Vec3d& normal);
 /// Cuts a polygon, given corner by corner, into the triangles between its first corner and its other edges.
 class PolygonFan {
  public:
-  explicit PolygonFan(SourceMesh& mesh) : mesh_(mesh) {}
+  /// fans: takes those of more than one triangle, for cut_concave_polygons
+  PolygonFan(SourceMesh& mesh, std::vector<Fan>& fans) : mesh_(mesh), fans_(fans) {}
 
   void add_corner(std::uint32_t vertex) {
     if (corners_ == 0) first_ = vertex;
@@ -43,13 +46,22 @@ class PolygonFan {
     ++corners_;
   }
   /// After the last corner.
-  void finish() { mesh_.collapsed += corners_ < 3; }
+  void finish() {
+    mesh_.collapsed += corners_ < 3;
+    if (corners_ > 3)
+      fans_.push_back({std::uint32_t(mesh_.triangles.size() - (corners_ - 2)), std::uint32_t(corners_ - 2)});
+  }
 
  private:
   SourceMesh& mesh_;
+  std::vector<Fan>& fans_;
   std::uint32_t first_ = 0, last_ = 0;
   std::size_t corners_ = 0;
 };
+
+/// Cuts concave polygons, see cut_concave_polygons; the mesh gets the new triangles, and a warning of those that cross
+/// themselves. The result is for what else the file gives to corners.
+std::vector<Recut> cut_polygons(const std::string& path, SourceMesh& mesh, const std::vector<Fan>& fans);
 
 /// To the corners of all triangles from their vertices; uvs: empty, or one a vertex.
 void give_uvs(SourceMesh& mesh, const std::vector<std::array<float, 2>>& uvs);

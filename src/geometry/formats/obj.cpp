@@ -212,6 +212,8 @@ class ObjReader {
       ++mesh_.collapsed;
       return;
     }
+    if (corners_.size() > 3)
+      fans_.push_back({std::uint32_t(mesh_.triangles.size()), std::uint32_t(corners_.size() - 2)});
     for (std::size_t i = 2; i < corners_.size(); ++i)
       add_triangle({corners_[0], corners_[i - 1], corners_[i]});
   }
@@ -227,20 +229,30 @@ class ObjReader {
     corner_normals_.push_back({a.normal, b.normal, c.normal});
   }
 
+  /// Corners at a vertex met before are left out, but not those of a face with a hole.
   void keep_first_of_equal_corners() {
     constexpr std::size_t kFew = 16;  // to compare each with each
-    std::size_t kept = 0;
+    kept_.clear();
     seen_.clear();
     for (const Corner& corner : corners_) {
-      const auto end = corners_.begin() + std::ptrdiff_t(kept);
-      const bool is_new =
-          corners_.size() <= kFew
-              ? std::find_if(corners_.begin(), end,
-                             [&](const Corner& c) { return c.vertex == corner.vertex; }) == end
-              : seen_.insert(corner.vertex).second;
-      if (is_new) corners_[kept++] = corner;
+      const bool is_new = corners_.size() <= kFew
+                              ? std::ranges::find(kept_, corner.vertex, &Corner::vertex) == kept_.end()
+                              : seen_.insert(corner.vertex).second;
+      if (is_new) kept_.push_back(corner);
     }
-    corners_.resize(kept);
+    const bool has_hole = kept_.size() >= 3 && kept_.size() < corners_.size() && has_bridge();
+    if (!has_hole) corners_.swap(kept_);
+  }
+
+  /// Whether the face meets an edge both ways: there it leads to a hole and back.
+  bool has_bridge() const {
+    std::vector<std::array<std::int64_t, 2>> edges;
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      edges.push_back({corners_[i].vertex, corners_[(i + 1) % corners_.size()].vertex});
+    std::ranges::sort(edges);
+    return std::ranges::any_of(edges, [&](const auto& edge) {
+      return edge[0] != edge[1] && std::ranges::binary_search(edges, std::array{edge[1], edge[0]});
+    });
   }
 
   void finish() {
@@ -251,6 +263,7 @@ class ObjReader {
     check_.throw_if_any(path_);
     check_range(highest_vertex_, mesh_.positions.size(), "vertex");
     check_range(highest_uv_, uvs_.size(), "texture coordinate");
+    cut_faces();
     if (unread_ > 0)
       mesh_.warnings.push_back(
           path_ + ":" + std::to_string(first_unread_line_) + ": " + std::to_string(unread_) +
@@ -276,6 +289,14 @@ class ObjReader {
       mesh_.smoothing.crease_angle = 0;
   }
 
+  void cut_faces() {
+    const std::vector<Recut> cuts = cut_polygons(path_, mesh_, fans_);
+    if (with_uvs_) recut(cuts, corner_uvs_);
+    if (corner_normals_.empty()) return;
+    corner_normals_.resize(mesh_.triangles.size(), {kNone, kNone, kNone});
+    recut(cuts, corner_normals_);
+  }
+
   void give_uvs() {
     mesh_.uvs.resize(corner_uvs_.size());
     for (std::size_t t = 0; t < corner_uvs_.size(); ++t)
@@ -284,7 +305,6 @@ class ObjReader {
   }
 
   void give_normals() {
-    corner_normals_.resize(mesh_.triangles.size(), {kNone, kNone, kNone});
     VertexVariants variants(mesh_);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
       for (std::size_t i = 0; i < 3; ++i)
@@ -315,7 +335,8 @@ class ObjReader {
   bool with_uvs_;
   std::vector<std::array<float, 2>> uvs_;
   std::vector<std::array<std::int64_t, 3>> corner_uvs_;  // of triangles
-  std::vector<Corner> corners_;                          // of the face at hand
+  std::vector<Corner> corners_, kept_;                   // of the face at hand
+  std::vector<Fan> fans_;                                // of faces with more than three corners
   std::unordered_set<std::int64_t> seen_;
   FileColors colors_{ColorCoding::srgb};
   std::uint32_t group_ = 0;  // of the faces that follow

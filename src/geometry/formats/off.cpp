@@ -27,6 +27,7 @@ class OffReader {
     for (std::int64_t i = 0; i < faces_; ++i) face();
     require_faces(path_, std::size_t(vertices_), std::size_t(faces_));
     check_.throw_if_any(path_);
+    cut_polygons(path_, mesh_, fans_);
     if (!vertex_colors_.empty())
       give_vertex_colors(mesh_, vertex_colors_.linear(mesh_.positions.size()));
     else if (!face_colors_.empty())
@@ -120,7 +121,7 @@ class OffReader {
       throw bad_line(path_, at_.line(), "a face claims more corners than the file holds", "",
                      std::to_string(corners));
     const std::size_t triangles = mesh_.triangles.size();
-    PolygonFan fan(mesh_);
+    PolygonFan fan(mesh_, fans_);
     for (std::int64_t i = 0; i < corners; ++i) {
       const std::int64_t vertex = integer("vertex index in a face");
       if (vertex >= vertices_)
@@ -138,6 +139,7 @@ class OffReader {
   std::string& bytes_;
   TextCursor at_;
   SourceMesh mesh_;
+  std::vector<Fan> fans_;
   VertexCheck check_;
   std::int64_t vertices_ = 0, faces_ = 0;
   bool has_normals_ = false, has_colors_ = false;

@@ -177,7 +177,10 @@ class PlyReader {
   SourceMesh run() {
     for (const PlyElement* element : wanted_elements()) rows(*element);
     check_.throw_if_any(path_);
-    if (!has_wedges_) {
+    const std::vector<Recut> cuts = cut_polygons(path_, mesh_, fans_);
+    if (has_wedges_) {
+      recut(cuts, mesh_.uvs);
+    } else {
       mesh_.uvs.clear();
       give_uvs(mesh_, uvs_);
     }
@@ -314,7 +317,7 @@ class PlyReader {
   }
 
   void polygon(const PlyProperty& p, std::uint64_t number) {
-    PolygonFan fan(mesh_);
+    PolygonFan fan(mesh_, fans_);
     for (std::uint64_t left = values_.next_list_size(p); left > 0; --left) {
       const double vertex = values_.next(p.type);
       if (vertex < 0 || vertex >= double(vertices_->count))
@@ -360,6 +363,7 @@ class PlyReader {
   bool has_wedges_ = false;               // a face has given them
   std::int64_t textures_ = 0;
   SourceMesh mesh_;
+  std::vector<Fan> fans_;
   VertexCheck check_;
 };
 
