@@ -114,7 +114,8 @@ TEST(PictureWarnings, EachLightThatReachesNoSurface) {
   EXPECT_TRUE(warnings_of(scene).empty());
   spot = {{6, -3, 10}, {0, 0, -1}, Rgb(5e4), 5};
   scene.lights.back().source = spot;
-  scene.shapes = {{.name = "floor", .source = QuadShape{{-20, -20, 0}, {40, 0, 0}, {0, 40, 0}}}};
+  scene.shapes[0].source = QuadShape{{-20, -20, 0}, {40, 0, 0}, {0, 40, 0}};
+  scene.shapes[0].medium.reset();
   EXPECT_TRUE(warnings_of(scene).empty());
 }
 

@@ -40,7 +40,7 @@ std::string ball_scene(const std::string& medium, double mean_free_path,
 
 constexpr const char* kColorOf = R"("reflectance": )";
 
-// Claim: a grey picture with alpha is the grey one, 0.3035 where its texels are 0x95; a picture whose data window lies
+// Claim: a grey picture with alpha is the grey one, 0.3035 in the mean of a part; a picture whose data window lies
 // within its display window is the one that has the rest written as 0. Tolerance: none between images; 0.0005. Fails if
 // alpha stands for green, or tiles of the texture are scattered.
 TEST(Textures, OfAnyChannelsAndWindowsAreAlike) {
@@ -50,9 +50,13 @@ TEST(Textures, OfAnyChannelsAndWindowsAreAlike) {
   };
   const Image grey = image_of("grey_alpha.json", "v_la255.png");
   EXPECT_TRUE(same_pixels(grey, image_of("grey_alpha.json", "v_l.png")));
-  for (std::size_t x = 20; x < 40; ++x)
-    for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(grey.pixels[(32 * 64 + x) * grey.channels.size() + c], .3035f, .0005f) << x;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double sum = 0;
+    for (std::size_t y = 20; y < 40; ++y)
+      for (std::size_t x = 20; x < 40; ++x)
+        sum += double(grey.pixels[(y * 64 + x) * grey.channels.size() + c]);
+    EXPECT_NEAR(sum / 400, .3035, .0005) << c;
+  }
   const Image window = image_of("data_window.json", "t_dw.exr");
   EXPECT_TRUE(same_pixels(window, image_of("data_window.json", "t_pad.exr")));
 }
