@@ -185,7 +185,9 @@ TEST(CliAssets, DefaultLightsAreUnseen) {
   ASSERT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B", "A"}));
   double covered = 0, light = 0;
   for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
-    if (image.pixels[i + 3] == 0) EXPECT_EQ(image.pixels[i], 0) << i;
+    if (image.pixels[i + 3] == 0) {
+      EXPECT_EQ(image.pixels[i], 0) << i;
+    }
     covered += double(image.pixels[i + 3]);
     light += double(image.pixels[i]);
   }

@@ -60,8 +60,11 @@ TEST(UnseenLights, MayBeEnvironments) {
               unseen = test::picture_of(folder, ball_scene(), hidden);
   for (int y = 0; y < 9; ++y)
     for (int x = 0; x < 9; ++x) {
-      if (at(seen, x, y)[1] == 1) EXPECT_EQ(at(unseen, x, y), at(seen, x, y));
-      if (at(seen, x, y)[1] == 0) EXPECT_EQ(at(unseen, x, y)[0], 0);
+      if (at(seen, x, y)[1] == 1) {
+        EXPECT_EQ(at(unseen, x, y), at(seen, x, y));
+      } else {
+        EXPECT_EQ(at(unseen, x, y)[0], 0);
+      }
     }
   EXPECT_EQ(at(seen, 0, 4)[1], 1);
   EXPECT_EQ(at(seen, 8, 4)[1], 0);
