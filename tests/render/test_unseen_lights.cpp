@@ -41,14 +41,17 @@ TEST(UnseenLights, AreReflected) {
   const ScratchFolder folder;
   const std::string mirror = R"("reflectance": 1, "metalness": 1, "specular_roughness": 0)";
   const Image unseen = test::picture_of(folder, ball_scene({}, mirror));
-  EXPECT_EQ(at(unseen, 4, 4), (std::array<float, 2>{2, 1}));
+  EXPECT_NEAR(at(unseen, 4, 4)[0], 2, .05);
+  EXPECT_EQ(at(unseen, 4, 4)[1], 1);
 }
 
 // Claim: an environment that is not visible lights the scene to the last bit as one that is; where no surface is, the image
 // is black. Fails if the flag changes a sample.
 TEST(UnseenLights, MayBeEnvironments) {
   const ScratchFolder folder;
-  test::put_png(folder.file("room.png"), 8, 4, [](int x, int y) { return test::Bytes{20 * x, 60 * y, 128}; });
+  test::put_png(folder.file("room.png"), 8, 4, [](int x, int y) {
+    return test::Bytes{60 + 20 * x, 60 * y, 128};
+  });
   const std::vector<std::string> room{R"(lights=[{"type": "environment", "file": "room.png"}])",
                                       "shapes.wall.quad.u=[6, 0, 0]"};
   std::vector<std::string> hidden = room;
@@ -57,8 +60,11 @@ TEST(UnseenLights, MayBeEnvironments) {
               unseen = test::picture_of(folder, ball_scene(), hidden);
   for (int y = 0; y < 9; ++y)
     for (int x = 0; x < 9; ++x) {
-      if (at(seen, x, y)[1] == 1) EXPECT_EQ(at(unseen, x, y), at(seen, x, y));
-      if (at(seen, x, y)[1] == 0) EXPECT_EQ(at(unseen, x, y)[0], 0);
+      if (at(seen, x, y)[1] == 1) {
+        EXPECT_EQ(at(unseen, x, y), at(seen, x, y));
+      } else {
+        EXPECT_EQ(at(unseen, x, y)[0], 0);
+      }
     }
   EXPECT_EQ(at(seen, 0, 4)[1], 1);
   EXPECT_EQ(at(seen, 8, 4)[1], 0);
@@ -89,6 +95,7 @@ TEST(UnseenLights, AreNotHeldAsSeen) {
   const ScratchFolder folder;
   Session session;
   session.hold_view(true);
+  session.match_new_session(true);
   for (const bool is_seen : {false, true, false}) {
     Scene scene = parse_scene(ball_scene(), folder.file("scene.json"));
     scene.lights[0].is_seen = is_seen;
