@@ -275,8 +275,7 @@ void warn_of_unused_colors(const Scene& scene, const World& world, std::vector<s
     if (std::get<MeshFile>(shape.source).vertex_colors) continue;
     warnings.push_back(
         fmt::format("shape '{}': its vertex colours are left out, for a texture gives its colour; "
-                    "\"vertex_colors\": true "
-                    "multiplies both",
+                    "\"vertex_colors\": true multiplies both",
                     shape.name));
   }
 }

@@ -117,8 +117,7 @@ std::vector<KeyInfo> shape_rows() {
                    "colour of an opaque shape, times `vertex_colors`; not together with `medium`")),
       row("shape", "vertex_colors", flag, "", kFiniteNumber, "true; false under a texture",
           "with `file`: its vertex colours are the colour of an opaque shape, times a `reflectance` that is "
-          "given; "
-          "they multiply a medium's `tint` and `base_color`"),
+          "given; they multiply a medium's `tint` and `base_color`"),
       textured(
           row("shape", "metalness", number, "", kUnitInterval, "0",
               "of an opaque shape: 1 mirrors in its `reflectance`, 0 under a clear coat; makes it glossy")),

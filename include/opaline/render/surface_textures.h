@@ -52,8 +52,8 @@ class SurfaceTextures {
   };
   Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
 
-  /// Of an opaque surface what leaves is times the texture of its reflectance and its vertex colours. Of a body's light that scatters, its
-  /// weight is in it, once.
+  /// The texture of an opaque surface's reflectance and its vertex colours are in what leaves. Of a body's light that
+  /// scatters, its weight is in it, once.
   SurfaceTint tint(const Place& place) const;
   /// Share of the light entering a body that it reflects diffusely at its surface instead.
   RgbF reflected(const Place& place) const;
