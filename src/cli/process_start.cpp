@@ -7,8 +7,29 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <exception>
+#include <string_view>
+
+#include "core/out_of_memory.h"
 
 namespace opaline {
+namespace {
+
+/// Allocates nothing.
+[[noreturn]] void end_by_exception() {
+  try {
+    if (const std::exception_ptr failure = std::current_exception()) std::rethrow_exception(failure);
+  } catch (const std::exception& failure) {
+    if (is_out_of_memory(failure)) {
+      constexpr std::string_view text = "opaline: error: out of memory\n";
+      if (::write(STDERR_FILENO, text.data(), text.size()) >= 0) std::_Exit(3);
+    }
+  } catch (...) {
+  }
+  std::abort();
+}
+
+}  // namespace
 
 void prepare_process() {
   // The lowest number that is free is the one that was found closed. For reading only: a result that nobody
@@ -17,6 +38,7 @@ void prepare_process() {
     if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDONLY) != descriptor)
       std::_Exit(3);  // no descriptor to say it on
   std::signal(SIGXFSZ, SIG_IGN);
+  std::set_terminate(end_by_exception);
 }
 
 bool was_started_without_output() {
