@@ -29,6 +29,13 @@ namespace {
   std::abort();
 }
 
+void catch_from_the_start() {
+  std::set_terminate(end_by_exception);
+}
+
+// Runs before the libraries' constructors, which allocate, too.
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = catch_from_the_start;
+
 }  // namespace
 
 void prepare_process() {
@@ -38,7 +45,6 @@ void prepare_process() {
     if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDONLY) != descriptor)
       std::_Exit(3);  // no descriptor to say it on
   std::signal(SIGXFSZ, SIG_IGN);
-  std::set_terminate(end_by_exception);
 }
 
 bool was_started_without_output() {
