@@ -17,7 +17,7 @@ BlobCache::BlobCache(std::string folder, std::uint64_t most_bytes)
   std::error_code making, looking;
   std::filesystem::create_directories(folder_, making);
   const bool is_there = std::filesystem::is_directory(folder_, looking);
-  if (looking) throw run_failed(folder_, "cannot be looked at for the cache: " + looking.message());
+  if (looking) throw run_failed(folder_, "cannot look at the cache's folder: " + looking.message());
   if (!is_there)
     throw run_failed(folder_, "cannot make the cache's folder" + (making ? ": " + making.message() : ""));
 }

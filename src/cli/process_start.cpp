@@ -7,8 +7,36 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <exception>
+#include <string_view>
+
+#include "core/out_of_memory.h"
 
 namespace opaline {
+namespace {
+
+/// Allocates nothing.
+[[noreturn]] void end_by_exception() {
+  try {
+    if (const std::exception_ptr failure = std::current_exception()) std::rethrow_exception(failure);
+  } catch (const std::exception& failure) {
+    if (is_out_of_memory(failure)) {
+      constexpr std::string_view text = "opaline: error: out of memory\n";
+      if (::write(STDERR_FILENO, text.data(), text.size()) >= 0) std::_Exit(3);
+    }
+  } catch (...) {
+  }
+  std::abort();
+}
+
+void catch_from_the_start() {
+  std::set_terminate(end_by_exception);
+}
+
+// Runs before the libraries' constructors, which allocate, too.
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = catch_from_the_start;
+
+}  // namespace
 
 void prepare_process() {
   // The lowest number that is free is the one that was found closed. For reading only: a result that nobody

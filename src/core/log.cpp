@@ -3,10 +3,8 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <new>
-#include <stdexcept>
-#include <system_error>
 
+#include "core/out_of_memory.h"
 #include "opaline/core/error.h"
 
 namespace opaline {
@@ -22,15 +20,6 @@ const char* name_of(ErrorKind kind) {
       break;
   }
   return "run_failed";
-}
-
-/// A size that no memory holds is reported by containers as length_error, a thread without room for its stack
-/// as EAGAIN.
-bool is_out_of_memory(const std::exception& failure) {
-  const auto* system = dynamic_cast<const std::system_error*>(&failure);
-  return dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ||
-         dynamic_cast<const std::length_error*>(&failure) != nullptr ||
-         (system != nullptr && system->code() == std::errc::resource_unavailable_try_again);
 }
 
 /// What ended the run, of a library's exception, too.

@@ -53,6 +53,24 @@ TEST(CliCache, WarmRunIsTheSame) {
   EXPECT_FALSE(is_all_from_the_cache(folder.render("seed.exr", {"--seed", "1"})));
 }
 
+// Claim: a cache folder that cannot be looked at is one line that names it and why. By hand: a name longer than file systems
+// have, and a link to itself. Fails if: a question about the folder throws an exception of the library's, in its words.
+TEST(CliCache, FolderThatCannotBeLookedAt) {
+  const CachedScene folder;
+  std::filesystem::create_symlink(folder.file("loop"), folder.file("loop"));
+  for (const std::string& cache : {folder.file(std::string(300, 'a')), folder.file("loop/cache")})
+    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+             {"render", folder.scene, "-o", folder.file("a.exr"), "--cache", cache},
+             {"precompute", folder.scene, "--cache", cache},
+             {"cache", "ls", cache},
+             {"cache", "prune", cache}}) {
+      const Outcome outcome = run_program(command);
+      EXPECT_EQ(outcome.exit_code, 3);
+      EXPECT_TRUE(outcome.err.starts_with("opaline: error: " + cache + ": cannot ")) << outcome.err;
+      EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    }
+}
+
 // Claim: each decision about reuse is told once. Fails if: the three channels of a room in colour, lights of one name, tell
 // theirs each.
 TEST(CliCache, ARoomsChannelsAreToldOnce) {

@@ -100,6 +100,26 @@ TEST(CliFailures, OutOfMemory) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
+// Claim: whatever address space there is, the program makes the picture or ends with exit 3 and the old file as it was; where
+// not even its libraries can be loaded the system says so (127). Source: process_start.h. Fails if: an exception leaves a
+// library's constructor before main, as at 100 MB, and aborts.
+TEST(CliFailures, NoMemoryAbortsNothing) {
+  const SceneFolder folder;
+  const std::string out = folder.file("a.exr");
+  for (const rlim_t megabytes : {60, 90, 100, 120, 150, 200, 300, 500}) {
+    put_bytes(out, "old");
+    const Outcome outcome = run_program({"render", folder.scene, "-o", out, "--quiet"}, ".",
+                                        {.file_size = {}, .address_space = megabytes << 20});
+    EXPECT_EQ(outcome.signal, 0) << megabytes << outcome.err;
+    EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3 || outcome.exit_code == 127) << outcome.err;
+    EXPECT_EQ(bytes_of(out) == "old", outcome.exit_code != 0) << megabytes;
+    if (outcome.exit_code == 3) {
+      EXPECT_TRUE(outcome.err.starts_with("opaline: error: out of memory")) << outcome.err;
+    }
+    EXPECT_EQ(folder.entries(), 2u) << megabytes;
+  }
+}
+
 // Claim: a picture beyond the memory there is is refused before it is begun, with what would make it fit; a
 // crop of as large a one takes as much as the crop, and is made. By hand: 16384 x 16384 pixels of 26 floats
 // are 28 GB, above the 4 GB that the child may have. Fails if: the plan counts the pixels outside of the

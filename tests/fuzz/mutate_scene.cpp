@@ -60,7 +60,7 @@ const std::vector<std::string>* names_of(const std::string& key) {
       {"group", {"one", "two"}},
       {"channel", {"r", "g", "b", "a"}},
       {"color_space", {"automatic", "srgb", "linear"}},
-      {"texture_mix", {"pre", "post", "both"}},
+      {"texture_mix", {"pre", "post", "split", "medium"}},
   };
   const auto found = names.find(key);
   return found == names.end() ? nullptr : &found->second;
