@@ -153,6 +153,7 @@ VolumeDiffusion diffusion_of(const PrecomputeInput& input, const Body& body, std
 
 std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights) {
   std::vector<RgbF> irradiance = combine_lights(body.transfers, lights);
+  irradiance.resize(body.surface.samples.size());  // dark without lights
   for (std::size_t i = 0; i < body.entering.size(); ++i) irradiance[i] = irradiance[i] * body.entering[i];
   return irradiance;
 }
@@ -161,7 +162,7 @@ Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF>
   std::vector<FluxSample> flux(samples.size());
   for (std::size_t i = 0; i < flux.size(); ++i) {
     const SurfaceSample& s = samples[i];
-    flux[i] = {s.centroid, s.area, irradiance.empty() ? RgbF{} : irradiance[i], s.normal};
+    flux[i] = {s.centroid, s.area, irradiance[i], s.normal};
   }
   return build_octree(std::move(flux));
 }
