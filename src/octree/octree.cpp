@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/cancel_check.h"
 #include "opaline/core/morton.h"
 #include "opaline/core/parallel.h"
 
@@ -39,8 +40,10 @@ std::vector<Keyed> morton_order(std::span<const FluxSample> samples) {
   const auto integer = [&](float p, float origin) {
     return std::min(std::uint64_t((double(p) - double(origin)) * scale), std::uint64_t((1 << kLevels) - 1));
   };
+  const CancelCheck check;
   std::vector<Keyed> order(samples.size());
   parallel_chunks(samples.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+    check();
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3f& p = samples[i].position;
       order[i] = {morton_key(integer(p.x, low.x), integer(p.y, low.y), integer(p.z, low.z)),
@@ -48,6 +51,7 @@ std::vector<Keyed> morton_order(std::span<const FluxSample> samples) {
     }
   });
   tbb::parallel_sort(order, [&](const Keyed& a, const Keyed& b) {
+    check();
     return a.key != b.key ? a.key < b.key : content(samples[a.sample]) < content(samples[b.sample]);
   });
   return order;
@@ -83,6 +87,7 @@ class Builder {
   void build() {
     cut(0, std::uint32_t(keys_.size()), 0, kNoParent);
     parallel_chunks(parts_.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      check_();
       Part& part = parts_[i];
       part.nodes = part.is_inner ? 1 : count(part.begin, part.end, part.level);
     });
@@ -93,6 +98,7 @@ class Builder {
     }
     tree_.nodes.resize(nodes);
     parallel_chunks(parts_.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      check_();
       Part& part = parts_[i];
       std::uint32_t next = part.index;
       if (!part.is_inner) part.sums = build(part.begin, part.end, part.level, next);
@@ -241,6 +247,7 @@ class Builder {
     node.leaf = leaf;
   }
 
+  const CancelCheck check_;
   Octree& tree_;
   std::vector<std::uint64_t> keys_;
   std::vector<Part> parts_;
@@ -257,7 +264,9 @@ float unit_of_flux(std::span<const FluxSample> samples) {
 void list_children(Octree& tree) {
   tree.first_child.reserve(tree.nodes.size() + 1);
   tree.children.reserve(tree.nodes.size());
+  const CancelCheck check;
   for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
+    check();
     tree.first_child.push_back(std::uint32_t(tree.children.size()));
     for (std::uint32_t child = i + 1; child < tree.nodes[i].skip; child = tree.nodes[child].skip)
       tree.children.push_back(child);
@@ -286,11 +295,13 @@ void bound_normals(Octree& tree) {
 Octree build_octree(std::vector<FluxSample> samples) {
   Octree tree;
   if (samples.empty()) return tree;
+  const CancelCheck check;
   std::vector<Keyed> order = morton_order(samples);
   tree.flux_unit = unit_of_flux(samples);
   tree.samples.resize(samples.size());
   tree.normals.resize(samples.size());
   parallel_chunks(samples.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+    check();
     for (std::size_t i = begin; i < end; ++i) {
       const FluxSample& s = samples[order[i].sample];
       const RgbF flux = s.irradiance / tree.flux_unit * s.area;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/cancel_check.h"
 #include "opaline/core/error.h"
 #include "opaline/core/random.h"
 #include "opaline/image/texture_file.h"
@@ -257,7 +258,9 @@ std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<cons
   std::vector<RgbF> tints;
   if (samples.empty() || !textures.tints_entering(samples.front().mesh)) return tints;
   tints.reserve(samples.size());
+  const CancelCheck check;
   for (const SurfaceSample& s : samples) {
+    check();
     Footprint footprint;
     tangent_frame(s.normal, footprint.x, footprint.y);
     footprint.x *= std::sqrt(s.area);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/cancel_check.h"
 #include "opaline/core/morton.h"
 #include "opaline/core/random.h"
 #include "opaline/geometry/surface_point.h"
@@ -96,7 +97,9 @@ SurfaceSamples draft_samples(const World& world, std::span<const std::uint32_t> 
     missing -= area;
     moment += pieces[p].centre * area;
   };
+  const CancelCheck check;
   const auto finish = [&] {
+    check();
     samples.push_back(sample_on(world, pieces[middle], share, moment / share, samples.size()));
     moment = {};
     missing = share;
@@ -111,8 +114,10 @@ SurfaceSamples draft_samples(const World& world, std::span<const std::uint32_t> 
     take(p, left);
   }
   if (samples.size() < count) finish();  // rounding kept a little from it
-  std::ranges::sort(samples, {},
-                    [](const SurfaceSample& s) { return std::tie(s.mesh, s.triangle, s.u, s.v); });
+  std::ranges::sort(samples, {}, [&](const SurfaceSample& s) {
+    check();
+    return std::tie(s.mesh, s.triangle, s.u, s.v);
+  });
   return result;
 }
 

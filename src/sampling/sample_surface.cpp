@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "core/cancel_check.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 #include "opaline/geometry/surface_point.h"
@@ -60,6 +61,7 @@ struct Ordered {
 };
 
 std::vector<Ordered> order_of(const std::vector<SampleGrid::Place>& places, const TriangleList& triangles) {
+  const CancelCheck check;
   std::vector<Ordered> order(places.size());
   parallel_chunks(order.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -68,6 +70,7 @@ std::vector<Ordered> order_of(const std::vector<SampleGrid::Place>& places, cons
     }
   });
   tbb::parallel_sort(order, [&](const Ordered& a, const Ordered& b) {
+    check();
     if (a.id != b.id) return a.id < b.id;
     const SampleGrid::Place &p = places[a.sample], &q = places[b.sample];
     return std::tie(p.u, p.v) < std::tie(q.u, q.v);
@@ -107,6 +110,7 @@ SurfaceSamples sample_surface(const SamplingInput& input, SurfaceCells* cells) {
   const std::vector<Ordered> order = order_of(placed.places, triangles);
   result.samples.resize(order.size());
   parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    advance(input.monitor, 0);
     for (std::size_t i = begin; i < end; ++i)
       result.samples[i] =
           make_sample(triangles, placed.places[order[i].sample], placed.shares[order[i].sample]);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/cancel_check.h"
 #include "opaline/render/choose_models.h"
 #include "opaline/render/surface_caches.h"
 
@@ -116,6 +117,7 @@ World Session::State::loaded_world(const Scene& scene, const std::vector<StageKe
 }
 
 void Session::State::anchor(Scene scene, Monitor* monitor) {
+  const CancelScope scope(monitor);
   const Method method = scene.settings.method;
   const bool places_samples = has_samples(method) && method != Method::volume_diffusion;
   if (places_samples) scene.settings.method = Method::hierarchical;
@@ -160,6 +162,7 @@ void Session::State::prepare_rays() {
 }
 
 Image Session::State::first_light(Monitor* monitor) {
+  const CancelScope scope(monitor);
   prepare_rays();
   return opaline::first_light({scene_, *world_, *rays_, plan_, monitor});
 }
@@ -179,6 +182,7 @@ void Session::State::each_of(Method method, const char* stage, const BodyWork& w
 }
 
 void Session::State::prepare(Monitor* monitor) {
+  const CancelScope scope(monitor);
   if (prepared_) return;
   prepare_rays();
   prepared_ = !is_needed();
@@ -235,6 +239,7 @@ void Session::State::update_sums(const PrecomputeInput& input, const std::vector
 }
 
 RenderResult Session::State::render(Monitor* monitor, const AfterTile& after_tile) {
+  const CancelScope scope(monitor);
   prepare(monitor);
   HeldView* const view = held_view();
   if (view != nullptr) view->next_picture();

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/cancel_check.h"
 #include "opaline/geometry/surface_point.h"
 
 namespace opaline {
@@ -32,6 +33,7 @@ class ElementTable {
 
   /// Adds to the element of the cell around a place whose sheet it is on, which is made if there is none.
   std::uint32_t add(const Vec3d& position, const Vec3d& normal, double area) {
+    check_();
     std::uint32_t& first = head(lattice_.into(position));
     std::uint32_t found = first;
     while (found != kNone && !is_of(sums_[found], position, normal)) found = sums_[found].next;
@@ -74,6 +76,7 @@ class ElementTable {
     return heads_[std::size_t(brick) * 512 + std::size_t(((z & 7) * 8 + (y & 7)) * 8 + (x & 7))];
   }
 
+  const CancelCheck check_;
   const Lattice& lattice_;
   std::array<int, 3> bricks_of_;
   std::vector<std::uint32_t> bricks_, heads_;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/cancel_check.h"
 #include "opaline/core/parallel.h"
 
 namespace opaline {
@@ -106,7 +107,9 @@ CellWeights::Places::Places(std::span<const SurfaceSample> samples)
 
 CellWeights::CellWeights(std::span<const SurfaceSample> samples)
     : places_(std::make_shared<const Places>(samples)), chunks_(chunk_count(samples.size(), kChunk)) {
+  const CancelCheck check;
   parallel_chunks(samples.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    check();
     chunks_[c] = chunk_of(*places_, samples, begin, end);
     chunks_[c].neighbours.shrink_to_fit();
     chunks_[c].terms.shrink_to_fit();
@@ -164,7 +167,9 @@ CellFit::CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> m
     : places_(std::make_shared<const CellWeights::Places>(samples)), fits_(means.size()) {
   std::vector<Rgb> surprises(means.size());
   std::vector<CellWeights::Chunk> chunks(chunk_count(means.size(), kChunk));
+  const CancelCheck check;
   parallel_chunks(means.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    check();
     chunks[c] = CellWeights::chunk_of(*places_, samples, begin, end);
     fit(chunks[c], begin, means, errors, surprises);
     chunks[c].terms = {};  // most of its memory

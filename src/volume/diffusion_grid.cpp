@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/cancel_check.h"
 #include "volume/cut_cube.h"
 
 namespace opaline {
@@ -89,6 +90,7 @@ struct DiffusionGrid::Builder {
 
   // `size` cells along each side from (i, j, k) on; divided where the surface is near.
   void fill(int i, int j, int k, int size) {
+    check();
     if (size == 1) return fill_one(i, j, k);
     const int level = size == 2 ? 0 : size == 4 ? 1 : 2;
     if (levels[std::size_t(level)].at(i / size, j / size, k / size)) {
@@ -258,6 +260,7 @@ struct DiffusionGrid::Builder {
     std::vector<float> given(grid.cells_.size());
     for (std::uint32_t cell = 0; cell < grid.cells_.size(); ++cell)
       for (int axis = 0; axis < 3; ++axis) {
+        check();
         link_above(cell, axis, [&](std::uint32_t other, double area) {
           const auto component = std::size_t(axis);
           const double here = double(grid.cells_[cell].centre[component]),
@@ -291,6 +294,7 @@ struct DiffusionGrid::Builder {
     }
   }
 
+  const CancelCheck check;
   DiffusionGrid& grid;
   const InsideLines& lines;
   std::vector<Flags> levels;                 // of sizes 2, 4, 8: what must be divided

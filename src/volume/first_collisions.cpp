@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/cancel_check.h"
 #include "opaline/core/random.h"
 #include "opaline/lights/light.h"
 #include "opaline/transport/fresnel.h"
@@ -365,7 +366,9 @@ std::vector<Rgb> entering_flux(const DiffusionSpace& space, const OfSample& ente
 template <class DirectionsOf>
 void enter_everywhere(const DiffusionSpace& space, std::span<const Rgb> flux, const DirectionsOf& directions,
                       Depositor& depositor) {
+  const CancelCheck check;
   for (std::size_t i = 0; i < flux.size(); ++i) {
+    check();
     if (!(max_component(flux[i]) > 0) || space.attached[i].cell == DiffusionGrid::kNone) continue;
     const Directions from = directions(i);
     for (std::size_t n = 0; n < from.count; ++n)

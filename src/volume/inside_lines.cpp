@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/cancel_check.h"
+
 namespace opaline {
 namespace {
 
@@ -62,16 +64,20 @@ void cross_triangle(std::array<Vec3d, 3> p, int columns, int rows, const Found& 
 
 InsideLines::InsideLines(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice)
     : columns_(2 * lattice.nx + 1), rows_(2 * lattice.ny + 1) {
+  const CancelCheck check;
   std::vector<Crossing> crossings;
   for (const std::uint32_t m : meshes) {
     const Mesh& mesh = world.meshes[m];
     std::vector<Vec3d> corners;
     for (const Vec3d& p : mesh.positions) corners.push_back(lattice.into(p) * 2);
     for (const auto& [i, j, k] : mesh.triangles)
-      cross_triangle({corners[i], corners[j], corners[k]}, columns_, rows_,
-                     [&](const Crossing& crossing) { crossings.push_back(crossing); });
+      cross_triangle({corners[i], corners[j], corners[k]}, columns_, rows_, [&](const Crossing& crossing) {
+        check();
+        crossings.push_back(crossing);
+      });
   }
-  std::ranges::sort(crossings, [](const Crossing& a, const Crossing& b) {
+  std::ranges::sort(crossings, [&](const Crossing& a, const Crossing& b) {
+    check();
     return a.line != b.line ? a.line < b.line : a.z != b.z ? a.z < b.z : a.enters > b.enters;
   });
   first_.reserve(std::size_t(columns_) * std::size_t(rows_) + 1);
