@@ -63,6 +63,7 @@ std::string framed(const PageFrame& frame) {
   const auto replace = [&](const std::string& mark, const std::string& with) {
     if (const std::size_t at = page.find(mark); at != std::string::npos) page.replace(at, mark.size(), with);
   };
+  replace("{{script_hash}}", kPageScriptHash);
   replace("{{title}}", escaped(frame.title));
   replace("{{command}}", escaped(frame.command));
   replace("{{style}}", kPageStyle);

@@ -18,9 +18,11 @@ std::string escaped(const std::string& text);
 /// A path as the address of a file: the bytes that an address gives a meaning, such as # ? %, as %xx.
 std::string url_of(const std::string& path);
 
-/// The style sheet, the script and the frame of the page, from the files of those names.
+/// The style sheet, the script and the frame of the page, from the files of those names, and the base64 of the script
+/// element's SHA-256.
 extern const char* const kPageStyle;
 extern const char* const kPageScript;
+extern const char* const kPageScriptHash;
 extern const char* const kPageFrame;
 
 /// What stands around a page's body; all but `intro` and `body` is text, not HTML.
