@@ -87,7 +87,9 @@ Waits measure_orbit(ViewClient& page, const Camera& camera, double& frames_per_s
   while (shown + 1 < first + kPositions || page.frame.step != PictureStep::final) {
     while (next < kPositions && Clock::now() >= start + next * kMouse) {
       sent.push_back(Clock::now());
-      page.set({{"camera.position", positions[std::size_t(next++)]}}, 77);
+      const Vec3d& at = camera.look_at;
+      page.send(
+          {{"do", "look"}, {"position", positions[std::size_t(next++)]}, {"look_at", {at.x, at.y, at.z}}});
     }
     const auto wait =
         next < kPositions

@@ -84,8 +84,12 @@ change cancels it. Ctrl-C ends the view.
 The scene file stays as it is: "save" writes another one beside it, "render" a picture, by names of your choice that
 are not taken. Mesh files are those of the scene.
 
+Orbit, pan and dolly move a free camera of the view. The scene's own, which files and commands have, stays until "Set
+scene camera" moves it there; "Back to scene camera" ends the free one.
+
 A scene with frames has a slider for them: those of --frames, or from the first key of its values to the last. What frames
-share is not computed again. A final picture is then that of opaline render --frames.
+share is not computed again. A final picture is then that of opaline render --frames. Changing a value that has keys
+sets its key at the frame shown.
 
 Who has the URL can edit, and write such files into the scene's folder. Other requests are refused, with a line on
 stderr: another token, Origin or host name, messages above 64 kB, more than 16 pages or 64 connections. What is

@@ -16,7 +16,6 @@
 #include "cli/commands.h"
 #include "cli/metadata.h"
 #include "opaline/core/error.h"
-#include "opaline/core/interrupt.h"
 #include "view/view_server.h"
 
 namespace opaline {
@@ -60,8 +59,6 @@ void view_command(const ViewArguments& arguments) {
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
-  Monitor monitor;
-  const InterruptHandler interrupt(monitor);
   RenderArguments render;
   render.program = arguments.program;
   render.scene = arguments.scene;
@@ -78,10 +75,11 @@ void view_command(const ViewArguments& arguments) {
           Monitor& stopped) { render_file(arguments, overrides, frame, path, stopped); }};
   ViewServer server(SceneEdits(arguments.scene, arguments.overrides, arguments.frames), arguments.options,
                     hooks);
+  server.stop_at_signals();
   print_event(arguments.log, "view", {{"url", server.url()}});
   if (arguments.log.format == LogFormat::text) write_line(stdout, "view        " + server.url());
   if (arguments.opens_browser && is_at_desktop()) open_on_desktop(server.url());
-  server.run(monitor);
+  server.run();
 }
 
 }  // namespace opaline

@@ -85,6 +85,13 @@ ChooseSettings read_choice(const MessageReader& reader) {
   return {node.number};
 }
 
+LookFrom read_look(const MessageReader& reader) {
+  const auto point = [&](std::string_view key) {
+    return to_json(reader.need(key, Node::Kind::array, "a point such as [0, 0, 5]"));
+  };
+  return {point("position"), point("look_at")};
+}
+
 struct Kind {
   std::string_view name;
   std::vector<std::string_view> keys;
@@ -112,6 +119,9 @@ const std::vector<Kind>& kinds() {
       {"shown",
        {"do", "frame"},
        [](Reader r) -> PageMessage { return FrameShown{std::uint32_t(r.whole("frame"))}; }},
+      {"look", {"do", "position", "look_at"}, [](Reader r) -> PageMessage { return read_look(r); }},
+      {"look_back", {"do"}, [](Reader) -> PageMessage { return LookBack{}; }},
+      {"keep_look", {"do"}, [](Reader) -> PageMessage { return KeepLook{}; }},
   };
   return table;
 }

@@ -54,15 +54,25 @@ struct FrameShown {
 struct GoToFrame {
   int frame = 1;
 };
+/// A camera of the view's own in place of the scene's: JSON as camera.position and camera.look_at take it.
+struct LookFrom {
+  std::string position, look_at;
+};
+/// The scene's camera again.
+struct LookBack {};
+/// The view's own camera becomes the scene's.
+struct KeepLook {};
 
-using PageMessage = std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer,
-                                 WorkBehind, ChooseSettings, FrameShown, GoToFrame>;
+using PageMessage =
+    std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer, WorkBehind,
+                 ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack, KeepLook>;
 
 /// in    text: {"do": "set", "values": {"media.marble.eta": 1.4}, "stroke": 7}, {"do": "undo"}, {"do": "redo"},
 ///       {"do": "reset"}, {"do": "restore", "edits": ["media.marble.eta=1.4"]}, {"do": "save", "name": "a.json"},
 ///       {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
 ///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "choose", "error": 0.01},
-///       {"do": "frame", "frame": 7} or {"do": "shown", "frame": 3}
+///       {"do": "frame", "frame": 7}, {"do": "shown", "frame": 3},
+///       {"do": "look", "position": [0, 0, 5], "look_at": [0, 0, 0]}, {"do": "look_back"} or {"do": "keep_look"}
 /// error Error{bad_input}: no such message, within the limits of json_tree.h
 PageMessage parse_page_message(std::string_view text);
 

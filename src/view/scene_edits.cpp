@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <sstream>
 #include <utility>
 
 #include "core/log.h"
@@ -64,6 +65,35 @@ void check_opens_nothing(const std::string& file, const std::string& edit) {
     throw bad_file(file, "a view does not change files", "those of the scene that was opened");
 }
 
+bool is_keyed(const Json& value) {
+  return value.is_object() && value.contains("keyed");
+}
+
+/// A member, or an element by its index or name; null: there is none.
+const Json* child_of(const Json& owner, const std::string& name) {
+  if (owner.is_object()) return owner.contains(name) ? &owner.at(name) : nullptr;
+  if (!owner.is_array()) return nullptr;
+  for (std::size_t i = 0; i < owner.size(); ++i) {
+    const Json& element = owner.at(i);
+    if (name == std::to_string(i) || (element.is_object() && element.value("name", "") == name))
+      return &element;
+  }
+  return nullptr;
+}
+
+/// At a path as of `--set`; null: the scene has no such value.
+const Json* value_at(const Json& scene, const std::string& path) {
+  const Json* value = &scene;
+  std::istringstream names(path);
+  for (std::string name; value != nullptr && std::getline(names, name, '.');) value = child_of(*value, name);
+  return value;
+}
+
+/// Whether a value of this path places the scene's camera.
+bool moves_camera(const std::string& path) {
+  return path == "camera" || path.starts_with("camera.position") || path.starts_with("camera.look_at");
+}
+
 /// Whether an override is of the path, or of what is in it.
 bool is_within(const std::string& override, const std::string& path) {
   return override.starts_with(path) && (override.at(path.size()) == '=' || override.at(path.size()) == '.');
@@ -74,8 +104,7 @@ bool is_within(const std::string& override, const std::string& path) {
 SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given, std::vector<int> frames)
     : file_(file), text_(read_scene_text(file)), given_(std::move(given)), frames_(std::move(frames)) {
   if (!frames_.empty()) frame_ = frames_.front();
-  scene_ = parse_scene(text_, file_, given_, frame_);
-  check_pixels(scene_);
+  scene_ = read({}, {}, frame_);
   if (!frames_.empty()) return;
   const auto [first, last] = key_range(Json::parse(merged_scene(text_, file_, given_)));
   if (last <= first || last - first >= kMostKeyedFrames) return;
@@ -85,25 +114,47 @@ SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given, 
   revision_ = 1;
 }
 
-Scene SceneEdits::parsed(const Edits& edits) const {
+Scene SceneEdits::parsed(const Edits& edits, const Look& look) const {
   for (const std::string& edit : edits) check_opens_nothing(file_, edit);
-  Edits all = given_;
-  all.insert(all.end(), edits.begin(), edits.end());
-  Scene scene = parse_scene(text_, file_, all, frame_);
-  check_pixels(scene);
+  Scene scene = read(edits, look, frame_);
   if (mesh_files(scene) != mesh_files(scene_))
     throw bad_file(file_, "a view does not change mesh files", "those of the scene that was opened");
   return scene;
 }
 
+/// With the scene's camera in any case: a look must not hide that an edit spoils it.
+Scene SceneEdits::read(const Edits& edits, const Look& look, int frame) const {
+  Edits all = given_;
+  all.insert(all.end(), edits.begin(), edits.end());
+  Scene scene = parse_scene(text_, file_, all, frame);
+  check_pixels(scene);
+  if (!look) return scene;
+  all.push_back("camera.position=" + look->position);
+  all.push_back("camera.look_at=" + look->look_at);
+  return parse_scene(text_, file_, all, frame);
+}
+
+/// The change of one key where the scene has keys for the value.
+Assignment SceneEdits::with_key(const Assignment& change) const {
+  if (frames_.empty() || is_keyed(Json::parse(change.value, nullptr, false))) return change;
+  const Json scene = Json::parse(merged_scene(text_, file_, overrides()));
+  const Json* const value = value_at(scene, change.path);
+  if (value == nullptr || !is_keyed(*value)) return change;
+  return {change.path + ".keyed." + std::to_string(frame_), change.value};
+}
+
 void SceneEdits::set(const SetValues& message) {
   Edits edits = history_[at_];
-  for (const Assignment& change : message.values) {
+  Look look = look_;
+  for (const Assignment& given : message.values) {
+    if (moves_camera(given.path)) look.reset();
+    const Assignment change = with_key(given);
     std::erase_if(edits, [&](const std::string& text) { return is_within(text, change.path); });
     edits.push_back(change.path + '=' + change.value);
   }
   if (edits == history_[at_]) return;
-  Scene scene = parsed(edits);
+  Scene scene = parsed(edits, look);
+  look_ = std::move(look);
   const bool goes_on = message.stroke != 0 && message.stroke == stroke_;
   if (goes_on) {
     history_[at_] = std::move(edits);
@@ -119,7 +170,7 @@ void SceneEdits::set(const SetValues& message) {
 }
 
 void SceneEdits::go_to(std::size_t place) {
-  scene_ = parsed(history_[place]);
+  scene_ = parsed(history_[place], look_);
   at_ = place;
   stroke_ = 0;
   ++revision_;
@@ -135,7 +186,7 @@ void SceneEdits::redo() {
 
 void SceneEdits::reset() {
   if (edits().empty()) return;
-  scene_ = parsed({});
+  scene_ = parsed({}, look_);
   history_.resize(at_ + 1);
   history_.emplace_back();
   ++at_;
@@ -145,7 +196,7 @@ void SceneEdits::reset() {
 
 void SceneEdits::restore(const std::vector<std::string>& edits) {
   if (revision_ > 1 || edits.empty()) return;
-  Scene scene = parsed(edits);
+  Scene scene = parsed(edits, look_);
   history_.push_back(edits);
   ++at_;
   scene_ = std::move(scene);
@@ -159,12 +210,34 @@ void SceneEdits::go_to_frame(int frame) {
                                    : "one from " + std::to_string(frames_.front()) + " to " +
                                          std::to_string(frames_.back()) + " of --frames");
   if (frame == frame_) return;
-  Scene scene = parse_scene(text_, file_, overrides(), frame);
-  check_pixels(scene);
-  scene_ = std::move(scene);
+  scene_ = read(edits(), look_, frame);
   frame_ = frame;
   stroke_ = 0;
   ++revision_;
+}
+
+void SceneEdits::look(const LookFrom& look) {
+  scene_ = parsed(edits(), look);
+  look_ = look;
+  ++revision_;
+}
+
+void SceneEdits::look_back() {
+  if (!look_) return;
+  scene_ = parsed(edits(), {});
+  look_.reset();
+  ++revision_;
+}
+
+void SceneEdits::keep_look() {
+  if (!look_) return;
+  const Json camera = Json::parse(json()).value("camera", Json::object());
+  SetValues changes;
+  for (const auto& [key, value] : {std::pair{"position", look_->position}, {"look_at", look_->look_at}})
+    if (!camera.contains(key) || camera.at(key) != Json::parse(value))
+      changes.values.push_back({"camera." + std::string(key), value});
+  if (changes.values.empty()) return look_back();
+  set(changes);
 }
 
 std::optional<int> SceneEdits::frame() const {

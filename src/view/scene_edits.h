@@ -24,6 +24,9 @@ class SceneEdits {
 
   // Each changes the scene or throws and changes nothing. What changes nothing does not count as a step.
   // error as parse_scene; Error{bad_input}: more than kMostViewPixels, or other mesh files than the opened scene's
+
+  /// A value that has keys gets one at the frame that is shown and keeps the others. The camera's position or point of
+  /// interest ends the view's own camera.
   void set(const SetValues& message);
   void undo();
   void redo();
@@ -35,6 +38,13 @@ class SceneEdits {
   /// error as parse_scene; Error{bad_input}: none of frames()
   void go_to_frame(int frame);
 
+  // The view's own camera: no edit, no step of undo, and in no file.
+  // error as parse_scene
+  void look(const LookFrom& look);
+  void look_back();
+  /// An edit of the scene's camera, as `set` makes it.
+  void keep_look();
+
   /// Empty: the scene has none, and is shown as it is at frame 1.
   const std::vector<int>& frames() const { return frames_; }
   /// The one that is shown, where there are any.
@@ -42,7 +52,9 @@ class SceneEdits {
   /// The scene at settings.reference_frame, on whose surfaces samples are placed, where there are frames.
   std::optional<Scene> reference() const;
 
+  /// By the view's own camera, where it has one.
   const Scene& scene() const { return scene_; }
+  const std::optional<LookFrom>& own_camera() const { return look_; }
   const std::string& file() const { return file_; }
   /// Counts changes, from 1.
   std::uint32_t revision() const { return revision_; }
@@ -59,7 +71,10 @@ class SceneEdits {
 
  private:
   using Edits = std::vector<std::string>;
-  Scene parsed(const Edits& edits) const;
+  using Look = std::optional<LookFrom>;
+  Scene parsed(const Edits& edits, const Look& look) const;
+  Scene read(const Edits& edits, const Look& look, int frame) const;
+  Assignment with_key(const Assignment& change) const;
   void go_to(std::size_t place);
 
   std::string file_, text_;
@@ -70,6 +85,7 @@ class SceneEdits {
   std::uint32_t revision_ = 1;
   std::vector<int> frames_;
   int frame_ = 1;
+  Look look_;
   Scene scene_;
 };
 

@@ -105,10 +105,14 @@ std::string schema_text() {
 }
 
 std::string scene_text(const SceneEdits& edits, const std::string& command) {
+  Json look;
+  if (const std::optional<LookFrom>& own = edits.own_camera())
+    look = {{"position", Json::parse(own->position)}, {"look_at", Json::parse(own->look_at)}};
   return compact({{"is", "scene"},
                   {"revision", edits.revision()},
                   {"file", std::filesystem::path(edits.file()).filename().string()},
                   {"scene", Json::parse(edits.json())},
+                  {"look", look},
                   {"edits", edits.edits()},
                   {"undo", edits.can_undo()},
                   {"redo", edits.can_redo()},

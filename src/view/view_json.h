@@ -15,7 +15,8 @@ namespace opaline {
 /// knobs are made of.
 std::string schema_text();
 
-/// "scene": all values, the edits, whether there is a way back, and the frames. command: that renders the same.
+/// "scene": all values, the view's own camera, the edits, whether there is a way back, and the frames.
+/// command: that renders the same by the scene's camera.
 std::string scene_text(const SceneEdits& edits, const std::string& command);
 
 /// "plan": what the scene requires, in words.

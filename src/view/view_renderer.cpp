@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kFrame = 1.0 / 30, kDraft = .022;  // s: a picture that follows the hand, its rays
 constexpr double kKnob = .06;                       // s: a picture that follows a knob
+constexpr double kPatience = .5;                    // s: of what waits, with work that follows the hand
 constexpr double kLongFinal = .25;                  // s: worth a sharper picture before
 constexpr int kCoarsest = 16;
 
@@ -68,7 +69,7 @@ ViewRenderer::~ViewRenderer() {
   {
     const std::lock_guard lock(mutex_);
     stopped_ = true;
-    monitor_.cancelled = true;
+    monitor_.cancelled = brief_.cancelled = true;
   }
   changed_.notify_one();
 }
@@ -85,10 +86,23 @@ void ViewRenderer::show(Scene scene, std::uint32_t revision, std::optional<Scene
 std::optional<ViewRenderer::Wanted> ViewRenderer::next() {
   std::unique_lock lock(mutex_);
   monitor_.begin(nullptr, 0);
+  is_drawing_ = false;
   changed_.wait(lock, [&] { return stopped_ || wanted_; });
   if (stopped_) return {};
-  monitor_.cancelled = false;
+  is_drawing_ = true;
+  drawing_since_ = Clock::now();
+  monitor_.cancelled = brief_.cancelled = false;
   return std::exchange(wanted_, {});
+}
+
+bool ViewRenderer::is_drawing() {
+  const std::lock_guard lock(mutex_);
+  return is_drawing_ || wanted_;
+}
+
+void ViewRenderer::end_stale_work() {
+  const std::lock_guard lock(mutex_);
+  if (wanted_ && seconds_since(drawing_since_) > kPatience) brief_.cancelled = true;
 }
 
 void ViewRenderer::run() {
@@ -119,7 +133,7 @@ void ViewRenderer::anchor(const Wanted& wanted) {
     prepared_.reset();
     session_ = new_session();
     session_->match_new_session(false);
-    session_->anchor(*wanted.reference);
+    session_->anchor(*wanted.reference, &brief_);
     anchor_ = std::move(reference);
   }
   session_->expect_pictures(wanted.scene.camera_frames);
@@ -148,9 +162,9 @@ void ViewRenderer::draw(const Wanted& wanted) {
   const Stopwatch watch;
   const auto lit = is_quick && spent.final < kKnob ? nullptr : show_lit_anew(wanted, spent);
   StageCost relighting = watch.cost("shading");
-  if (!is_quick && lit == nullptr) publish(wanted, PictureStep::moving, session_->first_light());
+  if (!is_quick && lit == nullptr) publish(wanted, PictureStep::moving, session_->first_light(&brief_));
   const Clock::time_point start = Clock::now();
-  session_->prepare(is_quick ? nullptr : &monitor_);
+  session_->prepare(is_quick ? &brief_ : &monitor_);
   spent.prepare = seconds_since(start);
   prepared_ = wanted.scene;
   if (is_direct) return draw_direct(wanted);
@@ -159,8 +173,8 @@ void ViewRenderer::draw(const Wanted& wanted) {
                   std::move(relighting));
   if (lit != nullptr) return draw_final(wanted, spent, &monitor_);
   if (is_quick && spent.final < (change == camera ? kFrame : kKnob))
-    return draw_final(wanted, spent, nullptr);
-  draw_draft(wanted, draft_stride(wanted.scene.film), PictureStep::moving, nullptr);
+    return draw_final(wanted, spent, &brief_);
+  draw_draft(wanted, draft_stride(wanted.scene.film), PictureStep::moving, &brief_);
   refine(wanted, spent);
 }
 

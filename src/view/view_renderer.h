@@ -69,6 +69,10 @@ class ViewRenderer {
 
   /// For whoever shows progress.
   const Monitor& monitor() const { return monitor_; }
+  bool is_drawing();
+  /// Ends work that follows the hand, which no newer scene cancels, where it takes long and one waits. To be called now
+  /// and then while it draws.
+  void end_stale_work();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -109,9 +113,11 @@ class ViewRenderer {
   std::array<Spent, kChanges> spent_;
   double seconds_per_pixel_ = 2e-6;  // of drafts
   Monitor monitor_;
-  std::mutex mutex_;  // of the next two
+  Monitor brief_;     ///< of work that follows the hand
+  std::mutex mutex_;  // of the next four
   std::optional<Wanted> wanted_;
-  bool stopped_ = false;
+  Clock::time_point drawing_since_;
+  bool stopped_ = false, is_drawing_ = false;
   std::condition_variable changed_;
   std::jthread thread_;  // last: it uses the others
 };

@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <boost/asio/ip/host_name.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -70,6 +72,7 @@ struct ViewServer::State {
   void receive(PageConnection& page, std::string_view text);
   void act(PageConnection& page, const PageMessage& message);
   void after_edit();
+  std::string by_scene_camera() const;
   void save(PageConnection& page, const std::string& name);
   void render_file(PageConnection& page, const std::string& name);
   PackedFrame pack(const std::shared_ptr<const ViewPicture>& picture, const std::string& layer);
@@ -78,7 +81,7 @@ struct ViewServer::State {
   void work_behind(const WorkBehind& wanted);
   void take(const ChosenSettings& chosen);
   void tell(PageText kind, std::string text);
-  void tick(const Monitor& until_cancelled);
+  void show_progress();
 
   asio::io_context io;
   SceneEdits edits;
@@ -86,6 +89,8 @@ struct ViewServer::State {
   AccessRules rules;
   asio::ip::tcp::acceptor acceptor;
   asio::steady_timer timer;
+  asio::signal_set signals;
+  bool shows_progress = false;
   std::string url;
   SharedText schema;
   std::map<PageText, SharedText> texts;  ///< the newest of each kind
@@ -104,7 +109,7 @@ struct ViewServer::State {
 };
 
 ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, ViewHooks view_hooks)
-    : edits(std::move(scene_edits)), hooks(std::move(view_hooks)), acceptor(io), timer(io) {
+    : edits(std::move(scene_edits)), hooks(std::move(view_hooks)), acceptor(io), timer(io), signals(io) {
   rules.token = options.token.empty() ? random_token() : options.token;
   check_token(rules.token);
   const Address wanted = address_of(options);
@@ -233,6 +238,9 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
     page.answer(told_text(true, fmt::format("choosing settings for {:.3g} %", 100 * choice->error)));
   }
   if (const auto* frame = std::get_if<GoToFrame>(&message)) edits.go_to_frame(frame->frame);
+  if (const auto* look = std::get_if<LookFrom>(&message)) edits.look(*look);
+  if (std::holds_alternative<LookBack>(message)) edits.look_back();
+  if (std::holds_alternative<KeepLook>(message)) edits.keep_look();
   if (const auto* shown = std::get_if<FrameShown>(&message)) page.shown(shown->frame);
   if (edits.revision() != before) after_edit();
 }
@@ -271,13 +279,19 @@ void ViewServer::State::after_edit() {
   reference.reset();
   renderer->show(edits.scene(), edits.revision(), edits.reference());
   tell(PageText::scene, scene_text(edits, hooks.command(edits.overrides(), edits.frame())));
+  if (!std::exchange(shows_progress, true)) show_progress();
+}
+
+/// What files hold where that is not what the view shows.
+std::string ViewServer::State::by_scene_camera() const {
+  return edits.own_camera() ? ", by the scene's camera, not the view's" : "";
 }
 
 void ViewServer::State::save(PageConnection& page, const std::string& name) {
   const std::string path = path_beside(edits.file(), name, {".json"}, written);
   write_file(path, edits.file_text());
   written.insert(path);
-  page.answer(told_text(true, "saved " + path));
+  page.answer(told_text(true, "saved " + path + by_scene_camera()));
 }
 
 void ViewServer::State::render_file(PageConnection& page, const std::string& name) {
@@ -289,8 +303,6 @@ void ViewServer::State::render_file(PageConnection& page, const std::string& nam
       path_beside(edits.file(), frame ? with_frame(numbered, *frame) : name, {".exr", ".png"}, written);
   const std::string pattern = frame ? (std::filesystem::path(path).parent_path() / numbered).string() : path;
   if (renders_file) throw bad_file(path, "another file is being rendered", "one after the other");
-  renders_file = true;
-  page.answer(told_text(true, "rendering " + path));
   file_thread = std::jthread([this, path, pattern, frame, overrides = edits.overrides()] {
     std::string failure;
     try {
@@ -305,6 +317,8 @@ void ViewServer::State::render_file(PageConnection& page, const std::string& nam
       for (PageConnection* shown : pages) shown->answer(told_text(failure.empty(), text));
     });
   });
+  renders_file = true;
+  page.answer(told_text(true, "rendering " + path + by_scene_camera()));
 }
 
 // ---- the renderer's news, and the clock ------------------------------------------------------------------
@@ -354,13 +368,16 @@ BackgroundEvents ViewServer::State::background_events() {
           }};
 }
 
-void ViewServer::State::tick(const Monitor& until_cancelled) {
-  if (until_cancelled.cancelled) return io.stop();
+/// Every kTick while pictures are drawn; an idle view does not wake.
+void ViewServer::State::show_progress() {
+  renderer->end_stale_work();
+  shows_progress = renderer->is_drawing();
   std::string work = work_text(renderer->monitor());
   const SharedText& last = texts[PageText::work];
   if (last == nullptr || *last != work) tell(PageText::work, std::move(work));
+  if (!shows_progress) return;
   timer.expires_after(kTick);
-  timer.async_wait([this, &until_cancelled](error_code) { tick(until_cancelled); });
+  timer.async_wait([this](error_code) { show_progress(); });
 }
 
 ViewServer::ViewServer(SceneEdits edits, ViewOptions options, ViewHooks hooks)
@@ -371,14 +388,31 @@ std::string ViewServer::url() const {
   return state_->url;
 }
 
-void ViewServer::run(const Monitor& until_cancelled) {
+void ViewServer::stop() {
+  state_->io.stop();
+}
+
+void ViewServer::stop_at_signals() {
+  for (const int signal : {SIGINT, SIGTERM}) state_->signals.add(signal);
+  state_->signals.async_wait([state = state_.get()](error_code error, int) {
+    if (error) return;
+    state->signals.clear();
+    state->io.stop();
+  });
+}
+
+void ViewServer::run() {
   State& state = *state_;
   state.renderer = std::make_unique<ViewRenderer>(state.renderer_events());
   state.background = std::make_unique<ViewBackground>(state.background_events());
   state.after_edit();
   state.accept();
-  state.tick(until_cancelled);
-  state.io.run();
+  // Memory that runs out while one page is served is no end for the others.
+  while (!state.io.stopped()) try {
+      state.io.run();
+    } catch (const std::exception& failure) {
+      state.hooks.refused(std::string("a page: ") + failure.what());
+    }
 }
 
 }  // namespace opaline

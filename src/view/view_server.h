@@ -48,8 +48,12 @@ class ViewServer {
   /// Where the page is.
   std::string url() const;
 
-  /// Serves until the monitor is cancelled.
-  void run(const Monitor& until_cancelled);
+  /// Serves until `stop`.
+  void run();
+  /// On any thread.
+  void stop();
+  /// SIGINT or SIGTERM is to stop it; a second one of its kind kills.
+  void stop_at_signals();
 
  private:
   struct State;

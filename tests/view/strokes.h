@@ -202,7 +202,8 @@ class Strokes {
   }
 
   std::string step_back() {
-    static const std::vector<std::string> kButtons{"undo", "undo", "undo", "redo", "redo", "Ctrl+Z", "reset"};
+    static const std::vector<std::string> kButtons{"undo",   "undo",  "undo",      "redo",     "redo",
+                                                   "Ctrl+Z", "reset", "keep-look", "look-back"};
     std::string button = kButtons[pick(kButtons.size())];
     if (button == "reset" && pick(4) != 0) button = "undo";
     if (button == "Ctrl+Z")

@@ -66,6 +66,76 @@ TEST(SceneEdits, OpenNoFiles) {
     }
 }
 
+// Claim: the view's own camera is in the scene that is shown and in nothing that is saved, copied or undone; kept, it is
+// one step, of what differs alone; an edit of where the scene's camera is ends it, one of its angle does not.
+TEST(SceneEdits, OwnCamera) {
+  const ViewFolder folder;
+  SceneEdits edits(folder.scene, {});
+  edits.set(one("media.stone.eta", "1.4"));
+  const std::string json = edits.json(), text = edits.file_text();
+  edits.look({"[10, 20, 90]", "[0, 8, 0]"});
+  EXPECT_EQ(edits.scene().camera.position, (Vec3d{10, 20, 90}));
+  EXPECT_EQ(edits.json(), json);
+  EXPECT_EQ(edits.file_text(), text);
+  EXPECT_EQ(edits.overrides(), Words{"media.stone.eta=1.4"});
+  EXPECT_THROW(edits.look({"[0, 8, 0]", "[0, 8, 0]"}), Error);
+  EXPECT_THROW(edits.look({"[0, 8]", "[0, 8, 0]"}), Error);
+  edits.undo();
+  EXPECT_FALSE(edits.can_undo());
+  EXPECT_EQ(edits.scene().camera.position, (Vec3d{10, 20, 90}));
+  edits.keep_look();
+  EXPECT_FALSE(edits.own_camera());
+  EXPECT_EQ(edits.edits(), Words{"camera.position=[10, 20, 90]"});
+  edits.undo();
+  EXPECT_EQ(edits.scene().camera, load_scene(folder.scene).camera);
+  edits.look({"[10, 20, 90]", "[1, 8, 0]"});
+  edits.set(one("camera.field_of_view", "20"));
+  EXPECT_TRUE(edits.own_camera());
+  EXPECT_THROW(edits.set(one("camera.up", "[0, -22, -120]")), Error);  // along the scene's own line of sight
+  edits.set(one("camera.position", "[0, 40, 120]"));
+  EXPECT_FALSE(edits.own_camera());
+  EXPECT_EQ(edits.scene().camera.position, (Vec3d{0, 40, 120}));
+  edits.look({"[10, 20, 90]", "[1, 8, 0]"});
+  edits.look_back();
+  EXPECT_EQ(edits.scene().camera.position, (Vec3d{0, 40, 120}));
+}
+
+// Claim: an edit of a value with keys sets its key at the frame that is shown, and all others stay, in the saved file,
+// too; the view's own camera leaves them alone. Fails if: the edit takes the place of the value with its keys.
+TEST(SceneEdits, KeysStay) {
+  const ViewFolder folder;
+  std::string text = bytes_of(folder.scene);
+  const auto key = [&](const std::string& still, const std::string& keyed) {
+    text.replace(text.find(still), still.size(), keyed);
+  };
+  key("[0, 30, 120]", R"({"keyed": {"1": [0, 30, 120], "9": [40, 30, 100]}, "between": "spline"})");
+  key("[3e4, 2e4, 1e4]", R"({"keyed": {"1": [3e4, 2e4, 1e4], "5": [1, 2, 3]}})");
+  put_bytes(folder.scene, text);
+  SceneEdits edits(folder.scene, {});
+  edits.go_to_frame(4);
+  edits.look({"[7, 8, 90]", "[1, 8, 0]"});
+  EXPECT_EQ(edits.file_text(), text);
+  edits.set(one("lights.key.intensity", "[5, 6, 7]", 3));
+  edits.set(one("lights.0.intensity", "[6, 6, 7]", 3));
+  EXPECT_EQ(edits.edits(),
+            (Words{"lights.key.intensity.keyed.4=[5, 6, 7]", "lights.0.intensity.keyed.4=[6, 6, 7]"}));
+  const auto lamp = [&] { return std::get<PointLight>(edits.scene().lights[0].source).intensity; };
+  EXPECT_EQ(lamp(), (Rgb{6, 6, 7}));
+  edits.go_to_frame(1);
+  EXPECT_EQ(lamp(), (Rgb{3e4, 2e4, 1e4}));
+  edits.undo();
+  edits.go_to_frame(4);
+  edits.keep_look();
+  EXPECT_EQ(edits.edits(), (Words{"camera.position.keyed.4=[7, 8, 90]", "camera.look_at=[1, 8, 0]"}));
+  EXPECT_EQ(edits.scene().camera.position, (Vec3d{7, 8, 90}));
+  const std::string saved = edits.file_text();
+  for (const int frame : {1, 9})
+    EXPECT_EQ(parse_scene(saved, "saved.json", {}, frame).camera.position,
+              parse_scene(text, "before.json", {}, frame).camera.position);
+  edits.set(one("camera.position", R"({"keyed": {"2": [1, 2, 3]}})"));  // other keys are meant
+  EXPECT_EQ(edits.scene().camera.position, (Vec3d{1, 2, 3}));
+}
+
 // Claim: the file's text with edits is read as the scene with edits, keyed values stay keyed, and only in what pages
 // see they are those of the first frame.
 TEST(SceneEdits, FileText) {

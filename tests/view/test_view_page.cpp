@@ -36,18 +36,6 @@ TEST_F(LongViewPage, EditsAreShown) {
   expect_shown(rendered(folder.scene, edits));
 
   const auto [x, y] = middle("#picture");
-  browser.drag(tab, x, y, 60, -25);
-  edits = final_edits(6);
-  Scene scene = load_scene(folder.scene, edits);
-  EXPECT_NEAR(length(scene.camera.position - scene.camera.look_at), length(Vec3d{0, 22, 120}), 1e-3);
-  EXPECT_GT(length(scene.camera.position - Vec3d{0, 30, 120}), 5);
-  EXPECT_EQ(scene.camera.look_at, (Vec3d{0, 8, 0}));
-  for (const std::string& edit : edits)
-    EXPECT_FALSE(edit.starts_with("camera.look_at=")) << edit;  // as it was
-  expect_shown(rendered(folder.scene, edits));
-  browser.drag(tab, x, y, 40, 0, 8);  // Shift: pan
-  edits = final_edits(revision + 1);
-  EXPECT_NE(load_scene(folder.scene, edits).camera.look_at, (Vec3d{0, 8, 0}));
   browser.drag(tab, x, y, 50, 0, 1);  // Alt: the room, and its sun
   edits = final_edits(revision + 1);
   const auto sun_of = [&] {
@@ -55,20 +43,100 @@ TEST_F(LongViewPage, EditsAreShown) {
   };
   EXPECT_GT(sun_of().x, .01);
   EXPECT_NEAR(sun_of().y, normalized(Vec3d{0, -2, -1}).y, 1e-5);
-  browser.mouse(tab, "mouseWheel", x, y, {{"deltaX", 0}, {"deltaY", -100}});
-  edits = final_edits(revision + 1);
-  EXPECT_LT(length(load_scene(folder.scene, edits).camera.position -
-                   load_scene(folder.scene, edits).camera.look_at),
-            length(Vec3d{0, 22, 120}) - 5);
   expect_shown(rendered(folder.scene, edits));
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 2; ++i) {
     browser.key(tab, "z", 2);
     edits = final_edits(revision + 1);
   }
-  EXPECT_EQ(load_scene(folder.scene, edits).camera, load_scene(folder.scene).camera);
+  EXPECT_EQ(edits.back(), "media.stone.profile=\"better_dipole\"");
   click("reset");
   EXPECT_TRUE(final_edits(revision + 1).empty());
   expect_shown(rendered(folder.scene));
+}
+
+// Claim: orbit, pan and dolly move a camera of the view's own: the picture is the one from there, and the edits, what
+// is saved and Undo have the scene's, until a button makes it the scene's, by one step of Undo; another one goes back.
+TEST_F(LongViewPage, TheCameraIsFree) {
+  final_edits();
+  const auto look_of = [&] {
+    ViewClient page(*view);
+    EXPECT_TRUE(page.read_final());
+    const Json look = page.texts.at("scene").at("look");
+    std::vector<std::string> words;
+    if (!look.is_null())
+      words = {"camera.position=" + look.at("position").dump(),
+               "camera.look_at=" + look.at("look_at").dump()};
+    return words;
+  };
+  const auto drag = [&](double dx, double dy, int modifiers = 0) {
+    const auto [x, y] = middle("#picture");
+    browser.drag(tab, x, y, dx, dy, modifiers);
+    browser.run(tab, "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))");
+  };
+  drag(60, -25);
+  EXPECT_TRUE(final_edits(2).empty());
+  Camera camera = load_scene(folder.scene, look_of()).camera;
+  EXPECT_NEAR(length(camera.position - camera.look_at), length(Vec3d{0, 22, 120}), .01);
+  EXPECT_GT(length(camera.position - Vec3d{0, 30, 120}), 5);
+  EXPECT_EQ(camera.look_at, (Vec3d{0, 8, 0}));
+  expect_shown(rendered(folder.scene, look_of()));
+  EXPECT_EQ(browser.run(tab, "document.getElementById('undo').disabled"), true);
+  drag(40, 0, 8);  // Shift: pan
+  final_edits(revision + 1);
+  EXPECT_NE(load_scene(folder.scene, look_of()).camera.look_at, (Vec3d{0, 8, 0}));
+  const auto [x, y] = middle("#picture");
+  browser.mouse(tab, "mouseWheel", x, y, {{"deltaX", 0}, {"deltaY", -100}});
+  EXPECT_TRUE(final_edits(revision + 1).empty());
+  const std::vector<std::string> look = look_of();
+  camera = load_scene(folder.scene, look).camera;
+  EXPECT_LT(length(camera.position - camera.look_at), length(Vec3d{0, 22, 120}) - 5);
+  click("save");
+  ASSERT_TRUE(browser.comes_true(
+      tab,
+      "document.getElementById('told').textContent.endsWith(\"by the scene's camera, not the view's\")"));
+  EXPECT_EQ(bytes_of(folder.file("balls-edited.json")), bytes_of(folder.scene));
+  click("look-back");
+  EXPECT_TRUE(final_edits(revision + 1).empty());
+  EXPECT_TRUE(look_of().empty());
+  expect_shown(rendered(folder.scene));
+  drag(60, -25);
+  final_edits(revision + 1);
+  camera = load_scene(folder.scene, look_of()).camera;
+  click("keep-look");
+  const std::vector<std::string> kept = final_edits(revision + 1);
+  ASSERT_EQ(kept.size(), 1u);  // look_at is as it was
+  EXPECT_EQ(load_scene(folder.scene, kept).camera, camera);
+  EXPECT_TRUE(look_of().empty());
+  expect_shown(rendered(folder.scene, kept));
+  EXPECT_EQ(browser.run(tab, "document.getElementById('keep-look').disabled"), true);
+  click("undo");
+  EXPECT_TRUE(final_edits(revision + 1).empty());
+  expect_shown(rendered(folder.scene));
+}
+
+// Claim: a number that is refused is replaced by the accepted one at once, in its field, and the picture stays as it is.
+// Fails if: what the page has changed goes before what the server tells of after it was refused.
+TEST_F(LongViewPage, ARefusalRestores) {
+  final_edits();
+  const std::array<double, 4> before = box("#picture");
+  const auto shows = [&](const std::string& path, const std::string& label, const std::string& value) {
+    return browser.comes_true(tab, "document.querySelector('[aria-label^=\"" + path + ",\"] [aria-label=\"" +
+                                       label + "\"]').value === '" + value + "'");
+  };
+  const auto is_told = [&](const std::string& text) {
+    return browser.comes_true(tab, "document.getElementById('told').textContent.includes('" + text + "')");
+  };
+  type("film.resolution", "resolution width", "100000");
+  EXPECT_TRUE(is_told("film.resolution"));
+  EXPECT_NEAR(box("#picture")[3], before[3], 10);  // less the line that tells
+  EXPECT_TRUE(shows("film.resolution", "resolution width", "48"));
+  type("lights.sun.irradiance", "irradiance red", "-1");
+  EXPECT_TRUE(is_told("irradiance"));
+  EXPECT_TRUE(shows("lights.sun.irradiance", "irradiance red", "0.1"));
+  type("camera.field_of_view", "field_of_view", "1000");
+  EXPECT_TRUE(is_told("field_of_view"));
+  EXPECT_TRUE(shows("camera.field_of_view", "field_of_view", "32"));
+  EXPECT_TRUE(final_edits().empty());
 }
 
 // Claim: a light is moved by its handle, by mouse and keys, and its brightness by the wheel.

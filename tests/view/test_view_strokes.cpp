@@ -58,6 +58,9 @@ class EditsModel {
     if (std::holds_alternative<Redo>(message)) edits.redo();
     if (std::holds_alternative<Reset>(message)) edits.reset();
     if (const auto* frame = std::get_if<GoToFrame>(&message)) edits.go_to_frame(frame->frame);
+    if (const auto* look = std::get_if<LookFrom>(&message)) edits.look(*look);
+    if (std::holds_alternative<LookBack>(message)) edits.look_back();
+    if (std::holds_alternative<KeepLook>(message)) edits.keep_look();
   } catch (const Error&) {  // refused, as by the server
   }
 
@@ -160,6 +163,9 @@ class StrokedView {
     const std::optional<int> frame = model_.edits.frame();
     std::vector<std::string> words{"render", scene, "-o", folder_.file(frame ? "out.####.exr" : "out.exr")};
     if (frame) words.insert(words.end(), {"--frames", std::to_string(*frame)});
+    if (const std::optional<LookFrom>& look = model_.edits.own_camera())
+      words.insert(words.end(), {"--set", "camera.position=" + look->position, "--set",
+                                 "camera.look_at=" + look->look_at});
     const Outcome outcome = run_program(words);
     EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3 || outcome.exit_code == 2) << outcome.err;
     if (outcome.exit_code != 0) return {};
@@ -189,7 +195,8 @@ void strike_in_turns(StrokedView& view, int at_once, int one_by_one) {
 }
 
 // Claim: after each of these strokes the server has every edit that the page sent, the page has sent what was typed, and
-// the final picture has the bits of `opaline render` of the scene that the page saves. Fails if: a change is lost
+// the final picture has the bits of `opaline render` of the scene that the page saves, from the page's own camera where it
+// has one. Fails if: a change is lost
 // between page, server and renderer, or a stage that is kept lacks in its key what it depends on.
 TEST(ViewStrokes, LeadToTheirPicture) {
   StrokedView view(kStill, 1);

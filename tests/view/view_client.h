@@ -65,8 +65,8 @@ class RunningView {
   explicit RunningView(const std::string& scene, std::uint16_t port = 0, std::vector<int> frames = {},
                        const std::string& address = "127.0.0.1")
       : server_(SceneEdits(scene, {}, std::move(frames)), {address, port, kToken}, hooks()),
-        thread_([this] { server_.run(stop_); }) {}
-  ~RunningView() { stop_.cancelled = true; }
+        thread_([this] { server_.run(); }) {}
+  ~RunningView() { server_.stop(); }
   RunningView(const RunningView&) = delete;
   RunningView& operator=(const RunningView&) = delete;
 
@@ -107,7 +107,6 @@ class RunningView {
 
   std::mutex mutex_;
   std::string log_;
-  Monitor stop_;
   ViewServer server_;
   std::jthread thread_;
 };

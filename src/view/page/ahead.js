@@ -13,7 +13,7 @@ function withValue(owner, [key, ...rest], value) {
 }
 
 export class Ahead {
-  // over(): called once the server's scene alone counts again
+  // over(): called once the server's scene alone counts again, but for `clear`, after which it comes anyway
   constructor(over) {
     Object.assign(this, {over, values: {}, end: 0});
   }

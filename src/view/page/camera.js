@@ -12,8 +12,9 @@ const unit = (a) => scale(a, 1 / (length(a) || 1));
 // Few digits, that commands stay short.
 export const rounded = (x) => Array.isArray(x) ? x.map(rounded) : Number(x.toPrecision(6));
 
+// The view's own where it has one: scene.look.
 export function cameraOf(scene) {
-  const given = scene.camera || {};
+  const given = {...scene.camera, ...scene.look};
   return {
     position: given.position || [0, 0, 5],
     look_at: given.look_at || [0, 0, 0],
@@ -22,11 +23,7 @@ export function cameraOf(scene) {
   };
 }
 
-// What turns a camera into values of the scene: those that have changed.
-export function cameraValues(camera, before) {
-  const changed = ["position", "look_at"].filter((key) => camera[key] !== before[key]);
-  return Object.fromEntries(changed.map((key) => [`camera.${key}`, rounded(camera[key])]));
-}
+export const lookOf = ({position, look_at}) => ({position: rounded(position), look_at: rounded(look_at)});
 
 export function basis(camera) {
   const forward = unit(sub(camera.look_at, camera.position));

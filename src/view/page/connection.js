@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The socket: tries again when the server is gone, and brings a new server to the edits of this page.
+// The socket: tries again when the server is gone, and brings a new server to the edits, frame and camera of this page.
 
 const kFirstWait = 250, kLongestWait = 4000;  // ms
 export const kPause = 400;                    // ms, after which a change is a new one
@@ -12,6 +12,7 @@ export class Connection {
     this.edits = [];
     this.isNew = true;
     this.waiting = {};
+    this.waitingLook = null;
     this.open();
   }
 
@@ -35,6 +36,7 @@ export class Connection {
     if (message.is === "scene") {
       if (this.isNew) {
         if (message.revision === 1 && this.frame !== undefined && this.frame !== message.frame) this.toFrame = this.frame;
+        if (message.revision === 1) this.toLook = this.lastLook;
         this.isNew = false;
         this.wait = kFirstWait;
         this.handlers.found();
@@ -45,9 +47,11 @@ export class Connection {
         }
       }
       if (this.toFrame !== undefined) this.send({do: "frame", frame: this.toFrame});
-      this.toFrame = undefined;
+      if (this.toLook) this.look(this.toLook);
+      this.toFrame = this.toLook = undefined;
       this.edits = message.edits;
       this.frame = message.frame;
+      this.lastLook = message.look;
     }
     this.handlers.text(message);
   }
@@ -62,14 +66,22 @@ export class Connection {
   set(values, stroke) {
     if (this.stroke !== stroke) this.flush();
     this.stroke = stroke;
-    if (!Object.keys(this.waiting).length) requestAnimationFrame(() => this.flush());
+    requestAnimationFrame(() => this.flush());
     Object.assign(this.waiting, values);
   }
 
+  // The view's own camera: the last one of a moment.
+  look(camera) {
+    this.waitingLook = camera;
+    requestAnimationFrame(() => this.flush());
+  }
+
   flush() {
-    const values = this.waiting;
+    const values = this.waiting, look = this.waitingLook;
     this.waiting = {};
+    this.waitingLook = null;
     if (Object.keys(values).length) this.send({do: "set", values, stroke: this.stroke});
+    if (look) this.send({do: "look", ...look});
   }
 }
 

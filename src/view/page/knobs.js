@@ -77,7 +77,7 @@ export class Knobs {
     this.shape = shape;
     for (const knob of this.knobs) {
       knob.show(knob.value(scene));
-      knob.root.classList.toggle("is-edited", edits.some((text) => text.startsWith(knob.path + "=")));
+      knob.root.classList.toggle("is-edited", edits.some((text) => [`${knob.path}=`, `${knob.path}.keyed.`].some((start) => text.startsWith(start))));
     }
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: what the server tells goes to the picture, the knobs and the lines below; what a person does goes back.
 import {Ahead} from "./ahead.js";
-import {cameraOf, cameraValues, dolly, orbit, pan, turnedLight} from "./camera.js";
+import {cameraOf, dolly, lookOf, orbit, pan, turnedLight} from "./camera.js";
 import {Connection, newStroke, pausedStroke} from "./connection.js";
 import {FrameReader} from "./frames.js";
 import {Knobs} from "./knobs.js";
@@ -22,7 +22,7 @@ let reference = null, waitingReference = null, behind = {trade: false, reference
 // ---- the picture --------------------------------------------------------------------------------------------
 
 function takeFilm() {
-  const given = state.scene.film || {}, [width, height] = given.resolution || [512, 512];
+  const given = serverScene.film || {}, [width, height] = given.resolution || [512, 512];
   const [x0, y0, x1, y1] = given.crop || [0, 0, width, height];
   film.aspect = width / height;
   film.shownHeight = (y1 - y0) / height;
@@ -118,7 +118,14 @@ function step(message) {
   ahead.clear();
 }
 
-const turn = (change, stroke) => set(cameraValues(change(state.camera), state.camera), stroke);
+// Turns the view's own camera; the scene keeps its.
+function turn(change) {
+  const look = lookOf(change(state.camera));
+  connection.look(look);
+  ahead.add({look});
+  takeValues();
+  overlay.update();
+}
 
 // The room, and with it the sun. from: the lights before.
 function turnLights(from, angle, stroke) {
@@ -142,7 +149,7 @@ function dragCamera(event) {
     if (event.altKey) return turnLights(lights, -kTurn * (now.clientX - start) / height, stroke);
     const x = (now.clientX - last[0]) / height, y = (now.clientY - last[1]) / height;
     last = [now.clientX, now.clientY];
-    turn((camera) => event.shiftKey ? pan(camera, x, y) : event.ctrlKey ? dolly(camera, Math.exp(2 * y)) : orbit(camera, -kTurn * x, -kTurn * y), stroke);
+    turn((camera) => event.shiftKey ? pan(camera, x, y) : event.ctrlKey ? dolly(camera, Math.exp(2 * y)) : orbit(camera, -kTurn * x, -kTurn * y));
   };
   const end = () => {
     isDragging = false;
@@ -153,10 +160,10 @@ function dragCamera(event) {
   for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, end);
 }
 
-const wheelStroke = pausedStroke(), keyStroke = pausedStroke();
+const keyStroke = pausedStroke();
 function wheelCamera(event) {
   event.preventDefault();
-  turn((camera) => dolly(camera, kKeyDolly ** Math.sign(event.deltaY)), wheelStroke());
+  turn((camera) => dolly(camera, kKeyDolly ** Math.sign(event.deltaY)));
 }
 
 function keyCamera(event) {
@@ -165,7 +172,7 @@ function keyCamera(event) {
   if (!(x || y || nearer) || event.ctrlKey) return;
   event.preventDefault();
   if (event.altKey) return turnLights(state.scene.lights || [], -kKeyTurn * x, keyStroke());
-  turn((camera) => nearer ? dolly(camera, nearer) : event.shiftKey ? pan(camera, kKeyPan * x, kKeyPan * y) : orbit(camera, -kKeyTurn * x, -kKeyTurn * y), keyStroke());
+  turn((camera) => nearer ? dolly(camera, nearer) : event.shiftKey ? pan(camera, kKeyPan * x, kKeyPan * y) : orbit(camera, -kKeyTurn * x, -kKeyTurn * y));
 }
 
 function tell(text, isGood = true) {
@@ -214,7 +221,7 @@ function takePoint(point) {
 
 function takeScene(message) {
   const isFirst = !state.scene;
-  serverScene = message.scene;
+  serverScene = {...message.scene, look: message.look};
   Object.assign(state, {revision: message.revision, edits: message.edits, command: message.command});
   takeValues();
   takeFilm();
@@ -228,6 +235,8 @@ function takeScene(message) {
   one("undo").disabled = !message.undo;
   one("redo").disabled = !message.redo;
   one("reset").disabled = !message.edits.length;
+  one("keep-look").disabled = one("look-back").disabled = !message.look;
+  one("whose-camera").textContent = message.look ? "free" : "scene";
   one("failed").hidden = true;
   takeFrames(message);
   knobs.update(state.scene, state.edits);
@@ -308,7 +317,11 @@ const takes = {
     one("compared").textContent = `${message.method}: ${message.samples} ${each}, noise ${message.noise ? percent(message.noise) : "not known yet"}; ` +
       `the final picture differs by ${percent(message.difference)} (rms of the translucent pixels' diffuse light, this noise taken out)`;
   },
-  told: (message) => tell(message.text, message.good),
+  // What was refused counts no longer: the scene as it is follows.
+  told: (message) => {
+    if (!message.good) ahead.clear();
+    tell(message.text, message.good);
+  },
 };
 
 const reader = new FrameReader((news) => {
@@ -341,6 +354,8 @@ function setExposure(stops) {
 }
 
 for (const word of ["undo", "redo", "reset"]) one(word).onclick = () => step({do: word});
+one("keep-look").onclick = () => step({do: "keep_look"});
+one("look-back").onclick = () => step({do: "look_back"});
 one("copy").onclick = copyCommand;
 one("save").onclick = () => connection.send({do: "save", name: one("name").value + ".json"});
 one("render").onclick = () => connection.send({do: "render", name: one("name").value + ".exr"});
