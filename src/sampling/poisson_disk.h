@@ -77,7 +77,7 @@ class PoissonDisk {
       candidates.chunk(chunk).shrink_to_fit();
       advance(monitor, end - begin);
     });
-    insert(candidates);
+    insert(candidates, monitor);
   }
 
   // No accepted sample of the triangle's sheet lies within the clearance.
@@ -100,16 +100,17 @@ class PoissonDisk {
     return same_sheet(triangles_.geometric_normal(a), triangles_.geometric_normal(b));
   }
 
-  void insert(const Candidates& candidates) {
+  void insert(const Candidates& candidates, Monitor* monitor) {
     std::vector<CandidateEntry> entries = candidates.sorted_entries(grid_);
     std::vector<std::uint32_t> runs;  // where each cell's entries begin
     for (std::size_t i = 0; i < entries.size(); ++i)
       if (i == 0 || entries[i].cell != entries[i - 1].cell) runs.push_back(std::uint32_t(i));
-    reserve_cells(entries, runs);
+    reserve_cells(entries, runs, monitor);
     for (std::size_t begin = 0; begin < runs.size();) {
       std::size_t end = begin;
       while (end < runs.size() && entries[runs[end]].phase() == entries[runs[begin]].phase()) ++end;
       parallel_chunks(end - begin, 64, [&](std::size_t first, std::size_t last, std::size_t) {
+        advance(monitor, 0);
         for (std::size_t r = begin + first; r < begin + last; ++r)
           try_cell(candidates, entries, runs[r], r + 1 < runs.size() ? runs[r + 1] : entries.size());
       });
@@ -122,12 +123,16 @@ class PoissonDisk {
   }
 
   // In Morton order, so that neighbours in space are neighbours in memory.
-  void reserve_cells(const std::vector<CandidateEntry>& entries, const std::vector<std::uint32_t>& runs) {
+  void reserve_cells(const std::vector<CandidateEntry>& entries, const std::vector<std::uint32_t>& runs,
+                     Monitor* monitor) {
     std::vector<std::uint64_t> keys;
     keys.reserve(runs.size());
     for (const std::uint32_t run : runs) keys.push_back(entries[run].key());
     tbb::parallel_sort(keys);
-    for (const std::uint64_t key : keys) grid_.reserve_cell(key);
+    for (const std::uint64_t key : keys) {
+      advance(monitor, 0);
+      grid_.reserve_cell(key);
+    }
   }
 
   // Tries one cell's candidates in order; the accepted ones move to the front of its run. Cells of one phase

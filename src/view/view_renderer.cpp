@@ -134,7 +134,7 @@ void ViewRenderer::anchor(const Wanted& wanted) {
     prepared_.reset();
     session_ = new_session();
     session_->match_new_session(false);
-    session_->anchor(*wanted.reference);
+    session_->anchor(*wanted.reference, &brief_);
     anchor_ = std::move(reference);
   }
   session_->expect_pictures(wanted.scene.camera_frames);

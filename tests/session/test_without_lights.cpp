@@ -42,7 +42,7 @@ TEST(WithoutLights, AreBlack) {
        R"("preset": "marble", "subsurface_weight": {"texture": "half.png"}, "base_color": 0.5)",
        R"("subsurface_color": {"texture": "half.png"}, "subsurface_radius": {"texture": "half.png", "scale": 2})"})
     for (const std::string settings :
-         {R"("method": "hierarchical")", R"("method": "hierarchical", "bounces": 2)",
+         {R"("method": "hierarchical")", R"("method": "hierarchical", "bounces": 1)",
           R"("evaluator": "surface_cache", "bounces": 1)", R"("evaluator": "classic")",
           R"("method": "lambert")", R"("method": "lambert", "bounces": 1)",
           R"("method": "volume", "until_error": 0.5)", R"("method": "volume_diffusion")",

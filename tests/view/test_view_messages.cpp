@@ -204,7 +204,7 @@ void send_odd_messages(int rounds, std::uint64_t seed) {
 // Claim: no message ends the server, keeps it busy or brings a value that is not finite into a picture. Fails if: an
 // exception leaves a thread, or a stage that the messages begin cannot be cancelled.
 TEST(ViewMessages, OddOnesAreSurvived) {
-  send_odd_messages(15, 1);
+  send_odd_messages(6, 1);
 }
 
 TEST(LongViewMessages, OddOnesAreSurvived) {

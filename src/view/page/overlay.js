@@ -129,6 +129,7 @@ export class Overlay {
   updateRuler() {
     const mm = this.state.scene.mm_per_unit || 1, {distance} = basis(this.state.camera);
     const height = heightAt(this.state.camera, distance) * mm * this.state.film.shownHeight;
+    if (!(height > 0)) return;  // of a number that will be refused
     const size = niceLength(height * .3), pixels = size / height * this.size.height;
     const y = this.size.height - 14;
     const bar = svg("path", {class: "rule", d: `M14 ${y - 5}V${y}H${14 + pixels}V${y - 5}`});
