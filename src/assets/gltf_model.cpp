@@ -72,6 +72,24 @@ bool read_whole_file(std::vector<unsigned char>* out, std::string*, const std::s
   return true;
 }
 
+[[maybe_unused]] bool file_size(std::size_t* size, std::string*, const std::string& name, void* user_data) {
+  std::error_code failed;
+  *size = fs::file_size(existing(*static_cast<const Neighbours*>(user_data), name), failed);
+  return !failed;
+}
+
+/// tinygltf 2.9 also asks for the size of a file, 2.7 does not.
+template <class Callbacks>
+Callbacks file_callbacks(Neighbours& beside) {
+  Callbacks callbacks{};
+  callbacks.FileExists = file_exists;
+  callbacks.ExpandFilePath = same_path;
+  callbacks.ReadWholeFile = read_whole_file;
+  if constexpr (requires { callbacks.GetFileSizeInBytes; }) callbacks.GetFileSizeInBytes = file_size;
+  callbacks.user_data = &beside;
+  return callbacks;
+}
+
 bool take_no_image(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*,
                    int, void*) {
   return true;
@@ -191,7 +209,7 @@ void parse(GltfModel& gltf, std::string& file, Neighbours& beside) {
   if (size > 0xffffffff) throw bad_file(gltf.path, "is too large for a glTF file", "less than 4 GiB");
   file.resize(size + spare_bytes);
   tinygltf::TinyGLTF loader;
-  loader.SetFsCallbacks({file_exists, same_path, read_whole_file, nullptr, &beside});
+  loader.SetFsCallbacks(file_callbacks<tinygltf::FsCallbacks>(beside));
   loader.SetImageLoader(take_no_image, nullptr);
   std::string error, warning;
   bool good = false;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#if OPALINE_EMBREE_MAJOR >= 4
+#if RTC_VERSION_MAJOR >= 4
 
 namespace opaline {
 namespace {

@@ -2,7 +2,7 @@
 // Embree 3 or 4: one set of ray queries for both.
 #pragma once
 
-#if OPALINE_EMBREE_MAJOR >= 4
+#if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
 #include <embree3/rtcore.h>
@@ -31,7 +31,7 @@ void find_blocked(RTCScene scene, std::span<Ray> rays);
 using HitFilter = void (*)(const RTCFilterFunctionNArguments*);
 
 /// Scene flag that allows a filter in find_hits_with.
-#if OPALINE_EMBREE_MAJOR >= 4
+#if RTC_VERSION_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
 constexpr RTCSceneFlags kAllowsHitFilter = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 #else
