@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What ray and line queries share of Embree.
+// Embree records shared by ray, line and nearest-point queries.
 #pragma once
-
-#include <embree3/rtcore.h>
 
 #include <array>
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "geometry/embree.h"
 #include "opaline/geometry/ray_scene.h"
 
 namespace opaline {
-
-static_assert(sizeof(Ray) == sizeof(RTCRay) && sizeof(TracedRay) == sizeof(RTCRayHit));
-static_assert(offsetof(Ray, near) == offsetof(RTCRay, tnear) &&
-              offsetof(Ray, direction) == offsetof(RTCRay, dir_x));
-static_assert(offsetof(Ray, far) == offsetof(RTCRay, tfar) && offsetof(Ray, mask) == offsetof(RTCRay, mask));
-static_assert(offsetof(TracedRay, hit) == offsetof(RTCRayHit, hit) &&
-              offsetof(Hit, u) == offsetof(RTCHit, u));
-static_assert(offsetof(Hit, triangle) == offsetof(RTCHit, primID) &&
-              offsetof(Hit, mesh) == offsetof(RTCHit, geomID));
 
 // Rays of one kind and the time of those batches that were timed.
 struct RayCounter {

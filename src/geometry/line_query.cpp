@@ -18,7 +18,7 @@ struct LineQuery::Handle {
 namespace {
 
 struct CollectingContext {
-  RTCIntersectContext context;  // first: Embree passes it on
+  QueryContext context;  // first: Embree passes it on
   std::vector<Hit>* crossings;
 };
 
@@ -43,8 +43,7 @@ void collect(const RTCFilterFunctionNArguments* arguments) {
 LineQuery::LineQuery(const RayScene& rays, std::span<const std::uint32_t> meshes)
     : handle_(std::make_unique<Handle>()) {
   handle_->scene = rtcNewScene(rays.handles_->device);
-  rtcSetSceneFlags(handle_->scene,
-                   RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  rtcSetSceneFlags(handle_->scene, RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | kAllowsHitFilter));
   for (const std::uint32_t mesh : meshes)
     rtcAttachGeometryByID(handle_->scene, rtcGetGeometry(rays.handles_->scene, mesh), mesh);
   rtcCommitScene(handle_->scene);
@@ -58,11 +57,8 @@ void LineQuery::find(const Ray& ray, std::vector<Hit>& crossings) const {
   const FlushDenormals mode;
   crossings.clear();
   CollectingContext context;
-  rtcInitIntersectContext(&context.context);
-  context.context.filter = collect;
   context.crossings = &crossings;
-  TracedRay traced{ray, {}};
-  rtcIntersect1(handle_->scene, &context.context, reinterpret_cast<RTCRayHit*>(&traced));
+  find_hits_with(collect, context.context, handle_->scene, ray);
 }
 
 std::vector<LineQuery::Triangle> LineQuery::triangles_in(const RayScene& rays, const Vec3f& low, float side) {

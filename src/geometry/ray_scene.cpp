@@ -45,13 +45,6 @@ RTCBuildQuality quality_of(RayBuild build) {
   return build == RayBuild::quick ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
 }
 
-RTCIntersectContext coherent_context() {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  return context;
-}
-
 }  // namespace
 
 // Where memory or threads run out, Embree reports some failures as unknown ones: its allocators and the
@@ -117,33 +110,24 @@ RayScene::Statistics RayScene::statistics() const {
           handles_->intersected.seconds() + handles_->occluded.seconds()};
 }
 
+// In batches of rays: the clock is read for every eighth.
 void RayScene::intersect(std::span<TracedRay> rays) const {
   const FlushDenormals mode;
-  RTCIntersectContext context = coherent_context();
   for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
     const std::span<TracedRay> batch = rays.subspan(begin, std::min(kBatch, rays.size() - begin));
-    count(handles_->intersected, batch.size(), [&] {
-      rtcIntersect1M(handles_->scene, &context, reinterpret_cast<RTCRayHit*>(batch.data()),
-                     unsigned(batch.size()), sizeof(RTCRayHit));
-    });
+    count(handles_->intersected, batch.size(), [&] { find_hits(handles_->scene, batch); });
   }
 }
 
 void RayScene::intersect_one(TracedRay& ray) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(handles_->scene, &context, reinterpret_cast<RTCRayHit*>(&ray));
+  find_hit(handles_->scene, ray);
 }
 
 void RayScene::occluded(std::span<Ray> rays) const {
   const FlushDenormals mode;
-  RTCIntersectContext context = coherent_context();
   for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
     const std::span<Ray> batch = rays.subspan(begin, std::min(kBatch, rays.size() - begin));
-    count(handles_->occluded, batch.size(), [&] {
-      rtcOccluded1M(handles_->scene, &context, reinterpret_cast<RTCRay*>(batch.data()),
-                    unsigned(batch.size()), sizeof(RTCRay));
-    });
+    count(handles_->occluded, batch.size(), [&] { find_blocked(handles_->scene, batch); });
   }
 }
 

@@ -101,9 +101,13 @@ class HoleFiller {
     }
     std::vector<OpenMesh::FaceHandle> patch;
     try {
-      pmp::triangulate_hole(mesh_, border, std::back_inserter(patch),
-                            CGAL::parameters::use_delaunay_triangulation(edges > largest_cubic_hole)
-                                .do_not_use_cubic_algorithm(edges > largest_cubic_hole));
+      const auto options = CGAL::parameters::use_delaunay_triangulation(edges > largest_cubic_hole)
+                               .do_not_use_cubic_algorithm(edges > largest_cubic_hole);
+#if CGAL_VERSION_MAJOR >= 6
+      pmp::triangulate_hole(mesh_, border, options.face_output_iterator(std::back_inserter(patch)));
+#else
+      pmp::triangulate_hole(mesh_, border, std::back_inserter(patch), options);
+#endif
     } catch (const std::exception&) {
       patch.clear();  // CGAL's answer to degenerate holes: an assertion
     }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/session/stage_keys.h"
 
-#include <embree3/rtcore_config.h>
-
+#include "geometry/embree.h"
 #include "opaline/lights/light.h"
 #include "opaline/render/surface_textures.h"
 
