@@ -41,6 +41,9 @@ std::string_view format_of(const PictureBytes& bytes) {
 // picture of 55555 x 2: 850 MB for 2.6).
 void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::string_view format,
                 std::uintmax_t file_size) {
+  if (spec.width < 1 || spec.height < 1)  // Radiance files may have any sign
+    throw bad_file(path, "has no pixels", "a width and height of at least 1",
+                   std::to_string(spec.width) + " x " + std::to_string(spec.height));
   constexpr double always_allowed = 512 << 20, rows_beside = 1024;
   const double claimed =
       sizeof(float) * static_cast<double>(spec.width) * (spec.height + rows_beside) * spec.nchannels;

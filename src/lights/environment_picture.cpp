@@ -56,6 +56,9 @@ struct NegativePixels {
   }
 };
 
+/// Sums over an environment, times weights, stay finite in single precision.
+constexpr float kMostRadiance = 1e30f;
+
 /// The colours of the display window, 0 beside the data window.
 std::vector<RgbF> colours_of(const std::string& path, const Image& image, NegativePixels& negative) {
   const ChannelPlaces places = channel_places(image.channels, path);
@@ -70,8 +73,9 @@ std::vector<RgbF> colours_of(const std::string& path, const Image& image, Negati
         &image.pixels[(std::size_t(y) * std::size_t(image.width) + std::size_t(x)) * image.channels.size()];
     for (std::size_t c = 0; c < 3; ++c) {
       const float value = values[places[c]];
-      if (!std::isfinite(value))
-        throw bad_file(path, place_text(i, width) + " is not finite", "radiance >= 0", std::to_string(value));
+      if (!(std::abs(value) <= kMostRadiance))
+        throw bad_file(path, place_text(i, width) + " is not finite or too bright", "a radiance up to 1e30",
+                       fmt::format("{:g}", value));
       pixels[i][c] = std::max(value, 0.0f);
     }
     const float lowest = std::min({values[places[0]], values[places[1]], values[places[2]]});
