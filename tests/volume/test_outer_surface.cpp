@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "opaline/volume/cell_fit.h"
 #include "opaline/volume/cut_outer_surface.h"
 #include "volume/diffused_body.h"
 
@@ -19,7 +20,7 @@ World folded_ball() {
   Mesh& mesh = world.meshes[0];
   const std::vector<Vec3d> before = mesh.positions;
   for (std::size_t i = 0; i < 12; ++i) {
-    const Triangle& triangle = mesh.triangles[(2 * i + 1) * mesh.triangles.size() / 24];
+    const auto& triangle = mesh.triangles[(2 * i + 1) * mesh.triangles.size() / 24];
     const Vec3d step = before[triangle[1]] - before[triangle[0]];
     mesh.positions[triangle[0]] += step * 2.5;
   }
@@ -53,7 +54,7 @@ TEST(OuterSurface, CountsEachPieceOnce) {
   EXPECT_NEAR(outer_area(world_of({ball, within}), .8) / ball_area(kRadius), 1, 1e-3);
   EXPECT_NEAR(outer_area(world_of({ball, ball}), .8) / ball_area(kRadius), 1, 1e-3);
   World hollow = world_of({ball, within});
-  for (Triangle& triangle : hollow.meshes[1].triangles) std::swap(triangle[1], triangle[2]);
+  for (auto& triangle : hollow.meshes[1].triangles) std::swap(triangle[1], triangle[2]);
   EXPECT_NEAR(outer_area(hollow, .8) / ball_area(kRadius), 1.25, 1e-3) << "a cavity is a boundary";
 }
 
@@ -78,16 +79,16 @@ TEST(OuterSurface, LeavesCleanMeshesAlone) {
 
 /// Of the exitance at samples in even light from one side, by their direction from the centre: rms of the difference, over
 /// the mean; and the largest.
-struct Difference {
+struct Spots {
   double rms = 0, largest = 0;
 };
 
-Difference difference_of(const LitBody& body, const VolumeExitance& found, const LitBody& clean,
+Spots difference_of(const LitBody& body, const VolumeExitance& found, const LitBody& clean,
                          const VolumeExitance& truth) {
   const CellFit fit(clean.surface.samples, truth.exitance, truth.error);
   CellFit::Reader reader(fit);
   double square = 0, mean = 0, area = 0;
-  Difference difference;
+  Spots difference;
   for (std::size_t i = 0; i < body.surface.samples.size(); ++i) {
     const SurfaceSample& s = body.surface.samples[i];
     const Vec3f outward = normalized(s.centroid);
@@ -121,7 +122,7 @@ TEST(OuterSurface, FoldedBallIsABall) {
       {folded.world, folded.meshes, folded.surface.samples, cut.normals, grey(scaled), cell});
   const VolumeExitance found =
       cells.exitance(lights_of(folded, light), transfers_of(folded, light, medium.eta));
-  const Difference difference = difference_of(folded, found, clean, truth);
+  const Spots difference = difference_of(folded, found, clean, truth);
   EXPECT_LT(difference.rms, .01);
   EXPECT_LT(difference.largest, .1);
 }
