@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include "core/cancel_check.h"
@@ -136,7 +137,7 @@ void cut(Polygon polygon, std::size_t axis, const Found& found) {
 struct Part {
   Vec3f position;  // mean
   std::uint32_t mesh, triangle, element;
-  float area;
+  bool is_piece = false;   // beside it the triangle may lie inside the body
   bool is_turned = false;  // its triangle faces into the body
 };
 
@@ -165,20 +166,18 @@ class Cutter {
     }
   }
 
-  /// Leaves out what does not bound the solid.
+  /// Leaves out what does not bound the solid. Parts that lie beside such a piece are taken in smaller pieces.
   void keep_outer(const RayScene& rays, std::span<const std::uint32_t> meshes) {
-    constexpr double kLeastGap = .05;  // cells
+    constexpr double kLeastGap = .2;  // cells
     const OuterSurface outer(rays, meshes, kLeastGap * lattice_.cell);
-    std::vector<SurfacePiece> pieces;
-    for (const Part& part : parts_) pieces.push_back({part.position, part.mesh, part.triangle});
-    const bool has_inner = outer.has_inner(pieces);  // else folds at the most
-    std::vector<Boundedness> bounds(pieces.size());
-    parallel_chunks(pieces.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t i = begin; i < end; ++i)
-        if (has_inner || table_.faces_back(parts_[i].element)) bounds[i] = outer.of(pieces[i]);
-    });
-    if (std::ranges::all_of(bounds, [](const Boundedness& b) { return b == Boundedness{}; })) return;
-    keep(bounds);
+    const std::vector<bool> is_folded = folded_parts(outer);
+    if (is_folded.empty()) return;
+    parts_.clear();
+    table_ = ElementTable(lattice_);
+    outer_ = &outer;
+    is_folded_ = &is_folded;
+    for (const std::uint32_t m : meshes) add(m);
+    outer_ = nullptr;
   }
 
   CutSurface take() const {
@@ -211,25 +210,66 @@ class Cutter {
     }
     area *= .5;
     if (!(area > kLeastArea)) return;
+    if (outer_ != nullptr && (*is_folded_)[next_++]) return add_pieces(part, normal, mesh, triangle);
     const Vec3d position = sum / (6 * area) * lattice_.cell + lattice_.low;
     area *= lattice_.cell * lattice_.cell;
-    parts_.push_back({Vec3f(position), mesh, triangle, table_.add(position, normal, area), float(area)});
+    parts_.push_back({Vec3f(position), mesh, triangle, table_.add(position, normal, area)});
   }
 
-  void keep(std::span<const Boundedness> bounds) {
-    std::vector<Part> kept;
-    table_ = ElementTable(lattice_);
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      Part part = parts_[i];
-      const auto& [share, is_turned] = bounds[i];
-      const double area = double(share) * double(part.area);
-      if (!(area > 0)) continue;
-      const Vec3d normal(surface_point(world_.meshes[part.mesh], part.triangle, 0, 0).geometric);
-      part.element = table_.add(Vec3d(part.position), is_turned ? -normal : normal, area);
-      part.is_turned = is_turned;
-      kept.push_back(part);
+  using Place = std::array<int, 3>;
+  Place place_of(const Vec3f& position) const {
+    const Vec3d p = lattice_.into(Vec3d(position));
+    return {int(std::floor(p.x)), int(std::floor(p.y)), int(std::floor(p.z))};
+  }
+
+  /// Parts in the cells of pieces that are no plain boundary, and in the cells around; empty: there is none.
+  std::vector<bool> folded_parts(const OuterSurface& outer) const {
+    std::vector<SurfacePiece> pieces;
+    for (const Part& part : parts_) pieces.push_back({part.position, part.mesh, part.triangle});
+    const bool has_inner = outer.has_inner(pieces);  // else folds at the most
+    std::vector<std::uint8_t> is_plain(pieces.size(), 1);
+    parallel_chunks(pieces.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (has_inner || table_.faces_back(parts_[i].element))
+          is_plain[i] = outer.of(pieces[i]) == Boundedness{};
+    });
+    std::set<Place> folded;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (is_plain[i] != 0) continue;
+      const auto [x, y, z] = place_of(pieces[i].middle);
+      for (int n = 0; n < 27; ++n) folded.insert({x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1});
     }
-    parts_ = std::move(kept);
+    if (folded.empty()) return {};
+    std::vector<bool> result;
+    for (const Part& part : parts_) result.push_back(folded.contains(place_of(part.position)));
+    return result;
+  }
+
+  void add_pieces(const Polygon& part, const Vec3d& normal, std::uint32_t mesh, std::uint32_t triangle) {
+    constexpr int kSplit = 3;  // of each side of a triangle of the part
+    for (std::size_t i = 2; i < part.count; ++i) {
+      const Vec3d &a = part.corners[0], b = part.corners[i - 1] - a, c = part.corners[i] - a;
+      const double area = .5 * dot(cross(b, c), normal) / (kSplit * kSplit);
+      for (int v = 0; v < kSplit; ++v)
+        for (int u = 0; u + v < kSplit; ++u) {
+          add_piece(a + b * ((u + 1 / 3.) / kSplit) + c * ((v + 1 / 3.) / kSplit), area, normal, mesh,
+                    triangle);
+          if (u + v + 1 < kSplit)
+            add_piece(a + b * ((u + 2 / 3.) / kSplit) + c * ((v + 2 / 3.) / kSplit), area, normal, mesh,
+                      triangle);
+        }
+    }
+  }
+
+  /// middle, area: in the lattice
+  void add_piece(const Vec3d& middle, double area, const Vec3d& normal, std::uint32_t mesh,
+                 std::uint32_t triangle) {
+    const Vec3d position = middle * lattice_.cell + lattice_.low;
+    const auto [share, is_turned] = outer_->of({Vec3f(position), mesh, triangle});
+    area *= double(share) * lattice_.cell * lattice_.cell;
+    if (!(area > 0)) return;
+    const std::uint32_t element = table_.add(position, is_turned ? -normal : normal, area);
+    parts_.push_back({Vec3f(position), mesh, triangle, element, true, is_turned});
   }
 
   // Of each element the part next to its middle; the light that enters is found by the triangle's normal, so one that is
@@ -255,7 +295,7 @@ class Cutter {
     const Vec3d corner = mesh.positions[i], b = mesh.positions[j] - corner, c = mesh.positions[k] - corner;
     const Vec3d normal = cross(b, c);
     float u = 0, v = 0;
-    for (const Vec3f& place : {element.position, part.position}) {
+    for (const Vec3f& place : {part.is_piece ? part.position : element.position, part.position}) {
       const Vec3d apart = Vec3d(place) - corner;
       u = float(dot(cross(apart, c), normal) / dot(normal, normal));
       v = float(dot(cross(b, apart), normal) / dot(normal, normal));
@@ -264,13 +304,18 @@ class Cutter {
     u = std::clamp(u, 0.f, 1.f);
     v = std::clamp(v, 0.f, 1 - u);
     const SurfacePoint point = surface_point(mesh, part.triangle, u, v);
-    return {part.mesh, part.triangle, u, v, point.position, point.normal, element.area, element.position};
+    const Vec3f& outward = part.is_piece ? element.normal : point.normal;
+    return {part.mesh, part.triangle, u, v, point.position, outward, element.area, element.position};
   }
 
   const World& world_;
   const Lattice& lattice_;
   ElementTable table_;
   std::vector<Part> parts_;
+  const OuterSurface* outer_ =
+      nullptr;  // the second time that parts are cut, and which of them are taken in pieces:
+  const std::vector<bool>* is_folded_ = nullptr;
+  std::size_t next_ = 0;
 };
 
 }  // namespace

@@ -44,7 +44,7 @@ double FreeDistance::edge_for(const Vec3d& size, double edge) {
 }
 
 double FreeDistance::expected_bytes(const Bounds& box, double edge, double area) {
-  constexpr double kPerFace = 8;  // pieces in voxels, for an area of a voxel's face
+  constexpr double kPerFace = 15;  // pieces in voxels, for an area of a voxel's face
   constexpr double kOfVoxel = sizeof(std::uint8_t) + sizeof(Plane) + 2 * sizeof(std::uint32_t);
   const Vec3d size = box.high - box.low;
   const double used = edge_for(size, edge);
