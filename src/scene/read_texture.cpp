@@ -27,7 +27,7 @@ ColorSpace space_of(const ObjectReader& reader, const std::string& path, Texture
   return part == TexturePart::color ? TextureFile::space_of_colors(path) : ColorSpace::linear;
 }
 
-/// error unless the image has the part's channels
+/// error unless the image has the part's channels; one without alpha is opaque: alpha is 1
 void check_channels(const Value& file, const std::optional<Value>& channel, const Texture& texture,
                     TexturePart part) {
   constexpr std::array<char, 4> names{'r', 'g', 'b', 'a'};
@@ -35,7 +35,7 @@ void check_channels(const Value& file, const std::optional<Value>& channel, cons
   for (std::size_t c = 0; c < names.size(); ++c) {
     const bool is_taken = part == TexturePart::number ? c == texture.channel : c < 3;
     const bool is_there = texture.file->has_channel(c);
-    if (is_taken && !is_there) missing += names[c];
+    if (is_taken && !is_there && names[c] != 'a') missing += names[c];
     if (is_there) there += (there.empty() ? "" : ", ") + std::string(1, names[c]);
   }
   if (missing.empty()) return;

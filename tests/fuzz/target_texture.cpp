@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   file.put({reinterpret_cast<const char*>(data), size});
   fuzz::try_input([&] {
     const auto texture = TextureFile::open(file.path(), TextureFile::space_of_colors(file.path()));
-    fuzz::expect(texture->channels() > 0 && texture->memory().decoded > 0, "channels and memory");
+    fuzz::expect(texture->memory().decoded > 0, "memory");
     for (const double value : texture->mean()) fuzz::expect(std::isfinite(value), "a finite mean");
     for (const float side : {0.f, .01f, 3.f})
       for (const float at : {0.f, .49f, -7.3f}) {
