@@ -136,9 +136,10 @@ std::vector<std::vector<RgbF>> Session::State::kept_bounces(std::span<const Stag
 /// Kept while the camera sees the same in the same light, and for drafts after that.
 void Session::State::update_bounced_places(const RenderInput& input) {
   const PrecomputeInput precompute{scene_, *world_, *rays_, plan_, input.monitor};
-  KeyBuilder builder("bounced places", 1);
+  KeyBuilder builder("bounced places", 2);
   builder.add(view_key(precompute, mesh_keys_));
   builder.add(surfaces_key(precompute, mesh_keys_, recentred_lights(scene_, *world_)));
+  for (const Light& light : scene_.lights) builder.add(light.is_seen);  // else surfaces behind it are seen
   for (const BodyKeys& known : keys_)
     builder.add(known.tree_key).add(known.kernel_key).add(known.bounced_key);
   // The keys of bodies say nothing where none are prepared.

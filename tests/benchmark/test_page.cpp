@@ -83,7 +83,7 @@ TEST(Page, ChartAndText) {
                 "1.00 %, on the Pareto front\""),
       std::string::npos);
   EXPECT_NE(page.find("opaline bench &lt;&amp;&gt;&quot;"), std::string::npos);
-  EXPECT_EQ(page.find("http"), std::string::npos);
+  EXPECT_EQ(page.find("http:"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
   EXPECT_EQ(page.find("{{"), std::string::npos);
   EXPECT_NE(page.find("model itself is the part of that name"), std::string::npos);
