@@ -56,8 +56,8 @@ class SceneMaker {
     const double size = between(2, 20);
     const std::array<std::string, 4> sources{
         fmt::format(R"("sphere": {{"center": {}, "radius": {:.4g}}})", where, size),
-        fmt::format(R"("torus": {{"center": {}, "major_radius": {:.4g}, "minor_radius": {:.4g}}})", where, size,
-                    size * between(.02, .5)),
+        fmt::format(R"("torus": {{"center": {}, "major_radius": {:.4g}, "minor_radius": {:.4g}}})", where,
+                    size, size * between(.02, .5)),
         fmt::format(R"("slab": {{"center": {}, "width": {:.4g}, "depth": {:.4g}, "thickness": {:.4g}}})",
                     where, 2 * size, 2 * size, size * between(.02, 1)),
         fmt::format(R"("box": {{"low": [{:.4g}, {:.4g}, {:.4g}], "high": [{:.4g}, {:.4g}, {:.4g}]}})", -size,

@@ -19,7 +19,8 @@ struct SurfacePiece {
 
 /// A piece of the meshes as a boundary of the solid, where the winding number is not 0.
 struct Boundedness {
-  float share = 1;  ///< of the piece's area that counts: 0 inside the solid, 1/2 of two sheets nearer than rays tell
+  /// Fraction of the piece's area that counts: 0 inside the solid, 1/2 of two sheets nearer than rays tell.
+  float share = 1;
   bool is_turned = false;  ///< its triangle faces into the solid
 
   friend bool operator==(const Boundedness&, const Boundedness&) = default;
