@@ -14,9 +14,10 @@ namespace fs = std::filesystem;
 
 std::atomic<bool> outside_is_allowed = false;
 
-bool is_file(const fs::path& path) {
+/// Whatever it is: opening it tells.
+bool is_there(const fs::path& path) {
   std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
+  return fs::exists(path, ignored);
 }
 
 bool has_drive(const std::string& name) {
@@ -58,12 +59,12 @@ NamedFile find_named_file(const std::string& name, const std::string& asset, con
   std::string slashes = name;
   std::ranges::replace(slashes, '\\', '/');
   const fs::path given = folder / slashes;
-  if (!has_drive(slashes) && is_file(given)) {
+  if (!has_drive(slashes) && is_there(given)) {
     check_is_inside(name, asset, given);
     return {given, {}};
   }
   for (const fs::path& other : {beside(slashes, folder), beside(slashes, folder_of(asset))})
-    if (is_file(other)) {
+    if (is_there(other)) {
       check_is_inside(name, asset, other);
       return {other, in_quotes(name) + ": there is no such file; " + in_quotes(other.filename().string()) +
                          " beside is taken"};

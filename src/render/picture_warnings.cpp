@@ -130,7 +130,9 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
   const Bounds box = box_of(world);
   const Vec3d middle = .5 * (box.low + box.high);
   std::vector<std::string> texts;
-  for (const Light& light : scene.lights) {
+  for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+    const Light& light = scene.lights[l];
+    if (l > 0 && share_rays(scene.lights[l - 1], light)) continue;  // another channel of an environment
     const std::optional<Vec3d> place = extent(light).center;
     const double distance = place ? length(*place - middle) : 0;
     if (emission(light) == Rgb{})
@@ -247,7 +249,10 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
   std::vector<float> values = sampled_brightness(image);
   if (values.empty()) return {nothing_in_view(scene, world)};
   if (is_inside(image, scene.camera.position))
-    return {"the camera is inside a translucent body: what is seen is its surface from behind"};
+    return {
+        "the camera sees the back of a translucent body's surface: it is inside the body, or looks into an "
+        "open "
+        "mesh; move it, or close the mesh"};
   const double gain = std::exp2(scene.film.exposure);
   const auto quantile = [&](double share) {
     const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));

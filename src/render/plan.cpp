@@ -64,9 +64,14 @@ void leave_to_profile(const Scene& scene, const World& world, GroupPlan& group,
   const std::string reason = reason_against_cells(scene, world, group);
   if (reason.empty()) return;
   group.method = Method::hierarchical;
-  if (!(group.thickness > 0) && group.smallest_mean_free_path > 0)
-    warnings.push_back(group.name + ": " + reason +
-                       "; its radial profile is used in place of volume_diffusion; close it (fill_holes)");
+  if (group.thickness > 0 || !(group.smallest_mean_free_path > 0)) return;
+  const bool is_filled = std::ranges::all_of(group.meshes, [&](std::uint32_t mesh) {
+    const auto* file = std::get_if<MeshFile>(&scene.shapes[mesh].source);
+    return file != nullptr && file->fill_holes;
+  });
+  warnings.push_back(group.name + ": " + reason +
+                     "; its radial profile is used in place of volume_diffusion; close " +
+                     (is_filled ? "the holes that fill_holes leaves" : "it (fill_holes)"));
 }
 
 void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan& group,

@@ -50,8 +50,8 @@ TEST(CliInfo, ModelErrorOfPlates) {
       << grouped.out;
   EXPECT_TRUE(contains(grouped.out, "`normalized_diffusion` sends back")) << grouped.out;
   const Outcome thick = run_program({"info", plate, "--set", "media.jade.subsurface_radius=0.1"});
-  EXPECT_FALSE(contains(thick.out, "model error")) << thick.out;
-  EXPECT_FALSE(contains(run_program({"info", SceneFolder().scene}).out, "model error"));
+  EXPECT_FALSE(contains(thick.out, "\nmodel error")) << thick.out;
+  EXPECT_FALSE(contains(run_program({"info", SceneFolder().scene}).out, "\nmodel error"));
 }
 
 // Claim: the plan says which profile each body has, why, and what error against random walks to expect of it and of

@@ -80,7 +80,7 @@ TEST(PictureWarnings, CameraInsideABody) {
   Scene scene = lit_ball();
   scene.camera.position = {0, 0, 5};
   scene.camera.look_at = {};
-  expect_warning(scene, {"the camera is inside a translucent body"});
+  expect_warning(scene, {"the back of a translucent body's surface", "inside the body"});
   scene.shapes[0].medium.reset();
   scene.lights = {point_light({0, 0, 1}, Rgb(100))};
   const Prepared room(scene);
