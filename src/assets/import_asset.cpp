@@ -26,8 +26,11 @@ std::string summary_of(const AssetScene& scene, bool own_camera, bool own_lights
   std::string text = fmt::format("{} translucent {}, {} camera, {} lights", scene.media.size(),
                                  scene.media.size() == 1 ? "medium" : "media", own_camera ? "its" : "default",
                                  own_lights ? "its" : "default");
-  if (const std::size_t lost = scene.not_carried.size(); lost > 0)
-    text += fmt::format("; {} {} not carried over", lost, lost == 1 ? "thing" : "things");
+  constexpr std::size_t kMostNamed = 4;
+  const std::vector<std::string>& lost = scene.not_carried;
+  for (std::size_t i = 0; i < std::min(kMostNamed, lost.size()); ++i)
+    text += (i == 0 ? "; not carried over: " : ", ") + lost[i];
+  if (lost.size() > kMostNamed) text += fmt::format(" and {} more", lost.size() - kMostNamed);
   return text;
 }
 

@@ -193,7 +193,7 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
   scene.translation = asset.summary;
   scene.asset_warnings = asset.warnings;
   scene.asset_bytes = asset.bytes;
-  if (!asset.not_carried.empty()) scene.translation += ": opaline import lists them";
+  if (!asset.not_carried.empty()) scene.translation += "; opaline import lists all";
   forget_places(scene);
   return scene;
 }
