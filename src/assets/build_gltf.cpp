@@ -100,12 +100,13 @@ class GltfBuilder {
 
  private:
   bool keeps(int depth, Json::parse_event_t event, Json& parsed) {
-    using enum Json::parse_event_t;
+    using Event = Json::parse_event_t;
     if (depth > kMostDepth)
       throw bad_file(gltf_.path, "its JSON is nested too deep",
                      "at most " + std::to_string(kMostDepth) + " levels");
-    if (depth == 1 && event == key) list_ = parsed.get<std::string>();
-    if (depth != 2 || (event != object_end && event != array_end && event != value)) return true;
+    if (depth == 1 && event == Event::key) list_ = parsed.get<std::string>();
+    if (depth != 2 || (event != Event::object_end && event != Event::array_end && event != Event::value))
+      return true;
     if (contains(kLazyLists, list_)) {
       gltf_.lists[list_].push_back(std::move(parsed));
       return false;
