@@ -24,7 +24,7 @@ inline CLI::Option* add_size(CLI::App& app, const std::string& name, std::uint64
   return app.add_option(name, bytes, help)->transform(bytes_of())->type_name("SIZE");
 }
 
-/// Of commands that read assets.
+/// Option of the commands that read assets.
 inline void add_allow_outside(CLI::App& app) {
   app.add_flag_callback("--allow-outside", allow_files_outside_assets,
                         "let assets name files outside of their own folders: buffers, images, libraries");

@@ -225,7 +225,7 @@ std::optional<std::string> load(StageRunner& stages, const RenderArguments& argu
   });
 }
 
-/// Of the first trial of --target-error.
+/// CPU time of the first trial of --target-error, s.
 double seconds_of_trial(const Session& session) {
   Scene trial = session.scene();
   if (trial.settings.method == Method::volume_diffusion) trial.settings.cell_size = kWidestCell;

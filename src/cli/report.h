@@ -29,7 +29,7 @@ void print_plates(const Log& log, const std::vector<PlateModel>& plates);
 /// the warning alone.
 void print_decisions(const Log& log, const std::vector<std::string>& decisions, const std::string& warning);
 
-/// Before settings are chosen: how long a trial of them takes, where that is long.
+/// Prints how long a trial of settings takes, if that is long.
 void print_trial(const Log& log, double seconds);
 
 /// What was chosen for --target-error, and a warning where that does not reach it.

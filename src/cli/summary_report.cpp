@@ -51,7 +51,7 @@ void print_costs(const Summary& summary) {
                                    cost.cpu_seconds, cost.stage == "choosing" ? of_trials : ""));
 }
 
-/// Of what settings decide: samples, tolerance, shadow rays, cells.
+/// Error that settings decide: samples, tolerance, shadow rays, cells.
 std::string settings_error_text(const Summary& summary) {
   const KnownErrors& errors = summary.errors;
   std::string text;

@@ -22,7 +22,7 @@ const char* name_of(ErrorKind kind) {
   return "run_failed";
 }
 
-/// What ended the run, of a library's exception, too.
+/// Reason that ended the run, also for exceptions of libraries.
 std::string text_of(const std::exception& failure) {
   if (is_out_of_memory(failure)) return "out of memory";
   if (const auto* files = dynamic_cast<const std::filesystem::filesystem_error*>(&failure))

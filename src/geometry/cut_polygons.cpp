@@ -51,7 +51,7 @@ class CornerGrid {
     for (const std::uint32_t c : corners) corners_[next[cell(points[c])]++] = c;
   }
 
-  /// Whether any corner in the squares from low to high is one; counts what it looks at.
+  /// True if a corner lies in the squares from low to high; counts the corners it looks at.
   template <class Predicate>
   bool any(const Point& low, const Point& high, std::size_t& looks, Predicate is_one) const {
     const std::size_t first = cell(low), last = cell(high), across = last % columns_ - first % columns_;
@@ -164,7 +164,7 @@ class EarClipper {
     });
   }
 
-  /// Whether p lies between the edges at b.
+  /// True if p lies between the edges at b.
   static bool is_within(const Point& p, const Point& a, const Point& b, const Point& c) {
     return twice_area(a, b, p) > 0 && twice_area(b, c, p) > 0;
   }

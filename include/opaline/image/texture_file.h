@@ -60,7 +60,7 @@ class TextureFile {
   Texel mean() const;
 
   const std::string& path() const { return path_; }
-  /// Whether it has a channel of at(), in all its pictures: 0 red to 3 alpha. A grey one has the first three.
+  /// True if all its images have this channel of at(): 0 red to 3 alpha. A grey image has the first three.
   bool has_channel(std::size_t channel) const { return has_channel_[channel]; }
   TextureMemory memory() const;
   /// Of the cache that all textures share, bytes.

@@ -10,9 +10,9 @@
 
 namespace opaline {
 
-/// Of a body whose method that is; none: unknown, or the method has no model.
+/// Expected relative error of a body by this method against random walks; none: unknown, or the method has no model.
 std::optional<double> expected_error(const BodyModel& model, Method method);
-/// The largest of all bodies.
+/// The largest expected error of all bodies.
 std::optional<double> expected_model_error(const Plan& plan);
 /// Bodies whose expected error is above 20 %, one line each.
 std::vector<std::string> model_warnings(const Plan& plan);

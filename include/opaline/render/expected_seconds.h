@@ -7,7 +7,7 @@
 
 namespace opaline {
 
-/// CPU time that the image of a plan takes, s, by the costs that bench_plan measures, within a factor of about 2.
+/// CPU time of an image, s, from costs that bench_plan measures; it may be wrong by a factor of 3.
 /// Settings that go on until an error is small enough are counted to their first estimate.
 double expected_seconds(const Scene& scene, const Plan& plan);
 

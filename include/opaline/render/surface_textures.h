@@ -52,8 +52,8 @@ class SurfaceTextures {
   };
   Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
 
-  /// The texture of an opaque surface's reflectance and its vertex colours are in what leaves. Of a body's light that
-  /// scatters, its weight is in it, once.
+  /// Factors of light that enters and exits at a place. An opaque surface's reflectance texture and vertex colours apply
+  /// on exit; a body's subsurface weight applies once.
   SurfaceTint tint(const Place& place) const;
   /// Share of the light entering a body that it reflects diffusely at its surface instead.
   RgbF reflected(const Place& place) const;
@@ -83,7 +83,7 @@ class SurfaceTextures {
   bool is_empty_ = true;
 };
 
-/// Whether the mesh of a shape has vertex colours that colour it.
+/// True if vertex colours multiply the colour of the shape.
 bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh);
 
 /// What colours light that enters a body at its samples: the tint's power, its mean over a sample's share of the
@@ -94,7 +94,7 @@ std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<cons
 void add_to_key(KeyBuilder& key, const Texture& texture);
 /// A mesh's UVs and tangents.
 void add_coordinates(KeyBuilder& key, const Mesh& mesh);
-/// Of entering_tints of a body; a key of zeros where there are none.
+/// Cache key of a body's entering_tints; zero if there are none.
 StageKey tint_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes,
                   const StageKey& samples);
 /// Of how a medium varies inside bodies of these meshes; a key of zeros where it does not.

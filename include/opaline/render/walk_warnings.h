@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What random walks and cells found wrong with a body's meshes.
+// Faults of a body's meshes that random walks or cells have found.
 #pragma once
 
 #include <string>

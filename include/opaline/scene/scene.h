@@ -139,7 +139,7 @@ struct MeshFile {
   /// Of the file, where it holds several meshes: "mesh/primitive" by their indices of a glTF asset, the
   /// material's name of an OBJ. Empty: all of the file.
   std::string part{};
-  /// Whether its vertex colours multiply the surface's; none: where no texture gives that.
+  /// True: vertex colours multiply the surface's colour; none: they do unless a texture gives that colour.
   std::optional<bool> vertex_colors{};
   /// Where it has no normals: edges that bend by more are sharp, degrees, [0, 180]; none: as the file says.
   std::optional<double> crease_angle{};
@@ -188,7 +188,7 @@ struct Gloss {
   friend bool operator==(const Gloss&, const Gloss&) = default;
 };
 
-/// Of an opaque shape.
+/// Reflectance of an opaque shape unless the scene gives it.
 inline constexpr Rgb kDefaultReflectance{0.5, 0.5, 0.5};
 
 struct Shape {
@@ -338,7 +338,7 @@ struct Settings {
 struct Scene {
   std::string file;         ///< for messages
   std::string translation;  ///< of an asset: what its import made of it, in a line; empty: a scene file
-  /// Of an asset: what is not as it says, and changes the image; a line each.
+  /// Deviations from the asset that change the image, one line each.
   std::vector<std::string> asset_warnings;
   std::size_t asset_bytes = 0;  ///< of an asset: memory that its records take
   double mm_per_unit = 1;       ///< of the file, for what is written in its units; nothing here is

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What random walks in a body take beside the sums of its samples.
+// Memory of random walks in a body, beside the sums of its samples.
 #pragma once
 
 #include <cstdint>
