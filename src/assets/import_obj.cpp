@@ -63,6 +63,7 @@ std::optional<Vec3d> three_numbers(std::string_view line) {
 std::string read_asset_text(const std::string& path) {
   std::string text = read_asset_bytes(path);
   drop_byte_order_mark(path, text);
+  end_lines_with_line_feeds(text);
   return text;
 }
 
@@ -203,7 +204,7 @@ class ObjImporter {
       return {};
     }
     for (const std::string& option : texture.not_carried)
-      warn(statement.library, statement.line, label + ": its option " + option);
+      warn(statement.library, statement.line, label + ": the option " + in_quotes(option) + " is left out");
     Json json{{"texture", scene_name_of(file, path_, mesh_path_)}};
     const auto& [scale_u, scale_v] = texture.scale;
     const std::array<double, 2> offset{texture.offset[0], 1 - scale_v - texture.offset[1]};
@@ -221,11 +222,11 @@ class ObjImporter {
   }
 
   static bool is_bump(const std::string& keyword) {
-    return keyword == "bump" || keyword == "map_bump" || keyword == "map_Bump";
+    return keyword == "bump" || keyword == "map_bump" || keyword == "map_Bump" || keyword == "norm";
   }
 
-  /// The height of white is what -bm says, in the OBJ's own lengths. Some programs write maps of normals here, whose mean
-  /// is blue.
+  /// The height of white is what -bm says, in the OBJ's own lengths. Some programs write normal maps here, whose mean is
+  /// blue; `norm` always is one.
   void take_bump(const Statement& statement) {
     const MtlTexture texture = read_mtl_texture(statement.text);
     std::string file;
@@ -234,8 +235,10 @@ class ObjImporter {
     if (const double height = texture.bump * texture.gain; height != 1) json["scale"] = height;
     try {
       const Texel mean = TextureFile::open(file, ColorSpace::linear)->mean();
-      const bool is_blue = mean[2] > .6 && mean[2] > mean[0] + .1 && mean[2] > mean[1] + .1;
-      bumps_[statement.material] = {is_blue ? "normal_map" : "bump_map", statement.keyword, std::move(json)};
+      const bool is_normal_map =
+          statement.keyword == "norm" || (mean[2] > .6 && mean[2] > mean[0] + .1 && mean[2] > mean[1] + .1);
+      bumps_[statement.material] = {is_normal_map ? "normal_map" : "bump_map", statement.keyword,
+                                    std::move(json)};
     } catch (const Error& failure) {
       lost_[statement.material].insert(statement.keyword + ": " + failure.message);
     }
@@ -243,9 +246,14 @@ class ObjImporter {
 
   /// Whether a value changes what a matte surface looks like: black highlights and full opacity do not.
   static bool is_lost(const std::string& keyword, std::string_view line) {
-    if (keyword.starts_with("map_") || keyword == "bump" || keyword == "disp" || keyword == "refl")
+    if (keyword.starts_with("map_") || keyword == "bump" || keyword == "norm" || keyword == "disp" ||
+        keyword == "refl")
       return true;
     const std::string_view value = trimmed(line);
+    if (keyword == "Tf") return three_numbers(line).value_or(Vec3d()) != Vec3d(1);
+    if (keyword == "Pr") return !value.starts_with('1');  // rough
+    if (keyword == "Pm" || keyword == "Ps" || keyword == "Pc")
+      return value.find_first_not_of("0.") != value.npos;  // metalness, sheen, coat
     if (keyword == "Ks" || keyword == "Ke") return three_numbers(line).value_or(Vec3d(1)) != Vec3d();
     if (keyword == "d") return value.find_first_not_of("1.0") != value.npos || !value.starts_with('1');
     return keyword == "Tr" && value.find_first_not_of("0.") != value.npos;
@@ -268,7 +276,7 @@ class ObjImporter {
                                             bump.key, bump.texture["texture"].get<std::string>(),
                                             bump.key == "bump_map"
                                                 ? fmt::format("white {:.4g} mm high", scale)
-                                                : fmt::format("for it is blue, slopes times {:.4g}", scale)));
+                                                : fmt::format("slopes times {:.4g}", scale)));
   }
 
   /// Null: the vertices have it.

@@ -38,7 +38,7 @@ void check_precompute(const RenderArguments& arguments, const Scene& scene, cons
   if (arguments.samples_ply.empty()) return;
   if (!has_samples(scene.settings.method) || plan.groups.empty())
     throw bad_file(arguments.samples_ply, "there are no samples to write",
-                   "settings.method \"hierarchical\" and a translucent shape");
+                   "settings.method \"hierarchical\", a translucent shape and a light");
 }
 
 struct Shading {
@@ -197,8 +197,9 @@ struct Shared {
 };
 
 /// error Error{bad_input}: an option that the method has no use for
-void check_method_options(const RenderArguments& arguments, Method method) {
-  if (method == Method::direct) return;
+void check_method_options(const RenderArguments& arguments, const Scene& scene) {
+  const Method method = scene.settings.method;
+  if (method == Method::direct || scene.lights.empty()) return;
   const auto no_use = [&](const char* option, const char* methods) {
     return Error(ErrorKind::bad_input, {}, 0, 0, std::string(option) + " has no effect with this method",
                  std::string("--method ") + methods, std::string(name_of(method)));
@@ -237,7 +238,7 @@ double seconds_of_trial(const Session& session) {
 KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session& session,
                  const Shared& shared) {
   const Scene& scene = session.scene();
-  check_method_options(arguments, scene.settings.method);
+  check_method_options(arguments, scene);
   check_layers(arguments.layers, scene);
   check_precompute(arguments, scene, session.plan());
   const std::size_t layer_bytes = asked_layer_bytes(arguments.layers, scene);

@@ -19,7 +19,8 @@ constexpr double kGather = 1.5e-4;       // light from other surfaces at a sampl
 constexpr double kCutSample = 1.5e-5;    // cut, and its fit
 constexpr double kCell = 8e-6;           // made and solved, three channels
 constexpr double kOfVaryingCell = 2e-5;  // its own medium
-constexpr double kEntry = 2e-6;          // a light's first collisions at a sample
+constexpr double kEntry = 5e-7;          // of light at a sample, from one direction
+constexpr double kEntryCell = 2.2e-7;    // of its way inside, besides
 constexpr double kWalk = 1e-5;
 constexpr double kPixel = 1e-6;        // a camera ray, shaded
 constexpr double kEntrySample = 2e-7;  // of `direct`, beside its shadow rays
@@ -28,6 +29,7 @@ constexpr double kSmallestWalks = 32;  // a sample, before an error is estimated
 struct Lighting {
   double rays = 0;  // shadow rays from a point
   double lights = 0;
+  double directions = 0;  // of the light that enters at a sample of volume_diffusion
 };
 
 Lighting lighting_of(const Scene& scene) {
@@ -36,8 +38,16 @@ Lighting lighting_of(const Scene& scene) {
     if (l > 0 && share_rays(scene.lights[l - 1], scene.lights[l])) continue;
     all.rays += shadow_rays(scene.lights[l], scene.settings.light_samples);
     all.lights += 1;
+    all.directions += is_delta(scene.lights[l]) ? 1 : 8;
   }
   return all;
+}
+
+/// Of the cells that light crosses where it enters, s.
+double seconds_of_entry(const Medium& medium, const GroupPlan& group) {
+  constexpr double kMostCells = 50;  // cells far inside are larger
+  const double longest = max_component(make_diffuse_profile(medium).mean_free_path);
+  return kEntry + kEntryCell * std::min(kMostCells, std::min(longest, group.thickness) / group.cell);
 }
 
 double seconds_of_body(const Scene& scene, const GroupPlan& group, const Lighting& lighting) {
@@ -50,7 +60,8 @@ double seconds_of_body(const Scene& scene, const GroupPlan& group, const Lightin
       const double cell =
           kCell * solutions + (varies_inside(scene.media[group.medium], group.method) ? kOfVaryingCell : 0);
       return expected_cells(group.area, group.cell) * cell +
-             samples * (kCutSample + (kShadowRay + kEntry) * lighting.rays);
+             samples * (kCutSample + kShadowRay * lighting.rays +
+                        solutions * lighting.directions * seconds_of_entry(scene.media[group.medium], group));
     }
     case Method::volume:
       return samples * kWalk * 3 * std::clamp(lighting.lights, 1., 4.) *

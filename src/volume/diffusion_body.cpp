@@ -90,7 +90,7 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
     Channels& diffusivity = problem.diffusivities.emplace_back();
     for (std::size_t c = 0; c < 3; ++c) diffusivity.c[c] = float(media[c].diffusion * lattice_.cell);
   }
-  FirstCollisions collisions = first_collisions(space(), light);
+  FirstCollisions collisions = first_collisions(space(), light, monitor);
   problem.source = std::move(collisions.source);
   std::vector<Channels> rough = solve_diffusion(problem, kRough, std::move(start), monitor).fluence;
   add_oblique_flow(problem, rough);

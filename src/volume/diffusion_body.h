@@ -41,6 +41,7 @@ class DiffusionBody {
   std::vector<Channels> carried(const Solution& solution, const DiffusionBody& to) const;
 
   const DiffusionGrid& grid() const { return grid_; }
+  std::size_t elements() const { return boundary_.elements.size(); }
 
  private:
   DiffusionSpace space() const {

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <optional>
 
-#include "core/cancel_check.h"
 #include "opaline/core/random.h"
 #include "opaline/lights/light.h"
 #include "opaline/transport/fresnel.h"
@@ -365,10 +364,9 @@ std::vector<Rgb> entering_flux(const DiffusionSpace& space, const OfSample& ente
 // directions: of an element, by its index
 template <class DirectionsOf>
 void enter_everywhere(const DiffusionSpace& space, std::span<const Rgb> flux, const DirectionsOf& directions,
-                      Depositor& depositor) {
-  const CancelCheck check;
+                      Depositor& depositor, Monitor* monitor) {
   for (std::size_t i = 0; i < flux.size(); ++i) {
-    check();
+    advance(monitor, 1);
     if (!(max_component(flux[i]) > 0) || space.attached[i].cell == DiffusionGrid::kNone) continue;
     const Directions from = directions(i);
     for (std::size_t n = 0; n < from.count; ++n)
@@ -378,7 +376,7 @@ void enter_everywhere(const DiffusionSpace& space, std::span<const Rgb> flux, co
 
 }  // namespace
 
-FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light) {
+FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor) {
   Depositor depositor(space);
   const std::vector<BoundaryElement>& elements = space.boundary.elements;
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
@@ -389,14 +387,15 @@ FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLigh
     });
     enter_everywhere(
         space, flux,
-        [&](std::size_t i) { return towards_light(light.lights[l], elements[i], space.eta(), i); },
-        depositor);
+        [&](std::size_t i) { return towards_light(light.lights[l], elements[i], space.eta(), i); }, depositor,
+        monitor);
   }
   if (light.even.empty()) return depositor.take();
   const std::vector<Rgb> flux =
       entering_flux(space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
   enter_everywhere(
-      space, flux, [&](std::size_t i) { return all_around(elements[i], space.eta(), i); }, depositor);
+      space, flux, [&](std::size_t i) { return all_around(elements[i], space.eta(), i); }, depositor,
+      monitor);
   return depositor.take();
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "opaline/core/monitor.h"
 #include "opaline/irradiance/irradiance.h"
 #include "volume/boundary_elements.h"
 #include "volume/calibrated_medium.h"
@@ -51,6 +52,11 @@ struct FirstCollisions {
   std::vector<RgbF> leaving;
 };
 
-FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light);
+/// Advances by one an element and source of light, of sources_of.
+FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor);
+
+inline std::size_t sources_of(const EnteringLight& light) {
+  return light.lights.size() + (light.even.empty() ? 0 : 1);
+}
 
 }  // namespace opaline

@@ -101,7 +101,11 @@ VolumeExitance VolumeDiffusion::exitance_of_even(std::span<const RgbF> entering,
 }
 
 VolumeExitance VolumeDiffusion::State::exitance(const EnteringLight& light, Monitor* monitor) const {
+  // The equation takes about as long as the collisions.
+  const std::size_t elements = coarse.elements() + fine.elements();
+  if (monitor != nullptr) monitor->begin("diffusion", 2 * elements * sources_of(light));
   const DiffusionBody::Solution rough = coarse.solve(light, {}, monitor);
+  advance(monitor, coarse.elements() * sources_of(light));
   const DiffusionBody::Solution solution = fine.solve(light, coarse.carried(rough, fine), monitor);
   VolumeExitance result;
   result.exitance = solution.exitance;

@@ -212,23 +212,25 @@ TEST(ObjTextures, AreTakenFromLibraries) {
   EXPECT_EQ(odd.uv_offset,
             (std::array<double, 2>{.25, -2.5}));  // v = 0, downwards 1, becomes .5, downwards .5
   EXPECT_EQ(odd.scale, Rgb(.5));
-  EXPECT_EQ(scene.asset_warnings,
-            (std::vector<std::string>{folder.file("maps/a.mtl") +
-                                      ":6: map_Kd 'p.png' of material 'odd': its option -clamp on"}));
+  EXPECT_EQ(
+      scene.asset_warnings,
+      (std::vector<std::string>{folder.file("maps/a.mtl") +
+                                ":6: map_Kd 'p.png' of material 'odd': the option '-clamp on' is left out"}));
 }
 
-// Claim: OBJ's bump maps are heights in the OBJ's lengths, times -bm, under any of their names; one that is blue, as maps
-// of normals are, is one of normals. Pictures that are not there are said. Fails if -bm is taken for
-// the name, or a map of normals for heights.
+// Claim: OBJ's bump maps are heights in the OBJ's lengths, times -bm, under any of their names; one that is blue, as
+// normal maps are, is a normal map, and so is `norm`. Pictures that are not there are said. Fails if -bm is taken for the
+// name, or a normal map for heights.
 TEST(ObjTextures, OfHeightsAreBumps) {
   const ScratchFolder folder;
   put_bytes(folder.file("h.png"), png_of(128));
   test::put_png(folder.file("a normal.png"), 4, 2, [](int x, int) { return test::Bytes{120 + x, 128, 255}; });
   put_bytes(folder.file("a.mtl"),
             "newmtl a\nmap_Bump -bm 0.25 h.png\nnewmtl b\nbump a normal.png\nnewmtl c\nmap_bump h.png\n"
-            "newmtl d\nbump -s 2 2 2 -bm .5 h.png\nnewmtl e\nbump -bm 2 gone.png\n");
+            "newmtl d\nbump -s 2 2 2 -bm .5 h.png\nnewmtl e\nbump -bm 2 gone.png\n"
+            "newmtl f\nnorm h.png\nPr .5\nPm 0.0\nTf 1 1 1\n");
   std::string text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n";
-  for (const char* name : {"a", "b", "c", "d", "e"})
+  for (const char* name : {"a", "b", "c", "d", "e", "f"})
     text += std::string("usemtl ") + name + "\nf 1/1 2/2 3/3\n";
   put_bytes(folder.file("a.obj"), text);
   const Scene scene = load_scene(folder.file("a.obj"));
@@ -238,9 +240,12 @@ TEST(ObjTextures, OfHeightsAreBumps) {
   EXPECT_EQ(scene.shapes.at(3).bump_map.value().uv_scale, (std::array<double, 2>{2, 2}));
   EXPECT_EQ(scene.shapes[3].bump_map->scale.x, .5);
   EXPECT_FALSE(scene.shapes.at(4).bump_map);
+  EXPECT_TRUE(scene.shapes.at(5).normal_map);
   const ImportedAsset import = import_asset(folder.file("a.obj"), "a.obj");
   EXPECT_TRUE(has(import.translated, "map_Bump -> bump_map h.png, white 0.25 mm high"));
-  EXPECT_TRUE(has(import.translated, "bump -> normal_map a normal.png, for it is blue"));
+  EXPECT_TRUE(has(import.translated, "bump -> normal_map a normal.png, slopes times 1"));
+  EXPECT_TRUE(has(import.not_carried, "material 'f': Pr"));
+  EXPECT_FALSE(has(import.not_carried, "material 'f': Pm") || has(import.not_carried, "material 'f': Tf"));
   EXPECT_TRUE(has(import.warnings, "bump 'gone.png' of material 'e': there is no such file"));
 }
 

@@ -82,6 +82,16 @@ TEST(ObjAssets, ByteOrderMarksArePassedOver) {
   EXPECT_NE(error_of(std::string("\xff\xfev\0", 4), "b.obj").find("b.obj: is UTF-16"), std::string::npos);
 }
 
+// Claim: lines of an OBJ file and its library may end with carriage returns alone. Fails if either is one line.
+TEST(ObjAssets, LinesMayEndWithCarriageReturns) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("a.mtl"), "newmtl red\rKd 0.8 0.1 0.1\r");
+  put_bytes(folder.file("a.obj"), "mtllib a.mtl\rv 0 0 0\rv 1 0 0\rv 0 1 0\rusemtl red\rf 1 2 3\r");
+  const Scene scene = load_scene(folder.file("a.obj"));
+  EXPECT_EQ(scene.shapes.at(0).reflectance, Rgb(.8, .1, .1));
+  EXPECT_EQ(make_mesh(scene.shapes[0]).mesh.triangles.size(), 1u);
+}
+
 // Claim: a library's name may have blanks in it, or stand beside others; one that is not there is said. Fails if the
 // line is one word.
 TEST(ObjAssets, LibrariesAreFoundByTheirNames) {

@@ -10,4 +10,7 @@ namespace opaline {
 /// error Error{bad_input} naming the file: UTF-16
 void drop_byte_order_mark(const std::string& path, std::string& text);
 
+/// Ends the lines of a text that has carriage returns alone, as on the first Macintoshes, with line feeds.
+void end_lines_with_line_feeds(std::string& text);
+
 }  // namespace opaline

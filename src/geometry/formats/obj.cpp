@@ -62,6 +62,7 @@ class ObjReader {
 
   SourceMesh run() {
     drop_byte_order_mark(path_, bytes_);
+    end_lines_with_line_feeds(bytes_);
     if (bytes_.find('\0') != bytes_.npos)
       throw bad_file(path_, "this is not an OBJ file", "text", "binary data");
     join_continued_lines();
