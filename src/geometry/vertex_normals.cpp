@@ -1,22 +1,51 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/vertex_normals.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "geometry/creases.h"
+#include "geometry/oriented_point.h"
 #include "geometry/topology.h"
 
 namespace opaline {
 namespace {
 
-/// One average for all vertices at the same position.
+/// Twice the triangle's area, along its normal.
+Vec3d area_vector(const Mesh& mesh, const Triangle& t) {
+  const Vec3d& a = mesh.positions[t[0]];
+  return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
+}
+
+/// Triangles that a fold has reversed: they face against the surface around each of their corners. The sum of the area
+/// vectors around a vertex depends on the ring around it alone, however far the vertex was dragged.
+std::vector<std::uint32_t> reversed_triangles(const Mesh& mesh, const std::vector<std::uint32_t>& site) {
+  std::vector<Vec3d> around(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d area = area_vector(mesh, t);
+    for (const std::uint32_t v : t) around[site[v]] += area;
+  }
+  std::vector<std::uint32_t> reversed;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Vec3d area = area_vector(mesh, mesh.triangles[i]);
+    const auto faces_against = [&](std::uint32_t v) {
+      return dot(normalized(area), normalized(around[site[v]])) < double(kReversed);
+    };
+    if (std::ranges::all_of(mesh.triangles[i], faces_against)) reversed.push_back(i);
+  }
+  return reversed;
+}
+
+/// One average for all vertices at the same position, over triangles that no fold has reversed.
 std::vector<Vec3d> averages(const Mesh& mesh, const std::vector<std::uint32_t>& site) {
   std::vector<Vec3d> sum(mesh.positions.size());
-  for (const Triangle& t : mesh.triangles) {
+  const auto add = [&](const Triangle& t, double sign) {
     const Vec3d normal = unit_normal(mesh, t);
-    for (std::size_t k = 0; k < 3; ++k) sum[site[t[k]]] += normal * corner_angle(mesh, t, k);
-  }
+    for (std::size_t k = 0; k < 3; ++k) sum[site[t[k]]] += normal * (sign * corner_angle(mesh, t, k));
+  };
+  for (const Triangle& t : mesh.triangles) add(t, 1);
+  for (const std::uint32_t t : reversed_triangles(mesh, site)) add(mesh.triangles[t], -1);
   return sum;
 }
 
@@ -57,8 +86,7 @@ std::size_t turn_outward(Mesh& mesh) {
 }  // namespace
 
 Vec3d unit_normal(const Mesh& mesh, const Triangle& t) {
-  const Vec3d& a = mesh.positions[t[0]];
-  return normalized(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a));
+  return normalized(area_vector(mesh, t));
 }
 
 double corner_angle(const Mesh& mesh, const Triangle& t, std::size_t k) {

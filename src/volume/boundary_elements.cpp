@@ -216,6 +216,12 @@ class Cutter {
     parts_.push_back({Vec3f(position), mesh, triangle, table_.add(position, normal, area)});
   }
 
+  Vec3d unit_normal(std::uint32_t mesh, std::uint32_t triangle) const {
+    const std::vector<Vec3d>& positions = world_.meshes[mesh].positions;
+    const auto& [i, j, k] = world_.meshes[mesh].triangles[triangle];
+    return normalized(cross(positions[j] - positions[i], positions[k] - positions[i]));
+  }
+
   using Place = std::array<int, 3>;
   Place place_of(const Vec3f& position) const {
     const Vec3d p = lattice_.into(Vec3d(position));
@@ -225,7 +231,8 @@ class Cutter {
   /// Parts in the cells of pieces that are no plain boundary, and in the cells around; empty: there is none.
   std::vector<bool> folded_parts(const OuterSurface& outer) const {
     std::vector<SurfacePiece> pieces;
-    for (const Part& part : parts_) pieces.push_back({part.position, part.mesh, part.triangle});
+    for (const Part& part : parts_)
+      pieces.push_back({part.position, unit_normal(part.mesh, part.triangle), part.mesh, part.triangle});
     const bool has_inner = outer.has_inner(pieces);  // else folds at the most
     std::vector<std::uint8_t> is_plain(pieces.size(), 1);
     parallel_chunks(pieces.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -265,7 +272,7 @@ class Cutter {
   void add_piece(const Vec3d& middle, double area, const Vec3d& normal, std::uint32_t mesh,
                  std::uint32_t triangle) {
     const Vec3d position = middle * lattice_.cell + lattice_.low;
-    const auto [share, is_turned] = outer_->of({Vec3f(position), mesh, triangle});
+    const auto [share, is_turned] = outer_->of({Vec3f(position), normal, mesh, triangle});
     area *= double(share) * lattice_.cell * lattice_.cell;
     if (!(area > 0)) return;
     const std::uint32_t element = table_.add(position, is_turned ? -normal : normal, area);

@@ -51,11 +51,10 @@ OuterSurface::OuterSurface(const RayScene& rays, std::span<const std::uint32_t> 
 }
 
 // A ray from behind the piece to the outside; what it meets next to the piece lies in the same place.
-OuterSurface::Windings OuterSurface::windings_at(const SurfacePoint& point, const Vec3d& direction) const {
-  const Vec3d normal(point.geometric);
-  const double offset = double(rays_.offset(point)), cosine = dot(normal, direction);
+OuterSurface::Windings OuterSurface::windings_at(const SurfacePiece& piece, const Vec3d& direction) const {
+  const double offset = this->offset(piece), cosine = dot(piece.normal, direction);
   Windings windings;
-  follow(rays_, Vec3d(point.position) - normal * offset, direction, kEndless, [&](const TracedRay& traced) {
+  follow(rays_, Vec3d(piece.middle) - piece.normal * offset, direction, kEndless, [&](const TracedRay& traced) {
     if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
     const int step = leaves(traced) ? 1 : -1;
     windings.behind += step;
@@ -66,10 +65,9 @@ OuterSurface::Windings OuterSurface::windings_at(const SurfacePoint& point, cons
 }
 
 /// Whether another sheet of the body faces it from nearby: light that leaves enters again.
-bool OuterSurface::touches(const SurfacePoint& point, const Vec3d& outward) const {
-  const double offset = double(rays_.offset(point));
+bool OuterSurface::touches(const SurfacePiece& piece, const Vec3d& outward) const {
   bool found = false;
-  follow(rays_, Vec3d(point.position) + outward * offset, outward, least_gap_, [&](const TracedRay& traced) {
+  follow(rays_, Vec3d(piece.middle) + outward * offset(piece), outward, least_gap_, [&](const TracedRay& traced) {
     if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
     const double cosine = std::abs(dot(normalized(Vec3d(traced.hit.edges_cross)), outward));
     found = cosine > -kFacing;
@@ -80,22 +78,20 @@ bool OuterSurface::touches(const SurfacePoint& point, const Vec3d& outward) cons
 
 // By two of three rays: one may run along an edge.
 Boundedness OuterSurface::of(const SurfacePiece& piece) const {
-  SurfacePoint point = rays_.surface_point(piece.mesh, piece.triangle, 1 / 3.f, 1 / 3.f);
-  point.position = piece.middle;
-  const Vec3d normal(point.geometric);
-  Vec3f x, y;
-  tangent_frame(point.geometric, x, y);
-  Windings windings = windings_at(point, normal);
+  const Vec3d& normal = piece.normal;
+  Vec3d x, y;
+  tangent_frame(normal, x, y);
+  Windings windings = windings_at(piece, normal);
   if (windings.are_plain()) return {};
-  const Windings second = windings_at(point, normalized(normal + .3 * Vec3d(x) + .1 * Vec3d(y)));
+  const Windings second = windings_at(piece, normalized(normal + .3 * x + .1 * y));
   if (second != windings) {
-    const Windings third = windings_at(point, normalized(normal - .2 * Vec3d(x) + .25 * Vec3d(y)));
+    const Windings third = windings_at(piece, normalized(normal - .2 * x + .25 * y));
     if (third == second) windings = second;
   }
   if (windings.are_plain()) return {};
   const bool is_turned = windings.before != 0;
   if ((windings.behind != 0) == is_turned) return {0, false};
-  if (touches(point, is_turned ? -normal : normal)) return {0, false};
+  if (touches(piece, is_turned ? -normal : normal)) return {0, false};
   return {1 / float(std::abs(windings.behind - windings.before)), is_turned};
 }
 

@@ -14,6 +14,7 @@ namespace opaline {
 /// A small flat piece of a body's meshes.
 struct SurfacePiece {
   Vec3f middle;  ///< world units
+  Vec3d normal;  ///< unit, by the winding of its triangle
   std::uint32_t mesh = 0, triangle = 0;
 };
 
@@ -38,8 +39,9 @@ class OuterSurface {
 
  private:
   struct Windings;
-  Windings windings_at(const SurfacePoint& point, const Vec3d& direction) const;
-  bool touches(const SurfacePoint& point, const Vec3d& outward) const;
+  Windings windings_at(const SurfacePiece& piece, const Vec3d& direction) const;
+  bool touches(const SurfacePiece& piece, const Vec3d& outward) const;
+  double offset(const SurfacePiece& piece) const { return double(rays_.offset(piece.mesh, piece.middle)); }
 
   const RayScene& rays_;
   std::vector<bool> is_body_;
