@@ -77,28 +77,30 @@ bool OuterSurface::touches(const SurfacePiece& piece, const Vec3d& outward) cons
 }
 
 // By two of three rays: one may run along an edge.
-Boundedness OuterSurface::of(const SurfacePiece& piece) const {
+OuterSurface::Windings OuterSurface::windings_at(const SurfacePiece& piece) const {
   const Vec3d& normal = piece.normal;
+  const Windings first = windings_at(piece, normal);
+  if (first.are_plain()) return first;
   Vec3d x, y;
   tangent_frame(normal, x, y);
-  Windings windings = windings_at(piece, normal);
-  if (windings.are_plain()) return {};
   const Windings second = windings_at(piece, normalized(normal + .3 * x + .1 * y));
-  if (second != windings) {
-    const Windings third = windings_at(piece, normalized(normal - .2 * x + .25 * y));
-    if (third == second) windings = second;
-  }
-  if (windings.are_plain()) return {};
+  if (second == first) return first;
+  const Windings third = windings_at(piece, normalized(normal - .2 * x + .25 * y));
+  return third == second ? second : first;
+}
+
+Boundedness OuterSurface::of(const SurfacePiece& piece) const {
+  const Windings windings = windings_at(piece);
   const bool is_turned = windings.before != 0;
   if ((windings.behind != 0) == is_turned) return {0, false};
-  if (touches(piece, is_turned ? -normal : normal)) return {0, false};
+  if (touches(piece, is_turned ? -piece.normal : piece.normal)) return {0, false};
   return {1 / float(std::abs(windings.behind - windings.before)), is_turned};
 }
 
 bool OuterSurface::has_inner(std::span<const SurfacePiece> pieces) const {
   const std::size_t step = std::max<std::size_t>(1, pieces.size() / kTested);
   for (std::size_t i = 0; i < pieces.size(); i += step)
-    if (of(pieces[i]) != Boundedness{}) return true;
+    if (!windings_at(pieces[i]).are_plain()) return true;
   return false;
 }
 

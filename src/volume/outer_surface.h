@@ -39,6 +39,7 @@ class OuterSurface {
 
  private:
   struct Windings;
+  Windings windings_at(const SurfacePiece& piece) const;
   Windings windings_at(const SurfacePiece& piece, const Vec3d& direction) const;
   bool touches(const SurfacePiece& piece, const Vec3d& outward) const;
   double offset(const SurfacePiece& piece) const { return double(rays_.offset(piece.mesh, piece.middle)); }
