@@ -97,10 +97,14 @@ Boundedness OuterSurface::of(const SurfacePiece& piece) const {
   return {1 / float(std::abs(windings.behind - windings.before)), is_turned};
 }
 
+bool OuterSurface::is_plain(const SurfacePiece& piece) const {
+  return windings_at(piece).are_plain();
+}
+
 bool OuterSurface::has_inner(std::span<const SurfacePiece> pieces) const {
   const std::size_t step = std::max<std::size_t>(1, pieces.size() / kTested);
   for (std::size_t i = 0; i < pieces.size(); i += step)
-    if (!windings_at(pieces[i]).are_plain()) return true;
+    if (!is_plain(pieces[i])) return true;
   return false;
 }
 

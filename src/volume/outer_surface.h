@@ -34,6 +34,8 @@ class OuterSurface {
   OuterSurface(const RayScene& rays, std::span<const std::uint32_t> meshes, double least_gap);
 
   Boundedness of(const SurfacePiece& piece) const;
+  /// Whether the piece has the solid behind it and the outside before it, however near another sheet is.
+  bool is_plain(const SurfacePiece& piece) const;
   /// Whether some pieces, of a few thousand tested, are no plain boundary.
   bool has_inner(std::span<const SurfacePiece> pieces) const;
 
