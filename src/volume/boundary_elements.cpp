@@ -169,8 +169,8 @@ class Cutter {
 
   /// Leaves out what does not bound the solid. Parts that lie beside such a piece are taken in smaller pieces.
   void keep_outer(const RayScene& rays, std::span<const std::uint32_t> meshes) {
-    constexpr double kLeastGap = .2;  // cells
-    const OuterSurface outer(rays, meshes, kLeastGap * lattice_.cell);
+    constexpr double kLeastGap = .5;  // cells
+    const OuterSurface outer(rays, world_, meshes, kLeastGap * lattice_.cell);
     const std::vector<bool> is_folded = folded_parts(outer, meshes);
     if (is_folded.empty()) return;
     parts_.clear();

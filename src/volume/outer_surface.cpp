@@ -28,8 +28,21 @@ void follow(const RayScene& rays, const Vec3d& from, const Vec3d& direction, dou
   }
 }
 
-bool leaves(const TracedRay& traced) {
-  return dot(traced.hit.edges_cross, traced.ray.direction) > 0;
+bool leaves(const Hit& hit, const Vec3d& direction) {
+  return dot(Vec3d(hit.edges_cross), direction) > 0;
+}
+
+bool boxes_meet(const World& world, std::span<const std::uint32_t> meshes) {
+  std::vector<Bounds> boxes;
+  for (const std::uint32_t m : meshes) {
+    const Bounds box = bounds(world.meshes[m]);
+    for (const Bounds& other : boxes) {
+      const Vec3d gap = component_max(box.low, other.low) - component_min(box.high, other.high);
+      if (gap.x <= 0 && gap.y <= 0 && gap.z <= 0) return true;
+    }
+    boxes.push_back(box);
+  }
+  return false;
 }
 
 }  // namespace
@@ -42,24 +55,42 @@ struct OuterSurface::Windings {
   friend bool operator==(const Windings&, const Windings&) = default;
 };
 
-OuterSurface::OuterSurface(const RayScene& rays, std::span<const std::uint32_t> meshes, double least_gap)
+OuterSurface::OuterSurface(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
+                           double least_gap)
     : rays_(rays), least_gap_(least_gap) {
+  if (boxes_meet(world, meshes)) lines_.emplace(rays, meshes);
   for (const std::uint32_t m : meshes) {
     if (m >= is_body_.size()) is_body_.resize(m + 1);
     is_body_[m] = true;
   }
 }
 
+/// Calls crossed(distance, step) for each triangle of the body along a ray; step: 1 where it leaves the body.
+template <class Crossed>
+void OuterSurface::follow_to_end(const Vec3d& from, const Vec3d& direction, const Crossed& crossed) const {
+  if (lines_) {
+    std::vector<Hit> hits;
+    lines_->find(Ray(Vec3f(from), Vec3f(direction)), hits);
+    for (const Hit& hit : hits) {
+      const Vec3d met(rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v).position);
+      crossed(dot(met - from, direction), leaves(hit, direction) ? 1 : -1);
+    }
+    return;
+  }
+  follow(rays_, from, direction, kEndless, [&](const TracedRay& traced) {
+    if (traced.hit.mesh < is_body_.size() && is_body_[traced.hit.mesh])
+      crossed(double(traced.ray.far), leaves(traced.hit, direction) ? 1 : -1);
+    return true;
+  });
+}
+
 // A ray from behind the piece to the outside; what it meets next to the piece lies in the same place.
 OuterSurface::Windings OuterSurface::windings_at(const SurfacePiece& piece, const Vec3d& direction) const {
   const double offset = this->offset(piece), cosine = dot(piece.normal, direction);
   Windings windings;
-  follow(rays_, Vec3d(piece.middle) - piece.normal * offset, direction, kEndless, [&](const TracedRay& traced) {
-    if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
-    const int step = leaves(traced) ? 1 : -1;
+  follow_to_end(Vec3d(piece.middle) - piece.normal * offset, direction, [&](double distance, int step) {
     windings.behind += step;
-    if (double(traced.ray.far) * cosine > 2 * offset) windings.before += step;
-    return true;
+    if (distance * cosine > 2 * offset) windings.before += step;
   });
   return windings;
 }
