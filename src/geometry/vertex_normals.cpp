@@ -53,7 +53,8 @@ std::vector<Vec3d> averages(const Mesh& mesh, const std::vector<std::uint32_t>& 
     for (std::size_t k = 0; k < 3; ++k) sum[site[t[k]]] += normal * (sign * corner_angle(mesh, t, k));
   };
   for (const Triangle& t : mesh.triangles) add(t, 1);
-  for (const std::uint32_t t : reversed_by_areas(mesh, [&](std::uint32_t v) { return site[v]; })) add(mesh.triangles[t], -1);
+  for (const std::uint32_t t : reversed_by_areas(mesh, [&](std::uint32_t v) { return site[v]; }))
+    add(mesh.triangles[t], -1);
   return sum;
 }
 

@@ -249,8 +249,7 @@ class Cutter {
     std::vector<std::uint8_t> is_folded = reversed_parts(meshes);
     parallel_chunks(pieces.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i)
-        if (has_inner || table_.faces_back(parts_[i].element))
-          is_folded[i] |= !outer.is_plain(pieces[i]);
+        if (has_inner || table_.faces_back(parts_[i].element)) is_folded[i] |= !outer.is_plain(pieces[i]);
     });
     std::set<Place> folded;
     for (std::size_t i = 0; i < pieces.size(); ++i) {

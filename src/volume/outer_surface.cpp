@@ -98,12 +98,13 @@ OuterSurface::Windings OuterSurface::windings_at(const SurfacePiece& piece, cons
 /// Whether another sheet of the body faces it from nearby: light that leaves enters again.
 bool OuterSurface::touches(const SurfacePiece& piece, const Vec3d& outward) const {
   bool found = false;
-  follow(rays_, Vec3d(piece.middle) + outward * offset(piece), outward, least_gap_, [&](const TracedRay& traced) {
-    if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
-    const double cosine = std::abs(dot(normalized(Vec3d(traced.hit.edges_cross)), outward));
-    found = cosine > -kFacing;
-    return !found;
-  });
+  follow(rays_, Vec3d(piece.middle) + outward * offset(piece), outward, least_gap_,
+         [&](const TracedRay& traced) {
+           if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
+           const double cosine = std::abs(dot(normalized(Vec3d(traced.hit.edges_cross)), outward));
+           found = cosine > -kFacing;
+           return !found;
+         });
   return found;
 }
 
