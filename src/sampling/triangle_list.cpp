@@ -31,31 +31,25 @@ struct Keyed {
   TriangleId id;
 };
 
-/// 1: the same corners the same way round; -1: the other way; 0: other corners.
-int coincide(const TriangleList::Corners& s, const TriangleList::Corners& t) {
-  const std::array<Vec3d, 3> a{s.a, s.b, s.c}, b{t.a, t.b, t.c};
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (a[0] != b[k]) continue;
-    if (a[1] == b[(k + 1) % 3] && a[2] == b[(k + 2) % 3]) return 1;
-    if (a[1] == b[(k + 2) % 3] && a[2] == b[(k + 1) % 3]) return -1;
-  }
-  return 0;
+/// Whether the corners are the same, the same way round.
+bool coincide(const TriangleList::Corners& s, const TriangleList::Corners& t) {
+  const std::array<Vec3d, 3> b{t.a, t.b, t.c};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (s.a == b[k] && s.b == b[(k + 1) % 3] && s.c == b[(k + 2) % 3]) return true;
+  return false;
 }
 
-/// Leaves out triangles that coincide with one of another mesh: the second that faces the same way; of two that face
-/// each other, which lie inside, both.
+/// Leaves out triangles that coincide with one of another mesh before them.
 void drop_coincident(std::vector<Keyed>& keyed, const TriangleList& triangles) {
   constexpr std::size_t kCompared = 64;  // of one key
   std::vector<std::size_t> kept;
   std::vector<bool> is_dropped(keyed.size());
   for (std::size_t i = 0; i < keyed.size(); ++i) {
     const std::size_t end = std::min(keyed.size(), i + kCompared);
-    for (std::size_t j = i + 1; !is_dropped[i] && j < end && keyed[j].key == keyed[i].key; ++j) {
-      if (is_dropped[j] || keyed[j].id.mesh == keyed[i].id.mesh) continue;
-      const int same = coincide(triangles.corners(keyed[i].id), triangles.corners(keyed[j].id));
-      is_dropped[j] = same != 0;
-      if (same < 0) is_dropped[i] = true;
-    }
+    for (std::size_t j = i + 1; !is_dropped[i] && j < end && keyed[j].key == keyed[i].key; ++j)
+      if (keyed[j].id.mesh != keyed[i].id.mesh &&
+          coincide(triangles.corners(keyed[i].id), triangles.corners(keyed[j].id)))
+        is_dropped[j] = true;
     if (!is_dropped[i]) kept.push_back(i);
   }
   if (kept.empty() || kept.size() == keyed.size()) return;

@@ -242,19 +242,20 @@ class Cutter {
 
   /// Parts in the cells of pieces that are no plain boundary or reversed, and in the cells around; empty: there is none.
   std::vector<bool> folded_parts(const OuterSurface& outer, std::span<const std::uint32_t> meshes) const {
-    std::vector<SurfacePiece> pieces;
-    for (const Part& part : parts_)
-      pieces.push_back({part.position, unit_normal(part.mesh, part.triangle), part.mesh, part.triangle});
-    const bool has_inner = outer.has_inner(pieces);  // else folds at the most
+    const auto piece_of = [&](std::size_t i) -> SurfacePiece {
+      const Part& part = parts_[i];
+      return {part.position, unit_normal(part.mesh, part.triangle), part.mesh, part.triangle};
+    };
+    const bool has_inner = outer.has_inner(parts_.size(), piece_of);  // else folds at the most
     std::vector<std::uint8_t> is_folded = reversed_parts(meshes);
-    parallel_chunks(pieces.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+    parallel_chunks(parts_.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i)
-        if (has_inner || table_.faces_back(parts_[i].element)) is_folded[i] |= !outer.is_plain(pieces[i]);
+        if (has_inner || table_.faces_back(parts_[i].element)) is_folded[i] |= !outer.is_plain(piece_of(i));
     });
     std::set<Place> folded;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (is_folded[i] == 0) continue;
-      const auto [x, y, z] = place_of(pieces[i].middle);
+      const auto [x, y, z] = place_of(parts_[i].position);
       for (int n = 0; n < 27; ++n) folded.insert({x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1});
     }
     if (folded.empty()) return {};

@@ -133,10 +133,11 @@ bool OuterSurface::is_plain(const SurfacePiece& piece) const {
   return windings_at(piece).are_plain();
 }
 
-bool OuterSurface::has_inner(std::span<const SurfacePiece> pieces) const {
-  const std::size_t step = std::max<std::size_t>(1, pieces.size() / kTested);
-  for (std::size_t i = 0; i < pieces.size(); i += step)
-    if (!is_plain(pieces[i])) return true;
+bool OuterSurface::has_inner(std::size_t pieces,
+                             const std::function<SurfacePiece(std::size_t)>& piece_of) const {
+  const std::size_t step = std::max<std::size_t>(1, pieces / kTested);
+  for (std::size_t i = 0; i < pieces; i += step)
+    if (!is_plain(piece_of(i))) return true;
   return false;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,7 +41,7 @@ class OuterSurface {
   /// Whether the piece has the solid behind it and the outside before it, however near another sheet is.
   bool is_plain(const SurfacePiece& piece) const;
   /// Whether some pieces, of a few thousand tested, are no plain boundary.
-  bool has_inner(std::span<const SurfacePiece> pieces) const;
+  bool has_inner(std::size_t pieces, const std::function<SurfacePiece(std::size_t)>& piece_of) const;
 
  private:
   struct Windings;
