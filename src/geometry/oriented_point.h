@@ -14,8 +14,11 @@ inline Vec3f unit_or(const Vec3f& v, const Vec3f& substitute) {
   return length2 > 0 ? v * (1 / std::sqrt(length2)) : substitute;
 }
 
+/// Cosine between a triangle's normal and the surface's below which the triangle is reversed.
+constexpr float kReversed = -0.5f;
+
 /// A point of the triangle with edges ab and ac. blended: the interpolated normals of its corners, null for a
-/// facet.
+/// facet. The vertices' normals tell the outer side: a triangle that a fold has reversed faces against them.
 template <class T>
 SurfacePoint oriented_point(const Vec3<T>& position, const Vec3<T>& ab, const Vec3<T>& ac,
                             const Vec3f* blended) {
@@ -26,6 +29,7 @@ SurfacePoint oriented_point(const Vec3<T>& position, const Vec3<T>& ab, const Ve
   point.position = Vec3f(position);
   point.geometric = unit_or(cross(Vec3f(ab * scale), Vec3f(ac * scale)), {});
   point.normal = blended != nullptr ? unit_or(*blended, point.geometric) : point.geometric;
+  if (dot(point.normal, point.geometric) < kReversed) point.geometric = -point.geometric;
   return point;
 }
 

@@ -1,22 +1,60 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/vertex_normals.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "geometry/creases.h"
+#include "geometry/oriented_point.h"
 #include "geometry/topology.h"
 
 namespace opaline {
 namespace {
 
-/// One average for all vertices at the same position.
+/// Twice the triangle's area, along its normal.
+Vec3d area_vector(const Mesh& mesh, const Triangle& t) {
+  const Vec3d& a = mesh.positions[t[0]];
+  return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
+}
+
+/// out   triangles that face against around(v), of any length, at each of their vertices v
+template <class Around>
+std::vector<std::uint32_t> triangles_against(const Mesh& mesh, const Around& around) {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Vec3d area = area_vector(mesh, mesh.triangles[i]);
+    const auto faces_against = [&](std::uint32_t v) {
+      const Vec3d outward(around(v));
+      return dot(area, outward) < 0 && dot(normalized(area), normalized(outward)) < double(kReversed);
+    };
+    if (std::ranges::all_of(mesh.triangles[i], faces_against)) found.push_back(i);
+  }
+  return found;
+}
+
+/// Those that a fold has reversed. The sum of the area vectors around a vertex depends on the ring around it alone,
+/// however far the vertex was dragged.
+template <class SiteOf>
+std::vector<std::uint32_t> reversed_by_areas(const Mesh& mesh, const SiteOf& site_of) {
+  std::vector<Vec3d> sums(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d area = area_vector(mesh, t);
+    for (const std::uint32_t v : t) sums[site_of(v)] += area;
+  }
+  return triangles_against(mesh, [&](std::uint32_t v) { return sums[site_of(v)]; });
+}
+
+/// One average for all vertices at the same position, over triangles that no fold has reversed.
 std::vector<Vec3d> averages(const Mesh& mesh, const std::vector<std::uint32_t>& site) {
   std::vector<Vec3d> sum(mesh.positions.size());
-  for (const Triangle& t : mesh.triangles) {
+  const auto add = [&](const Triangle& t, double sign) {
     const Vec3d normal = unit_normal(mesh, t);
-    for (std::size_t k = 0; k < 3; ++k) sum[site[t[k]]] += normal * corner_angle(mesh, t, k);
-  }
+    for (std::size_t k = 0; k < 3; ++k) sum[site[t[k]]] += normal * (sign * corner_angle(mesh, t, k));
+  };
+  for (const Triangle& t : mesh.triangles) add(t, 1);
+  for (const std::uint32_t t : reversed_by_areas(mesh, [&](std::uint32_t v) { return site[v]; }))
+    add(mesh.triangles[t], -1);
   return sum;
 }
 
@@ -57,14 +95,18 @@ std::size_t turn_outward(Mesh& mesh) {
 }  // namespace
 
 Vec3d unit_normal(const Mesh& mesh, const Triangle& t) {
-  const Vec3d& a = mesh.positions[t[0]];
-  return normalized(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a));
+  return normalized(area_vector(mesh, t));
 }
 
 double corner_angle(const Mesh& mesh, const Triangle& t, std::size_t k) {
   const Vec3d& corner = mesh.positions[t[k]];
   const Vec3d u = mesh.positions[t[(k + 1) % 3]] - corner, v = mesh.positions[t[(k + 2) % 3]] - corner;
   return std::atan2(length(cross(u, v)), dot(u, v));
+}
+
+std::vector<std::uint32_t> reversed_triangles(const Mesh& mesh) {
+  if (mesh.normals.empty()) return reversed_by_areas(mesh, [](std::uint32_t v) { return v; });
+  return triangles_against(mesh, [&](std::uint32_t v) { return mesh.normals[v]; });
 }
 
 void complete_normals(Mesh& mesh, const Smoothing& smoothing, const std::string& name,

@@ -4,6 +4,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <tuple>
 
@@ -25,6 +26,37 @@ Bounds bounds_of(const World& world, std::span<const std::uint32_t> meshes) {
   return box;
 }
 
+struct Keyed {
+  std::uint64_t key;
+  TriangleId id;
+};
+
+/// Whether the corners are the same, the same way round.
+bool coincide(const TriangleList::Corners& s, const TriangleList::Corners& t) {
+  const std::array<Vec3d, 3> b{t.a, t.b, t.c};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (s.a == b[k] && s.b == b[(k + 1) % 3] && s.c == b[(k + 2) % 3]) return true;
+  return false;
+}
+
+/// Leaves out triangles that coincide with one of another mesh before them.
+void drop_coincident(std::vector<Keyed>& keyed, const TriangleList& triangles) {
+  constexpr std::size_t kCompared = 64;  // of one key
+  std::vector<std::size_t> kept;
+  std::vector<bool> is_dropped(keyed.size());
+  for (std::size_t i = 0; i < keyed.size(); ++i) {
+    const std::size_t end = std::min(keyed.size(), i + kCompared);
+    for (std::size_t j = i + 1; !is_dropped[i] && j < end && keyed[j].key == keyed[i].key; ++j)
+      if (keyed[j].id.mesh != keyed[i].id.mesh &&
+          coincide(triangles.corners(keyed[i].id), triangles.corners(keyed[j].id)))
+        is_dropped[j] = true;
+    if (!is_dropped[i]) kept.push_back(i);
+  }
+  if (kept.empty() || kept.size() == keyed.size()) return;
+  for (std::size_t k = 0; k < kept.size(); ++k) keyed[k] = keyed[kept[k]];
+  keyed.resize(kept.size());
+}
+
 }  // namespace
 
 TriangleList::TriangleList(const World& world, std::span<const std::uint32_t> meshes) : world_(world) {
@@ -35,10 +67,6 @@ TriangleList::TriangleList(const World& world, std::span<const std::uint32_t> me
   const Vec3d size = box.high - box.low;
   const double largest = std::max({size.x, size.y, size.z}),
                scale = largest > 0 ? double((1 << 20) - 1) / largest : 0;
-  struct Keyed {
-    std::uint64_t key;
-    TriangleId id;
-  };
   std::vector<Keyed> keyed(ids_.size());
   parallel_chunks(keyed.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -49,6 +77,8 @@ TriangleList::TriangleList(const World& world, std::span<const std::uint32_t> me
   tbb::parallel_sort(keyed, [](const Keyed& a, const Keyed& b) {
     return std::tie(a.key, a.id.mesh, a.id.triangle) < std::tie(b.key, b.id.mesh, b.id.triangle);
   });
+  if (meshes.size() > 1) drop_coincident(keyed, *this);
+  ids_.resize(keyed.size());
   std::ranges::transform(keyed, ids_.begin(), &Keyed::id);
   measure();
 }

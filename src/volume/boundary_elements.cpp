@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "core/cancel_check.h"
+#include "geometry/vertex_normals.h"
 #include "opaline/core/parallel.h"
 #include "opaline/geometry/surface_point.h"
 #include "volume/outer_surface.h"
@@ -168,9 +169,9 @@ class Cutter {
 
   /// Leaves out what does not bound the solid. Parts that lie beside such a piece are taken in smaller pieces.
   void keep_outer(const RayScene& rays, std::span<const std::uint32_t> meshes) {
-    constexpr double kLeastGap = .2;  // cells
-    const OuterSurface outer(rays, meshes, kLeastGap * lattice_.cell);
-    const std::vector<bool> is_folded = folded_parts(outer);
+    constexpr double kLeastGap = .5;  // cells
+    const OuterSurface outer(rays, world_, meshes, kLeastGap * lattice_.cell);
+    const std::vector<bool> is_folded = folded_parts(outer, meshes);
     if (is_folded.empty()) return;
     parts_.clear();
     table_ = ElementTable(lattice_);
@@ -216,27 +217,45 @@ class Cutter {
     parts_.push_back({Vec3f(position), mesh, triangle, table_.add(position, normal, area)});
   }
 
+  Vec3d unit_normal(std::uint32_t mesh, std::uint32_t triangle) const {
+    const std::vector<Vec3d>& positions = world_.meshes[mesh].positions;
+    const auto& [i, j, k] = world_.meshes[mesh].triangles[triangle];
+    return normalized(cross(positions[j] - positions[i], positions[k] - positions[i]));
+  }
+
   using Place = std::array<int, 3>;
   Place place_of(const Vec3f& position) const {
     const Vec3d p = lattice_.into(Vec3d(position));
     return {int(std::floor(p.x)), int(std::floor(p.y)), int(std::floor(p.z))};
   }
 
-  /// Parts in the cells of pieces that are no plain boundary, and in the cells around; empty: there is none.
-  std::vector<bool> folded_parts(const OuterSurface& outer) const {
-    std::vector<SurfacePiece> pieces;
-    for (const Part& part : parts_) pieces.push_back({part.position, part.mesh, part.triangle});
-    const bool has_inner = outer.has_inner(pieces);  // else folds at the most
-    std::vector<std::uint8_t> is_plain(pieces.size(), 1);
-    parallel_chunks(pieces.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+  /// Parts of triangles that a fold has reversed.
+  std::vector<std::uint8_t> reversed_parts(std::span<const std::uint32_t> meshes) const {
+    std::vector<std::uint8_t> result(parts_.size());
+    std::set<std::array<std::uint32_t, 2>> reversed;
+    for (const std::uint32_t m : meshes)
+      for (const std::uint32_t t : reversed_triangles(world_.meshes[m])) reversed.insert({m, t});
+    for (std::size_t i = 0; i < parts_.size() && !reversed.empty(); ++i)
+      result[i] = reversed.contains({parts_[i].mesh, parts_[i].triangle});
+    return result;
+  }
+
+  /// Parts in the cells of pieces that are no plain boundary or reversed, and in the cells around; empty: there is none.
+  std::vector<bool> folded_parts(const OuterSurface& outer, std::span<const std::uint32_t> meshes) const {
+    const auto piece_of = [&](std::size_t i) -> SurfacePiece {
+      const Part& part = parts_[i];
+      return {part.position, unit_normal(part.mesh, part.triangle), part.mesh, part.triangle};
+    };
+    const bool has_inner = outer.has_inner(parts_.size(), piece_of);  // else folds at the most
+    std::vector<std::uint8_t> is_folded = reversed_parts(meshes);
+    parallel_chunks(parts_.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i)
-        if (has_inner || table_.faces_back(parts_[i].element))
-          is_plain[i] = outer.of(pieces[i]) == Boundedness{};
+        if (has_inner || table_.faces_back(parts_[i].element)) is_folded[i] |= !outer.is_plain(piece_of(i));
     });
     std::set<Place> folded;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (is_plain[i] != 0) continue;
-      const auto [x, y, z] = place_of(pieces[i].middle);
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (is_folded[i] == 0) continue;
+      const auto [x, y, z] = place_of(parts_[i].position);
       for (int n = 0; n < 27; ++n) folded.insert({x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1});
     }
     if (folded.empty()) return {};
@@ -265,7 +284,7 @@ class Cutter {
   void add_piece(const Vec3d& middle, double area, const Vec3d& normal, std::uint32_t mesh,
                  std::uint32_t triangle) {
     const Vec3d position = middle * lattice_.cell + lattice_.low;
-    const auto [share, is_turned] = outer_->of({Vec3f(position), mesh, triangle});
+    const auto [share, is_turned] = outer_->of({Vec3f(position), normal, mesh, triangle});
     area *= double(share) * lattice_.cell * lattice_.cell;
     if (!(area > 0)) return;
     const std::uint32_t element = table_.add(position, is_turned ? -normal : normal, area);

@@ -28,8 +28,21 @@ void follow(const RayScene& rays, const Vec3d& from, const Vec3d& direction, dou
   }
 }
 
-bool leaves(const TracedRay& traced) {
-  return dot(traced.hit.edges_cross, traced.ray.direction) > 0;
+bool leaves(const Hit& hit, const Vec3d& direction) {
+  return dot(Vec3d(hit.edges_cross), direction) > 0;
+}
+
+bool boxes_meet(const World& world, std::span<const std::uint32_t> meshes) {
+  std::vector<Bounds> boxes;
+  for (const std::uint32_t m : meshes) {
+    const Bounds box = bounds(world.meshes[m]);
+    for (const Bounds& other : boxes) {
+      const Vec3d gap = component_max(box.low, other.low) - component_min(box.high, other.high);
+      if (gap.x <= 0 && gap.y <= 0 && gap.z <= 0) return true;
+    }
+    boxes.push_back(box);
+  }
+  return false;
 }
 
 }  // namespace
@@ -42,67 +55,89 @@ struct OuterSurface::Windings {
   friend bool operator==(const Windings&, const Windings&) = default;
 };
 
-OuterSurface::OuterSurface(const RayScene& rays, std::span<const std::uint32_t> meshes, double least_gap)
+OuterSurface::OuterSurface(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
+                           double least_gap)
     : rays_(rays), least_gap_(least_gap) {
+  if (boxes_meet(world, meshes)) lines_.emplace(rays, meshes);
   for (const std::uint32_t m : meshes) {
     if (m >= is_body_.size()) is_body_.resize(m + 1);
     is_body_[m] = true;
   }
 }
 
-// A ray from behind the piece to the outside; what it meets next to the piece lies in the same place.
-OuterSurface::Windings OuterSurface::windings_at(const SurfacePoint& point, const Vec3d& direction) const {
-  const Vec3d normal(point.geometric);
-  const double offset = double(rays_.offset(point)), cosine = dot(normal, direction);
-  Windings windings;
-  follow(rays_, Vec3d(point.position) - normal * offset, direction, kEndless, [&](const TracedRay& traced) {
-    if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
-    const int step = leaves(traced) ? 1 : -1;
-    windings.behind += step;
-    if (double(traced.ray.far) * cosine > 2 * offset) windings.before += step;
+/// Calls crossed(distance, step) for each triangle of the body along a ray; step: 1 where it leaves the body.
+template <class Crossed>
+void OuterSurface::follow_to_end(const Vec3d& from, const Vec3d& direction, const Crossed& crossed) const {
+  if (lines_) {
+    std::vector<Hit> hits;
+    lines_->find(Ray(Vec3f(from), Vec3f(direction)), hits);
+    for (const Hit& hit : hits) {
+      const Vec3d met(rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v).position);
+      crossed(dot(met - from, direction), leaves(hit, direction) ? 1 : -1);
+    }
+    return;
+  }
+  follow(rays_, from, direction, kEndless, [&](const TracedRay& traced) {
+    if (traced.hit.mesh < is_body_.size() && is_body_[traced.hit.mesh])
+      crossed(double(traced.ray.far), leaves(traced.hit, direction) ? 1 : -1);
     return true;
+  });
+}
+
+// A ray from behind the piece to the outside; what it meets next to the piece lies in the same place.
+OuterSurface::Windings OuterSurface::windings_at(const SurfacePiece& piece, const Vec3d& direction) const {
+  const double offset = this->offset(piece), cosine = dot(piece.normal, direction);
+  Windings windings;
+  follow_to_end(Vec3d(piece.middle) - piece.normal * offset, direction, [&](double distance, int step) {
+    windings.behind += step;
+    if (distance * cosine > 2 * offset) windings.before += step;
   });
   return windings;
 }
 
 /// Whether another sheet of the body faces it from nearby: light that leaves enters again.
-bool OuterSurface::touches(const SurfacePoint& point, const Vec3d& outward) const {
-  const double offset = double(rays_.offset(point));
+bool OuterSurface::touches(const SurfacePiece& piece, const Vec3d& outward) const {
   bool found = false;
-  follow(rays_, Vec3d(point.position) + outward * offset, outward, least_gap_, [&](const TracedRay& traced) {
-    if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
-    const double cosine = std::abs(dot(normalized(Vec3d(traced.hit.edges_cross)), outward));
-    found = cosine > -kFacing;
-    return !found;
-  });
+  follow(rays_, Vec3d(piece.middle) + outward * offset(piece), outward, least_gap_,
+         [&](const TracedRay& traced) {
+           if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
+           const double cosine = std::abs(dot(normalized(Vec3d(traced.hit.edges_cross)), outward));
+           found = cosine > -kFacing;
+           return !found;
+         });
   return found;
 }
 
 // By two of three rays: one may run along an edge.
+OuterSurface::Windings OuterSurface::windings_at(const SurfacePiece& piece) const {
+  const Vec3d& normal = piece.normal;
+  const Windings first = windings_at(piece, normal);
+  if (first.are_plain()) return first;
+  Vec3d x, y;
+  tangent_frame(normal, x, y);
+  const Windings second = windings_at(piece, normalized(normal + .3 * x + .1 * y));
+  if (second == first) return first;
+  const Windings third = windings_at(piece, normalized(normal - .2 * x + .25 * y));
+  return third == second ? second : first;
+}
+
 Boundedness OuterSurface::of(const SurfacePiece& piece) const {
-  SurfacePoint point = rays_.surface_point(piece.mesh, piece.triangle, 1 / 3.f, 1 / 3.f);
-  point.position = piece.middle;
-  const Vec3d normal(point.geometric);
-  Vec3f x, y;
-  tangent_frame(point.geometric, x, y);
-  Windings windings = windings_at(point, normal);
-  if (windings.are_plain()) return {};
-  const Windings second = windings_at(point, normalized(normal + .3 * Vec3d(x) + .1 * Vec3d(y)));
-  if (second != windings) {
-    const Windings third = windings_at(point, normalized(normal - .2 * Vec3d(x) + .25 * Vec3d(y)));
-    if (third == second) windings = second;
-  }
-  if (windings.are_plain()) return {};
+  const Windings windings = windings_at(piece);
   const bool is_turned = windings.before != 0;
   if ((windings.behind != 0) == is_turned) return {0, false};
-  if (touches(point, is_turned ? -normal : normal)) return {0, false};
+  if (touches(piece, is_turned ? -piece.normal : piece.normal)) return {0, false};
   return {1 / float(std::abs(windings.behind - windings.before)), is_turned};
 }
 
-bool OuterSurface::has_inner(std::span<const SurfacePiece> pieces) const {
-  const std::size_t step = std::max<std::size_t>(1, pieces.size() / kTested);
-  for (std::size_t i = 0; i < pieces.size(); i += step)
-    if (of(pieces[i]) != Boundedness{}) return true;
+bool OuterSurface::is_plain(const SurfacePiece& piece) const {
+  return windings_at(piece).are_plain();
+}
+
+bool OuterSurface::has_inner(std::size_t pieces,
+                             const std::function<SurfacePiece(std::size_t)>& piece_of) const {
+  const std::size_t step = std::max<std::size_t>(1, pieces / kTested);
+  for (std::size_t i = 0; i < pieces; i += step)
+    if (!is_plain(piece_of(i))) return true;
   return false;
 }
 

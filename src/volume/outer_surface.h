@@ -4,9 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "opaline/geometry/line_query.h"
 #include "opaline/geometry/ray_scene.h"
 
 namespace opaline {
@@ -14,6 +17,7 @@ namespace opaline {
 /// A small flat piece of a body's meshes.
 struct SurfacePiece {
   Vec3f middle;  ///< world units
+  Vec3d normal;  ///< unit, by the winding of its triangle
   std::uint32_t mesh = 0, triangle = 0;
 };
 
@@ -30,18 +34,26 @@ class OuterSurface {
  public:
   /// in    meshes: the body's, closed
   ///       least_gap: sheets nearer than this that face each other touch; world units
-  OuterSurface(const RayScene& rays, std::span<const std::uint32_t> meshes, double least_gap);
+  OuterSurface(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
+               double least_gap);
 
   Boundedness of(const SurfacePiece& piece) const;
+  /// Whether the piece has the solid behind it and the outside before it, however near another sheet is.
+  bool is_plain(const SurfacePiece& piece) const;
   /// Whether some pieces, of a few thousand tested, are no plain boundary.
-  bool has_inner(std::span<const SurfacePiece> pieces) const;
+  bool has_inner(std::size_t pieces, const std::function<SurfacePiece(std::size_t)>& piece_of) const;
 
  private:
   struct Windings;
-  Windings windings_at(const SurfacePoint& point, const Vec3d& direction) const;
-  bool touches(const SurfacePoint& point, const Vec3d& outward) const;
+  Windings windings_at(const SurfacePiece& piece) const;
+  Windings windings_at(const SurfacePiece& piece, const Vec3d& direction) const;
+  template <class Crossed>
+  void follow_to_end(const Vec3d& from, const Vec3d& direction, const Crossed& crossed) const;
+  bool touches(const SurfacePiece& piece, const Vec3d& outward) const;
+  double offset(const SurfacePiece& piece) const { return double(rays_.offset(piece.mesh, piece.middle)); }
 
   const RayScene& rays_;
+  std::optional<LineQuery> lines_;  ///< where meshes may coincide, which rays that go on behind a hit miss
   std::vector<bool> is_body_;
   double least_gap_;
 };
