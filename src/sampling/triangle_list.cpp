@@ -10,6 +10,7 @@
 
 #include "opaline/core/morton.h"
 #include "opaline/core/parallel.h"
+#include "opaline/geometry/surface_point.h"
 
 namespace opaline {
 namespace {
@@ -101,6 +102,8 @@ void TriangleList::measure() {
       const Vec3d normal = cross(t.b - t.a, t.c - t.a);
       cumulative_[i] = 0.5 * length(normal);
       normals_[i] = Vec3f(normalized(normal));
+      const SurfacePoint centre = surface_point(mesh(ids_[i]), ids_[i].triangle, 1.f / 3, 1.f / 3);
+      if (dot(centre.geometric, normals_[i]) < 0) normals_[i] = -normals_[i];  // a fold has reversed it
     }
   });
   std::partial_sum(cumulative_.begin(), cumulative_.end(), cumulative_.begin());
