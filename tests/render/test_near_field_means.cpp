@@ -44,10 +44,15 @@ RgbF expected_mean(const NearKernel& kernel, float radius) {
   return {lit.x / all.x, lit.y / all.y, lit.z / all.z};
 }
 
+Scene lit_ball() {
+  Scene scene = single_shape(SphereShape{{}, 10}, marble(), 2000);
+  scene.lights.push_back({"lamp", PointLight{{0, 0, 100}, {1, 1, 1}}});
+  return scene;
+}
+
 class NearFieldMeansOnABall : public testing::Test {
  protected:
-  NearFieldMeansOnABall()
-      : prepared_(single_shape(SphereShape{{}, 10}, marble(), 2000)), kernel_(prepared_.bodies[0]) {}
+  NearFieldMeansOnABall() : prepared_(lit_ball()), kernel_(prepared_.bodies[0]) {}
 
   void expect_mean(const NearFieldMeans& means, float relative) const {
     const RgbF mean = means.mean(0), expected = expected_mean(kernel_, radius_);
