@@ -117,7 +117,8 @@ class Session {
   /// A coarse picture (first_light.h) of the scene, which needs nothing of prepare but the rays.
   Image first_light(Monitor* monitor = nullptr);
 
-  /// Computes what the scene needs for its method and is not there; a second call does nothing.
+  /// Computes what the scene needs for its method and is not there; a second call does nothing. In a scene
+  /// without lights that is nothing: it is rendered as by Method::lambert.
   /// error Error{interrupted}: what was complete stays
   void prepare(Monitor* monitor = nullptr);
 
@@ -131,7 +132,7 @@ class Session {
   /// What the scene requires.
   const Plan& plan() const;
   const RayScene& rays() const;          ///< after prepare
-  std::span<const Body> bodies() const;  ///< after prepare
+  std::span<const Body> bodies() const;  ///< after prepare; none where nothing is precomputed
   /// Of the last picture in which light bounced, of whichever view and light; null: none of these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
   const SessionWork& work() const;  ///< of the last edit and since
