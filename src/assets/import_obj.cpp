@@ -135,9 +135,9 @@ class ObjImporter {
     double gain;  ///< times its colours
   };
 
-  /// A line of a library.
+  /// A line of a library, the file `mtl`.
   struct Statement {
-    const std::string& library;
+    const std::string& mtl;
     std::size_t line;
     const std::string &material, &keyword;
     std::string_view text;  ///< behind the keyword
@@ -196,15 +196,15 @@ class ObjImporter {
   /// A picture as a scene file has it, laid as its options say; null: there is no such file.
   /// out   file: its path
   Json texture_of(const Statement& statement, const MtlTexture& texture, std::string& file) {
-    file = find(texture.name, statement.library, statement.line, statement.keyword);
+    file = find(texture.name, statement.mtl, statement.line, statement.keyword);
     const std::string label =
         statement.keyword + ' ' + in_quotes(texture.name) + " of material " + in_quotes(statement.material);
     if (file.empty()) {
-      warn(statement.library, statement.line, label + ": there is no such file");
+      warn(statement.mtl, statement.line, label + ": there is no such file");
       return {};
     }
     for (const std::string& option : texture.not_carried)
-      warn(statement.library, statement.line, label + ": the option " + in_quotes(option) + " is left out");
+      warn(statement.mtl, statement.line, label + ": the option " + in_quotes(option) + " is left out");
     Json json{{"texture", scene_name_of(file, path_, mesh_path_)}};
     const auto& [scale_u, scale_v] = texture.scale;
     const std::array<double, 2> offset{texture.offset[0], 1 - scale_v - texture.offset[1]};

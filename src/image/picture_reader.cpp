@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "image/color_channels.h"
+#include "image/exr_chunks.h"
 #include "image/picture_file.h"
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
@@ -64,6 +65,7 @@ Image read_picture(const std::string& path) {
   const PictureSource source{path, {}};
   check_is_whole(source);
   const OpenPicture picture = open_picture(source, formats);
+  if (picture.format == "exr") check_exr_chunks(path);
   OIIO::ImageInput& input = *picture.input;
   const OIIO::ImageSpec& spec = input.spec();
   Image image = describe(spec);

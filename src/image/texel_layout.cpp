@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "image/display_window.h"
 #include "opaline/core/error.h"
 
 namespace opaline {
@@ -37,6 +38,7 @@ TexelLayout::TexelLayout(const OIIO::ImageSpec& file, const std::string& path)
     throw bad_file(path, "its data window lies outside of its display window",
                    "within " + window_text(file.full_x, file.full_y, file.full_width, file.full_height),
                    window_text(file.x, file.y, file.width, file.height));
+  check_display_window(path, double(file.width) * file.height, double(file.full_width) * file.full_height);
 }
 
 bool TexelLayout::is_plain() const {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <mutex>
-#include <new>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -96,18 +95,6 @@ Stamp stamp_of(const std::string& path) {
   return stamp;
 }
 
-/// What read returns. Libraries take sizes from a broken file's word.
-/// error Error{bad_input}: more memory than there is
-template <class Read>
-auto within_memory(const std::string& path, const Read& read) {
-  try {
-    return read();
-  } catch (const std::bad_alloc&) {
-    throw bad_file(path, "asks for more memory than there is",
-                   "a picture that is not broken, or a smaller one");
-  }
-}
-
 struct KnownTexture {
   Stamp stamp;
   std::weak_ptr<const TextureFile> texture;
@@ -123,8 +110,7 @@ void TextureFile::add_picture(int tile, const std::string& path, ColorSpace spac
   const std::array<std::uint64_t, 5> parts{kVersion, hash_, std::uint64_t(tile), std::uint64_t(space),
                                            content_hash(source)};
   hash_ = XXH3_64bits(parts.data(), sizeof parts);
-  std::unique_ptr<const CachedPicture> picture =
-      within_memory(path, [&] { return reader().open(std::move(source), space == ColorSpace::srgb); });
+  std::unique_ptr<const CachedPicture> picture = reader().open(std::move(source), space == ColorSpace::srgb);
   const std::optional<Texel> constant = picture->constant();
   constant_ = pictures_.empty() || constant == constant_ ? constant : std::nullopt;
   for (std::size_t c = 0; c < 4; ++c) has_channel_[c] = has_channel_[c] && picture->channels()[c];
@@ -151,8 +137,7 @@ std::shared_ptr<const TextureFile> TextureFile::open(const std::string& path, Co
 
 ColorSpace TextureFile::space_of_colors(const std::string& path) {
   const std::string first = is_tiled(path) ? tile_files(path).begin()->second : path;
-  const bool is_float = within_memory(path, [&] { return reader().is_float(source_of(first, true)); });
-  return is_float ? ColorSpace::linear : ColorSpace::srgb;
+  return reader().is_float(source_of(first, true)) ? ColorSpace::linear : ColorSpace::srgb;
 }
 
 std::size_t TextureFile::cache_limit() {

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "image/cached_picture.h"
+#include "image/exr_chunks.h"
 #include "image/linear_input.h"
 #include "image/picture_file.h"
 #include "image/texel_layout.h"
@@ -120,6 +121,7 @@ class OiioPicture : public CachedPicture {
     static std::atomic<std::uint64_t> count{0};
     check_is_whole(*source_);
     const OpenPicture opened = open_picture(*source_, kTextureFormats);
+    if (opened.format == "exr") check_exr_chunks(source_->path);
     const TexelLayout layout(opened.input->spec(), source_->path);
     const OIIO::ImageSpec spec = layout.spec(opened.input->spec());
     channels_ = layout.channels;

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "image/color_channels.h"
+#include "image/display_window.h"
 #include "lights/cumulative_shares.h"
 #include "opaline/core/error.h"
 #include "opaline/core/random.h"
@@ -64,6 +65,8 @@ std::vector<RgbF> colours_of(const std::string& path, const Image& image, Negati
   const ChannelPlaces places = channel_places(image.channels, path);
   if (std::min({places[0], places[1], places[2]}) < 0)
     throw bad_file(path, "has no colours for an environment", "the channels R, G and B, or Y, or one alone");
+  check_display_window(path, double(image.width) * image.height,
+                       double(image.full_width) * image.full_height);
   const auto width = std::size_t(image.full_width);
   std::vector<RgbF> pixels(width * std::size_t(image.full_height));
   for (std::size_t i = 0; i < pixels.size(); ++i) {

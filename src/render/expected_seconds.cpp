@@ -19,8 +19,8 @@ constexpr double kGather = 1.5e-4;       // light from other surfaces at a sampl
 constexpr double kCutSample = 1.5e-5;    // cut, and its fit
 constexpr double kCell = 8e-6;           // made and solved, three channels
 constexpr double kOfVaryingCell = 2e-5;  // its own medium
-constexpr double kEntry = 5e-7;          // of light at a sample, from one direction
-constexpr double kEntryCell = 2.2e-7;    // of its way inside, besides
+constexpr double kEntry = 5e-7;          // a direction from which light enters at a sample
+constexpr double kEntryCell = 2.2e-7;    // a cell that this light crosses
 constexpr double kWalk = 1e-5;
 constexpr double kPixel = 1e-6;        // a camera ray, shaded
 constexpr double kEntrySample = 2e-7;  // of `direct`, beside its shadow rays
@@ -29,7 +29,7 @@ constexpr double kSmallestWalks = 32;  // a sample, before an error is estimated
 struct Lighting {
   double rays = 0;  // shadow rays from a point
   double lights = 0;
-  double directions = 0;  // of the light that enters at a sample of volume_diffusion
+  double directions = 0;  // from which light enters at a sample of volume_diffusion
 };
 
 Lighting lighting_of(const Scene& scene) {
@@ -43,7 +43,7 @@ Lighting lighting_of(const Scene& scene) {
   return all;
 }
 
-/// Of the cells that light crosses where it enters, s.
+/// CPU seconds to follow the light that enters at a sample from one direction.
 double seconds_of_entry(const Medium& medium, const GroupPlan& group) {
   constexpr double kMostCells = 50;  // cells far inside are larger
   const double longest = max_component(make_diffuse_profile(medium).mean_free_path);

@@ -32,7 +32,7 @@ struct Keyed {
   TriangleId id;
 };
 
-/// Whether the corners are the same, the same way round.
+/// Returns whether two triangles have the same corners in the same cyclic order.
 bool coincide(const TriangleList::Corners& s, const TriangleList::Corners& t) {
   const std::array<Vec3d, 3> b{t.a, t.b, t.c};
   for (std::size_t k = 0; k < 3; ++k)
@@ -103,7 +103,7 @@ void TriangleList::measure() {
       cumulative_[i] = 0.5 * length(normal);
       normals_[i] = Vec3f(normalized(normal));
       const SurfacePoint centre = surface_point(mesh(ids_[i]), ids_[i].triangle, 1.f / 3, 1.f / 3);
-      if (dot(centre.geometric, normals_[i]) < 0) normals_[i] = -normals_[i];  // a fold has reversed it
+      if (dot(centre.geometric, normals_[i]) < 0) normals_[i] = -normals_[i];  // reversed by a fold
     }
   });
   std::partial_sum(cumulative_.begin(), cumulative_.end(), cumulative_.begin());

@@ -18,7 +18,7 @@ struct TriangleId {
 /// order of the file, and what was just read serves again.
 class TriangleList {
  public:
-  /// Of triangles of several meshes that coincide and face the same way the surface has one.
+  /// Takes one of the triangles of different meshes that coincide and face the same way.
   TriangleList(const World& world, std::span<const std::uint32_t> meshes);
   /// The same triangles of meshes that were `before` and have moved or bent since, in its order.
   TriangleList(const World& world, std::span<const std::uint32_t> meshes, const TriangleList& before,

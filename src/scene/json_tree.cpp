@@ -66,15 +66,15 @@ std::string name_byte(std::string_view text, std::size_t offset) {
   return buffer;
 }
 
-/// What to write instead of what JSON lacks and other languages have; empty: nothing known.
-std::string usual_mistake(std::string_view text, std::size_t offset) {
+/// Names what JSON expects where other languages write something else; empty where the mistake is no usual one.
+std::string expected_for_usual_mistake(std::string_view text, std::size_t offset) {
   const std::string_view rest = text.substr(std::min(offset, text.size()));
   if (rest.starts_with("'")) return "double quotes";
   if (rest.starts_with("True") || rest.starts_with("False") || rest.starts_with("None"))
     return "true, false or null in lower case";
-  const std::size_t before = text.find_last_not_of(" \t\r\n", offset > 0 ? offset - 1 : 0);
+  const std::string_view before = text.substr(0, text.find_last_not_of(" \t\r\n", offset - 1) + 1);
   const bool is_end = rest.starts_with('}') || rest.starts_with(']');
-  if (is_end && offset > 0 && before != text.npos && text[before] == ',') return "no comma before it";
+  if (is_end && offset > 0 && before.ends_with(',')) return "no comma before it";
   return {};
 }
 
@@ -130,7 +130,8 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
       expected = reason.substr(tail + 11);
       reason.resize(tail);
     }
-    if (const std::string mistake = usual_mistake(text_, offset); !mistake.empty()) expected = mistake;
+    if (std::string hint = expected_for_usual_mistake(text_, offset); !hint.empty())
+      expected = std::move(hint);
     throw error_at(document_, offset, override_index_, "broken JSON " + reason, expected,
                    name_byte(text_, offset));
   }

@@ -43,7 +43,8 @@ void Session::State::edit(Scene scene) {
     world = std::make_shared<const World>(loaded_world(scene, sources, keys, work));
     meshes = mesh_keys(*world);
   }
-  if (scene.lights.empty()) scene.settings.method = Method::lambert;  // as black, and nothing to precompute
+  if (scene.lights.empty())
+    scene.settings.method = Method::lambert;  // a black image, with nothing to precompute
   choose_models(scene, *world, reference_);
   Plan plan = make_plan(scene, *world);
   scene_ = std::move(scene);

@@ -242,7 +242,7 @@ class Cutter {
 
   /// Parts in the cells of pieces that are no plain boundary or reversed, and in the cells around; empty: there is none.
   std::vector<bool> folded_parts(const OuterSurface& outer, std::span<const std::uint32_t> meshes) const {
-    const auto piece_of = [&](std::size_t i) -> SurfacePiece {
+    const auto piece_of = [&](std::size_t i) -> BoundaryPiece {
       const Part& part = parts_[i];
       return {part.position, unit_normal(part.mesh, part.triangle), part.mesh, part.triangle};
     };

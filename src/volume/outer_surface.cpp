@@ -85,7 +85,7 @@ void OuterSurface::follow_to_end(const Vec3d& from, const Vec3d& direction, cons
 }
 
 // A ray from behind the piece to the outside; what it meets next to the piece lies in the same place.
-OuterSurface::Windings OuterSurface::windings_at(const SurfacePiece& piece, const Vec3d& direction) const {
+OuterSurface::Windings OuterSurface::windings_at(const BoundaryPiece& piece, const Vec3d& direction) const {
   const double offset = this->offset(piece), cosine = dot(piece.normal, direction);
   Windings windings;
   follow_to_end(Vec3d(piece.middle) - piece.normal * offset, direction, [&](double distance, int step) {
@@ -96,7 +96,7 @@ OuterSurface::Windings OuterSurface::windings_at(const SurfacePiece& piece, cons
 }
 
 /// Whether another sheet of the body faces it from nearby: light that leaves enters again.
-bool OuterSurface::touches(const SurfacePiece& piece, const Vec3d& outward) const {
+bool OuterSurface::touches(const BoundaryPiece& piece, const Vec3d& outward) const {
   bool found = false;
   follow(rays_, Vec3d(piece.middle) + outward * offset(piece), outward, least_gap_,
          [&](const TracedRay& traced) {
@@ -109,7 +109,7 @@ bool OuterSurface::touches(const SurfacePiece& piece, const Vec3d& outward) cons
 }
 
 // By two of three rays: one may run along an edge.
-OuterSurface::Windings OuterSurface::windings_at(const SurfacePiece& piece) const {
+OuterSurface::Windings OuterSurface::windings_at(const BoundaryPiece& piece) const {
   const Vec3d& normal = piece.normal;
   const Windings first = windings_at(piece, normal);
   if (first.are_plain()) return first;
@@ -121,7 +121,7 @@ OuterSurface::Windings OuterSurface::windings_at(const SurfacePiece& piece) cons
   return third == second ? second : first;
 }
 
-Boundedness OuterSurface::of(const SurfacePiece& piece) const {
+Boundedness OuterSurface::of(const BoundaryPiece& piece) const {
   const Windings windings = windings_at(piece);
   const bool is_turned = windings.before != 0;
   if ((windings.behind != 0) == is_turned) return {0, false};
@@ -129,12 +129,12 @@ Boundedness OuterSurface::of(const SurfacePiece& piece) const {
   return {1 / float(std::abs(windings.behind - windings.before)), is_turned};
 }
 
-bool OuterSurface::is_plain(const SurfacePiece& piece) const {
+bool OuterSurface::is_plain(const BoundaryPiece& piece) const {
   return windings_at(piece).are_plain();
 }
 
 bool OuterSurface::has_inner(std::size_t pieces,
-                             const std::function<SurfacePiece(std::size_t)>& piece_of) const {
+                             const std::function<BoundaryPiece(std::size_t)>& piece_of) const {
   const std::size_t step = std::max<std::size_t>(1, pieces / kTested);
   for (std::size_t i = 0; i < pieces; i += step)
     if (!is_plain(piece_of(i))) return true;

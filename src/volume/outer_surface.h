@@ -15,7 +15,7 @@
 namespace opaline {
 
 /// A small flat piece of a body's meshes.
-struct SurfacePiece {
+struct BoundaryPiece {
   Vec3f middle;  ///< world units
   Vec3d normal;  ///< unit, by the winding of its triangle
   std::uint32_t mesh = 0, triangle = 0;
@@ -37,20 +37,20 @@ class OuterSurface {
   OuterSurface(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
                double least_gap);
 
-  Boundedness of(const SurfacePiece& piece) const;
-  /// Whether the piece has the solid behind it and the outside before it, however near another sheet is.
-  bool is_plain(const SurfacePiece& piece) const;
-  /// Whether some pieces, of a few thousand tested, are no plain boundary.
-  bool has_inner(std::size_t pieces, const std::function<SurfacePiece(std::size_t)>& piece_of) const;
+  Boundedness of(const BoundaryPiece& piece) const;
+  /// Returns whether the solid is behind the piece and the outside in front of it, whatever other sheets are near.
+  bool is_plain(const BoundaryPiece& piece) const;
+  /// Tests a few thousand of the pieces; returns whether any of them is not plain.
+  bool has_inner(std::size_t pieces, const std::function<BoundaryPiece(std::size_t)>& piece_of) const;
 
  private:
   struct Windings;
-  Windings windings_at(const SurfacePiece& piece) const;
-  Windings windings_at(const SurfacePiece& piece, const Vec3d& direction) const;
+  Windings windings_at(const BoundaryPiece& piece) const;
+  Windings windings_at(const BoundaryPiece& piece, const Vec3d& direction) const;
   template <class Crossed>
   void follow_to_end(const Vec3d& from, const Vec3d& direction, const Crossed& crossed) const;
-  bool touches(const SurfacePiece& piece, const Vec3d& outward) const;
-  double offset(const SurfacePiece& piece) const { return double(rays_.offset(piece.mesh, piece.middle)); }
+  bool touches(const BoundaryPiece& piece, const Vec3d& outward) const;
+  double offset(const BoundaryPiece& piece) const { return double(rays_.offset(piece.mesh, piece.middle)); }
 
   const RayScene& rays_;
   std::optional<LineQuery> lines_;  ///< where meshes may coincide, which rays that go on behind a hit miss

@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,8 +38,6 @@ void try_input(const Action& action) {
     if (error.kind == ErrorKind::bad_input) return;
     std::fprintf(stderr, "not bad input but: %s\n", error.what());
     std::abort();
-  } catch (const std::bad_alloc&) {
-    // The targets run in little memory; the program says that it has run out.
   }
 }
 

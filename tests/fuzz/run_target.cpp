@@ -22,10 +22,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kBatch = 2000;               // inputs of one process
-constexpr std::size_t kLongest = 1 << 22;          // bytes of an input
-constexpr rlim_t kMemory = 4 * (rlim_t(1) << 30);  // of a process, beyond what it has at its start
-constexpr int kSeconds = 20;                       // of CPU for one input
+constexpr std::size_t kBatch = 2000;         // inputs of one process
+constexpr std::size_t kLongest = 1 << 22;    // bytes of an input
+constexpr rlim_t kMemory = rlim_t(1) << 30;  // of a process, beyond what it has at its start
+constexpr int kSeconds = 20;                 // of CPU for one input
 
 struct Options {
   std::vector<std::string> corpus;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 
 #include "../core/scratch_folder.h"
@@ -231,6 +232,51 @@ TEST(TextureFile, FillsTheDisplayWindow) {
                 .find("its data window lies outside of its display window (expected within 64 x 64 at 0,0, "
                       "got 8 x 8 at 100,0)"),
             std::string::npos);
+}
+
+// Claim: a header cannot ask for more empty pixels than 4096 x 4096, or 64 times those that the file has. Source: by hand.
+// Fails if a file of a kilobyte is padded to gigabytes.
+TEST(TextureFile, BoundsEmptyPixels) {
+  const ScratchFolder folder;
+  const auto message_of_height = [&](int height) {
+    OIIO::ImageSpec spec(8, 8, 1, OIIO::TypeFloat);
+    spec.full_width = 4096;
+    spec.full_height = height;
+    put_channels(folder.file("tall.exr"), spec, {"Y"}, {std::vector<float>{1}, std::vector<float>{1}});
+    return message_of(folder.file("tall.exr"));
+  };
+  EXPECT_EQ(message_of_height(4096).find("display window"), std::string::npos);
+  EXPECT_NE(message_of_height(4097).find("its display window is too large for its data window"),
+            std::string::npos);
+}
+
+// Claim: an EXR whose chunks do not hold all of its pixels is refused, by rows and by tiles: halves that the header calls floats
+// (twice the bytes), an empty chunk. Source: the OpenEXR file layout. Fails if pixels that the file does not have are taken from
+// what memory held before.
+TEST(TextureFile, RefusesChunksWithoutTheirPixels) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("chunks.exr");
+  const auto put_and_change = [&](const std::string& compression, int tile, const auto& change) {
+    OIIO::ImageSpec spec(64, 16, 1, OIIO::TypeHalf);
+    spec.tile_width = spec.tile_height = tile;
+    spec.attribute("compression", compression);
+    put_channels(path, spec, {"Y"}, {std::vector<float>{1}, std::vector<float>{.5f}});
+    EXPECT_NO_THROW(TextureFile::open(path, ColorSpace::linear)) << compression << tile;
+    std::string bytes = bytes_of(path);
+    change(bytes);
+    put_bytes(path, bytes);
+    EXPECT_NE(message_of(path).find("the picture is damaged: "), std::string::npos) << compression << tile;
+  };
+  const std::string half("Y\0\1\0\0\0", 6);
+  for (const char* const compression : {"none", "rle", "zip", "zips", "piz", "pxr24"})
+    for (const int tile : {0, 16})
+      put_and_change(compression, tile, [&](std::string& bytes) { bytes[bytes.find(half) + 2] = 2; });
+  put_and_change("zip", 0, [](std::string& bytes) {
+    // Behind the offset table, whose only entry is its place.
+    std::uint64_t chunk = 8, entry = 0;
+    while (std::memcpy(&entry, &bytes[chunk - 8], 8), entry != chunk) ++chunk;
+    std::memset(&bytes[chunk + 4], 0, 4);  // its size, after its row
+  });
 }
 
 // Claim: where all texels are alike their value is exact, that of "#808080" in a scene file; one other texel makes the

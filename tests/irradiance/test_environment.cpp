@@ -344,6 +344,11 @@ TEST_F(EnvironmentFile, FillsTheDisplayWindow) {
     EXPECT_EQ(picture->radiance(normalized(Vec3d{1, -1, 0})), RgbF(0));
     EXPECT_EQ(picture->radiance(normalized(Vec3d{-1, 1, 0})), RgbF(0));
   }
+  Image small = read_image(write(32, 16, 2, {"Y"}));
+  small.full_width = 8192;  // 2^25 pixels for 512
+  small.full_height = 4096;
+  write_raw(small);
+  EXPECT_THROW(scene(), Error);
 }
 
 }  // namespace

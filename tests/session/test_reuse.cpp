@@ -265,7 +265,7 @@ TEST(Reuse, RayBuild) {
 }
 
 // Claim: in a scene without lights nothing is precomputed, and light that comes back finds the samples of before.
-// Source: such a picture is black. Fails if: it is computed that it is, or samples go with the lights.
+// Source: such an image is black. Fails if: its bodies are sampled, or samples go with the lights.
 TEST(Reuse, NoLights) {
   const Scene lit = two_balls();
   Scene dark = lit;
@@ -277,12 +277,16 @@ TEST(Reuse, NoLights) {
     EXPECT_EQ(session.work().samples_placed, 0u);
     EXPECT_EQ(channel(black, black.width / 2, black.height / 2, "R"), 0);
   }
-  Session session;
-  const Image before = picture_of(session, lit);
   dark.settings.method = lit.settings.method;
-  picture_of(session, dark);
-  EXPECT_TRUE(same_pixels(picture_of(session, lit), before));
-  EXPECT_EQ(session.work().samples_placed, 0u);
+  for (const bool hold_view : {false, true}) {
+    Session session;
+    session.hold_view(hold_view);
+    const Image before = picture_of(session, lit);
+    EXPECT_TRUE(same_pixels(picture_of(session, dark), cold_picture(dark)));
+    EXPECT_EQ(session.work().lights_traced + session.work().nodes_built, 0u);
+    EXPECT_TRUE(same_pixels(picture_of(session, lit), before));
+    EXPECT_EQ(session.work().samples_placed, 0u);
+  }
 }
 
 // Claim: an edit that cannot be loaded leaves the session with the scene before. Source: session.h. Fails if:

@@ -67,7 +67,7 @@ struct FoldDifference {
   double mean = 0, largest = 0;  ///< over the clean ball's mean exitance
 };
 
-/// Of what pictures show at the elements of the clean ball.
+/// Compares what images show at the elements of the clean ball.
 FoldDifference difference_of_folds(const LitBall& folded, const LitBall& clean) {
   const auto fit_of = [](const LitBall& lit) {
     return CellFit(lit.body.surface.samples, lit.exitance.exitance, lit.exitance.error);

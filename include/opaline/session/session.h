@@ -132,7 +132,7 @@ class Session {
   /// What the scene requires.
   const Plan& plan() const;
   const RayScene& rays() const;          ///< after prepare
-  std::span<const Body> bodies() const;  ///< after prepare; as before, or none, where it computes nothing
+  std::span<const Body> bodies() const;  ///< after prepare
   /// Of the last picture in which light bounced, of whichever view and light; null: none of these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
   const SessionWork& work() const;  ///< of the last edit and since
