@@ -49,7 +49,8 @@ double smallest_cell(const Plan& plan) {
 double all_cells(const Plan& plan) {
   double cells = 0;
   for (const GroupPlan& group : plan.groups)
-    if (group.method == Method::volume_diffusion) cells += expected_cells(group.area, group.cell);
+    if (group.method == Method::volume_diffusion)
+      cells += expected_cells(group.area, group.thickness, group.cell);
   return cells;
 }
 

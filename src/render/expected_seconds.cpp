@@ -12,18 +12,19 @@ namespace opaline {
 namespace {
 
 // CPU seconds, fitted to what bench_plan prints.
-constexpr double kTriangle = 4e-6;  // read, mended, in the rays' tree
-constexpr double kShadowRay = 2.5e-7;
-constexpr double kSample = 1.5e-5;       // placed, in the tree
-constexpr double kGather = 1.5e-4;       // light from other surfaces at a sample
-constexpr double kCutSample = 1.5e-5;    // cut, and its fit
-constexpr double kCell = 8e-6;           // made and solved, three channels
-constexpr double kOfVaryingCell = 2e-5;  // its own medium
-constexpr double kEntry = 5e-7;          // a direction from which light enters at a sample
-constexpr double kEntryCell = 2.2e-7;    // a cell that this light crosses
+constexpr double kTriangle = 1e-6;  // read, mended, in the rays' tree
+constexpr double kShadowRay = 1e-7;
+constexpr double kSample = 8e-6;         // placed, in the tree
+constexpr double kGather = 6e-5;         // light from other bodies at a sample
+constexpr double kGatherAlone = 1e-5;    // the same where there is one body
+constexpr double kCutSample = 8e-6;      // cut, and its fit
+constexpr double kCell = 4e-6;           // made and solved, three channels
+constexpr double kOfVaryingCell = 1e-5;  // its own medium
+constexpr double kEntry = 2e-7;          // a direction from which light enters at a sample
+constexpr double kEntryCell = 9e-8;      // a cell that this light crosses
 constexpr double kWalk = 1e-5;
-constexpr double kPixel = 1e-6;        // a camera ray, shaded
-constexpr double kEntrySample = 2e-7;  // of `direct`, beside its shadow rays
+constexpr double kPixel = 5e-7;        // a camera ray, shaded
+constexpr double kEntrySample = 1e-7;  // of `direct`, beside its shadow rays
 constexpr double kSmallestWalks = 32;  // a sample, before an error is estimated
 
 struct Lighting {
@@ -51,15 +52,16 @@ double seconds_of_entry(const Medium& medium, const GroupPlan& group) {
 }
 
 double seconds_of_body(const Scene& scene, const GroupPlan& group, const Lighting& lighting) {
+  const double gather = bounces_of(scene) == 0 ? 0 : scene.shapes.size() > 1 ? kGather : kGatherAlone;
   const auto samples = double(group.samples);
   const double solutions = bounces_of(scene) > 0 ? 2 : 1;
   switch (group.method) {
     case Method::hierarchical:
-      return samples * (kSample + kShadowRay * lighting.rays + (bounces_of(scene) > 0 ? kGather : 0));
+      return samples * (kSample + kShadowRay * lighting.rays + gather);
     case Method::volume_diffusion: {
       const double cell =
           kCell * solutions + (varies_inside(scene.media[group.medium], group.method) ? kOfVaryingCell : 0);
-      return expected_cells(group.area, group.cell) * cell +
+      return expected_cells(group.area, group.thickness, group.cell) * cell +
              samples * (kCutSample + kShadowRay * lighting.rays +
                         solutions * lighting.directions * seconds_of_entry(scene.media[group.medium], group));
     }

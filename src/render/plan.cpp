@@ -110,11 +110,14 @@ double needle_share(const World& world, const GroupPlan& group) {
 }
 
 // Measured: where a cell cuts the surface, its exitance and error, while all are fitted.
-constexpr std::size_t kBytesOfCutSample = 640;
+constexpr std::size_t kBytesOfCutSample = 600;
 // Of a cell whose medium is its own: that, and what flows to each neighbour.
 constexpr double kBytesOfCellMedium = 350;
 // Of a cut sample besides, where light bounces: weights kept for a second fit, that fit, what is gathered and what it brings.
-constexpr std::size_t kBytesOfBouncedSample = 600 + 170 + 40;
+constexpr std::size_t kBytesOfBouncedSample = 500;
+
+// Measured: places of the image where bounced light is gathered, and more in corners.
+constexpr std::size_t kBytesOfBouncePlaces = 12'000'000;
 
 // Measured: what finds the cells, their fits and exitance; of each channel counts of a pass's chunks, and of each light
 // sums.
@@ -205,7 +208,7 @@ void list_stages(const Scene& scene, const World& world, std::span<const Light> 
         plan.stages.push_back(
             fmt::format("diffusion: about {:.2g} cells in {}, {:.3g} mm at the surface: {:.3g} mean "
                         "free paths",
-                        expected_cells(group.area, group.cell), group.name, group.cell,
+                        expected_cells(group.area, group.thickness, group.cell), group.name, group.cell,
                         group.cell / group.smallest_mean_free_path));
       else if (method == Method::volume_diffusion)
         plan.stages.push_back(group.name +
@@ -307,13 +310,12 @@ Plan make_plan(const Scene& scene, const World& world) {
   for (const EnvironmentPicture* environment : environments)
     if (!environment->warning().empty()) plan.warnings.push_back(environment->warning());
   for (std::string& text : lights_that_miss(scene, world)) plan.warnings.push_back(std::move(text));
-  // Measured: the libraries; for pixels that are not empty 26 floats of layers, and 15 to 23 bytes on their
-  // way into the layers and to the file.
-  const std::size_t seen = seen_pixels(scene, world);
-  plan.bytes = 73'000'000 + scene.asset_bytes + seen * 136;
+  // Measured by bench_plan: the libraries; layers of the pixels that are not empty, and on their way to the file.
+  const std::size_t seen = seen_pixels(scene, lights, world);
+  plan.bytes = 59'000'000 + scene.asset_bytes + seen * 125;
   for (const Mesh& mesh : world.meshes) {
     plan.triangles += mesh.triangles.size();
-    plan.bytes += mesh.positions.size() * 48 + mesh.triangles.size() * 140;  // and Embree's tree
+    plan.bytes += mesh.positions.size() * 48 + mesh.triangles.size() * 195;  // and Embree's tree
     plan.bytes +=                                                            // as read, and mended
         2 * (mesh.uvs.size() * sizeof(CornerUvs) + mesh.tangents.size() * sizeof(CornerTangents) +
              mesh.colors.size() * sizeof(CornerColors));
@@ -338,7 +340,7 @@ Plan make_plan(const Scene& scene, const World& world) {
           std::size_t(std::max(1., in_wires) * double(group.samples)) *
           (kBytesOfCutSample + 4 * lights.size() + (bounces_of(scene) > 0 ? kBytesOfBouncedSample : 0));
       plan.bytes += std::size_t((kBytesOfCell + (varies ? kBytesOfCellMedium : 0)) *
-                                expected_cells(group.area, group.cell));
+                                expected_cells(group.area, group.thickness, group.cell));
       continue;
     }
     choose_samples(scene, fewest, group, plan.warnings);
@@ -352,9 +354,9 @@ Plan make_plan(const Scene& scene, const World& world) {
     warn_of_near_lights(scene, world, group, plan.warnings);
     warn_of_thin_body(group, plan.warnings);
     // Measured at 1 and 10 million: samples, weights and tree while its nodes are written.
-    plan.bytes += group.samples * (191 + 4 * lights.size());
+    plan.bytes += group.samples * (191 + 4 * lights.size() + (bounces_of(scene) > 0 ? 165 : 0));
     if (scene.settings.evaluator == EvaluatorKind::surface_cache)
-      plan.bytes += most_wanted_places(group, world) * kBytesOfPlace;
+      plan.bytes += expected_cache_places(group, world) * kBytesOfPlace;
     plan.bytes += std::size_t(needle_share(world, group) * double(group.samples) * 250);
     samples += group.samples;
   }
@@ -362,6 +364,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   // finest level; and surface caches have their places, more as there are more pixels. Measured on bunnies: 30 bytes a
   // pixel at 512 x 512, 300 to 500 a sample above.
   plan.bytes += std::min(45 * seen, 500 * samples);
+  if (bounces_of(scene) > 0) plan.bytes += kBytesOfBouncePlaces;
   plan.bytes += std::size_t(walked);
   plan.rays = cheaper_build(scene, lights, plan);
   list_stages(scene, world, lights, plan);

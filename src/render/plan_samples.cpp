@@ -117,7 +117,7 @@ double widest_cell(const Settings& settings) {
 
 bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group) {
   const double widest = widest_cell(settings) * group.smallest_mean_free_path;
-  return widest > 0 && expected_cells(group.area, widest) > kMostCells;
+  return widest > 0 && expected_cells(group.area, 0, widest) > kMostCells;
 }
 
 bool is_too_thin_for_cells(const GroupPlan& group) {
@@ -141,7 +141,7 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
     group.cell = std::min(group.cell, std::max(group.thickness / kAcrossThin, kSmallest * group.cell));
   group.cell = std::min(group.cell, std::sqrt(group.area / kFewestFaces));
   const double most_faces =
-      std::min(kMostCells / expected_cells(1, 1), double(scene.settings.max_samples) / kCutSamplesPerFace);
+      std::min(kMostCells / expected_cells(1, 0, 1), double(scene.settings.max_samples) / kCutSamplesPerFace);
   group.cell = std::max(group.cell, std::sqrt(group.area / most_faces));
   if (group.cell > widest_cell(scene.settings) * length)
     warnings.push_back(fmt::format(

@@ -7,9 +7,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "lights/light_of.h"
 #include "opaline/lights/light.h"
+#include "opaline/lights/light_tree.h"
 #include "opaline/render/render.h"
 #include "render/camera_rays.h"
 
@@ -70,14 +73,34 @@ class SeenCells {
   std::array<std::uint64_t, kCells> seen_{};  // row by row, a bit a column
 };
 
+/// Returns false where a light may be seen anywhere.
+bool add_light(const Light& light, const CameraRays& rays, SeenCells& cells) {
+  if (const auto* many = std::get_if<ManyLights>(&light.source))
+    return std::ranges::all_of(many->tree->lights(), [&](const Light& one) {
+      return !is_visible(one) || add_light(one, rays, cells);
+    });
+  const std::optional<Lamp> lamp = lamp_of(light);
+  if (!lamp) return false;
+  CellBox around{kCells, kCells, kCells, kCells};
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto side = [&](int axis) { return corner >> axis & 1 ? lamp->radius : -lamp->radius; };
+    const CameraRays::FilmPlace place = rays.film_place(lamp->center + Vec3d{side(0), side(1), side(2)});
+    if (!(place.depth > 0)) return false;
+    around = around_both(around, cells.around(place));
+  }
+  cells.add(around);
+  return true;
+}
+
 }  // namespace
 
-std::size_t seen_pixels(const Scene& scene, const World& world) {
+std::size_t seen_pixels(const Scene& scene, std::span<const Light> lights, const World& world) {
   const Rectangle part = rendered_part(scene.film);
   const std::size_t all = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0);
-  if (std::ranges::any_of(scene.lights, [](const Light& light) { return !is_delta(light); })) return all;
   const CameraRays rays(scene.camera, scene.film, world);
   SeenCells cells(part);
+  for (const Light& light : lights)
+    if (light.is_seen && is_visible(light) && !add_light(light, rays, cells)) return all;
   std::vector<CellBox> around;  // each vertex
   for (const Mesh& mesh : world.meshes) {
     around.clear();

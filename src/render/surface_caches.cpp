@@ -41,13 +41,23 @@ bool is_worth_beginning(const PrecomputeInput& input, const Body& group, std::si
                                 kBegin / kMost * double(most_places);
 }
 
+std::size_t vertices_of(const GroupPlan& group, const World& world) {
+  std::size_t vertices = 0;
+  for (const std::uint32_t mesh : group.meshes) vertices += world.meshes[mesh].positions.size();
+  return vertices;
+}
+
 }  // namespace
 
 std::size_t most_wanted_places(const GroupPlan& group, const World& world) {
-  constexpr std::size_t kOfVertex = 4, kOfSample = 16;  // smooth surfaces take about 1 and 2 of each
-  std::size_t vertices = 0;
-  for (const std::uint32_t mesh : group.meshes) vertices += world.meshes[mesh].positions.size();
-  return kOfVertex * vertices + kOfSample * group.samples;
+  constexpr std::size_t kOfVertex = 4, kOfSample = 16;
+  return kOfVertex * vertices_of(group, world) + kOfSample * group.samples;
+}
+
+std::size_t expected_cache_places(const GroupPlan& group, const World& world) {
+  constexpr std::size_t kOfVertex = 6, kOfSample = 2;  // measured by bench_plan, beside shadow edges
+  return std::min(most_wanted_places(group, world),
+                  kOfVertex * vertices_of(group, world) + kOfSample * group.samples);
 }
 
 std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::span<const Body> groups,

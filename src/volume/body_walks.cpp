@@ -206,13 +206,11 @@ BodyWalks::BodyWalks(const VolumeInput& input, std::size_t starts)
 double BodyWalks::expected_bytes(const World& world, std::span<const std::uint32_t> meshes,
                                  double mean_free_path) {
   Bounds box;
-  double area = 0;
   for (const std::uint32_t m : meshes) {
     const Bounds other = bounds(world.meshes[m]);
     box = {component_min(box.low, other.low), component_max(box.high, other.high)};
-    area += world.measures[m].area;
   }
-  return FreeDistance::expected_bytes(box, kVoxel * mean_free_path, area);
+  return FreeDistance::expected_bytes(world, box, kVoxel * mean_free_path);
 }
 
 SphereExits BodyWalks::exits_of(std::size_t pass) const {

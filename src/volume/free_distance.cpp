@@ -18,6 +18,26 @@ constexpr int gap2(int steps) {
   return gap * gap;
 }
 
+/// Into how many pieces the sides of a triangle are cut, so that none is longer than an edge: as many, squared, in all.
+int pieces_along(const Vec3d& ab, const Vec3d& ac, double inverse_edge) {
+  const Vec3d bc = ac - ab;
+  const double longest = std::sqrt(std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)}));
+  return int(std::clamp(std::ceil(longest * inverse_edge), 1.0, 4096.0));
+}
+
+/// The share of a triangle's box that lies in another.
+double share_inside(const Bounds& box, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d low = component_min(component_min(a, b), c), high = component_max(component_max(a, b), c);
+  double share = 1;
+  for (const auto along : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+    const double length = high.*along - low.*along,
+                 inside = std::min(high.*along, box.high.*along) - std::max(low.*along, box.low.*along);
+    if (inside < 0) return 0;
+    if (length > 0) share *= inside / length;
+  }
+  return share;
+}
+
 /// Whether the plane of a triangle may cross a box: (middle, half edge), normal of any length.
 bool crosses(const Vec3d& corner, const Vec3d& normal, const Vec3d& middle, double half) {
   const double reach = half * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
@@ -43,13 +63,22 @@ double FreeDistance::edge_for(const Vec3d& size, double edge) {
   return edge;
 }
 
-double FreeDistance::expected_bytes(const Bounds& box, double edge, double area) {
-  constexpr double kPerFace = 15;  // pieces in voxels, for an area of a voxel's face
+double FreeDistance::expected_bytes(const World& world, const Bounds& box, double edge) {
+  constexpr double kVoxelsOfPiece = 5;  // measured: 3 to 6
   constexpr double kOfVoxel = sizeof(std::uint8_t) + sizeof(Plane) + 2 * sizeof(std::uint32_t);
   const Vec3d size = box.high - box.low;
   const double used = edge_for(size, edge);
+  const Bounds around{box.low - Vec3d(used), box.high + Vec3d(used)};
+  double pieces = 0;
+  for (const Mesh& mesh : world.meshes)
+    for (const auto& [i, j, k] : mesh.triangles) {
+      const Vec3d &a = mesh.positions[i], &b = mesh.positions[j], &c = mesh.positions[k];
+      const double share = share_inside(around, a, b, c);
+      if (share > 0) pieces += share * std::pow(pieces_along(b - a, c - a, 1 / used), 2);
+    }
   const Vec3d counts = counts_of(size, used);
-  return counts.x * counts.y * counts.z * kOfVoxel + area / (used * used) * kPerFace * 3 * sizeof(Corner);
+  return counts.x * counts.y * counts.z * kOfVoxel +
+         pieces * (sizeof(Piece) + kVoxelsOfPiece * sizeof(std::uint32_t));
 }
 
 FreeDistance::FreeDistance(const World& world, const Bounds& box, double edge, double reach) {
@@ -63,15 +92,15 @@ FreeDistance::FreeDistance(const World& world, const Bounds& box, double edge, d
   low_ = .5 * (box.low + box.high) - .5 * edge_ * counts_;
   for (std::size_t i = 0; i < distances_.size(); ++i)
     distances_[i] = std::sqrt(double(i)) * edge_ * (1 - 1e-6);
-  const Corners corners = corners_of(world);
+  const Pieces pieces = pieces_of(world);
   steps_.resize(nx_ * ny_ * nz_);
   for (std::size_t v = 0; v < steps_.size(); ++v)
-    steps_[v] = corners.first[v + 1] > corners.first[v] ? 0 : kFar;
+    steps_[v] = pieces.first[v + 1] > pieces.first[v] ? 0 : kFar;
   spread();
   planes_.resize(steps_.size());
   parallel_chunks(steps_.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t v = begin; v < end; ++v)
-      if (steps_[v] == 0) planes_[v] = plane_of(v, corners);
+      if (steps_[v] == 0) planes_[v] = plane_of(v, pieces);
   });
 }
 
@@ -81,10 +110,8 @@ template <class Use>
 void FreeDistance::for_pieces(const World& world, const Use& use) const {
   for (const Mesh& mesh : world.meshes)
     for (const auto& [i, j, k] : mesh.triangles) {
-      const Vec3d &a = mesh.positions[i], ab = mesh.positions[j] - a, ac = mesh.positions[k] - a,
-                  bc = ac - ab;
-      const double longest = std::sqrt(std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)}));
-      const int n = int(std::clamp(std::ceil(longest * inverse_edge_), 1.0, 4096.0));
+      const Vec3d &a = mesh.positions[i], ab = mesh.positions[j] - a, ac = mesh.positions[k] - a;
+      const int n = pieces_along(ab, ac, inverse_edge_);
       const Vec3d normal = cross(ab, ac) * (.5 / (double(n) * double(n)));
       const auto at = [&](int u, int v) { return a + ab * (double(u) / n) + ac * (double(v) / n); };
       for (int v = 0; v < n; ++v)
@@ -119,20 +146,30 @@ void FreeDistance::for_voxels(const std::array<Vec3d, 3>& piece, const Use& use)
       }
 }
 
-FreeDistance::Corners FreeDistance::corners_of(const World& world) const {
-  Corners result;
+FreeDistance::Pieces FreeDistance::pieces_of(const World& world) const {
+  Pieces result;
   result.first.resize(nx_ * ny_ * nz_ + 1);
-  for_pieces(world, [&](const std::array<Vec3d, 3>& piece, const Vec3d&) {
-    for_voxels(piece, [&](std::size_t voxel) { result.first[voxel + 1] += 3; });
+  std::size_t count = 0;
+  for_pieces(world, [&](const std::array<Vec3d, 3>& corners, const Vec3d&) {
+    std::size_t voxels = 0;
+    for_voxels(corners, [&](std::size_t voxel) {
+      ++result.first[voxel + 1];
+      ++voxels;
+    });
+    if (voxels > 0) ++count;
   });
   for (std::size_t v = 1; v < result.first.size(); ++v) result.first[v] += result.first[v - 1];
-  result.corners.resize(result.first.back());
+  result.of_voxels.resize(result.first.back());
+  result.pieces.reserve(count);
   std::vector<std::uint32_t> next(result.first.begin(), result.first.end() - 1);
-  for_pieces(world, [&](const std::array<Vec3d, 3>& piece, const Vec3d& normal) {
-    for_voxels(piece, [&](std::size_t voxel) {
-      for (const Vec3d& corner : piece)
-        result.corners[next[voxel]++] = {Vec3f(corner), Vec3f(normal * (1 / 3.0))};
+  for_pieces(world, [&](const std::array<Vec3d, 3>& corners, const Vec3d& normal) {
+    std::size_t voxels = 0;
+    for_voxels(corners, [&](std::size_t voxel) {
+      result.of_voxels[next[voxel]++] = std::uint32_t(result.pieces.size());
+      ++voxels;
     });
+    const auto& [a, b, c] = corners;
+    if (voxels > 0) result.pieces.push_back({{Vec3f(a), Vec3f(b), Vec3f(c)}, Vec3f(normal * (1 / 3.0))});
   });
   return result;
 }
@@ -166,7 +203,7 @@ void FreeDistance::spread() {
 }
 
 // Along the mean normal of what lies within reach. Corners are rounded to floats: a little less is taken.
-FreeDistance::Plane FreeDistance::plane_of(std::size_t voxel, const Corners& corners) const {
+FreeDistance::Plane FreeDistance::plane_of(std::size_t voxel, const Pieces& pieces) const {
   const int steps = int(std::ceil(reach_ * inverse_edge_));
   const double within2 = reach_ * inverse_edge_ * (reach_ * inverse_edge_);
   const auto x0 = int(voxel % nx_), y0 = int(voxel / nx_ % ny_), z0 = int(voxel / (nx_ * ny_));
@@ -176,18 +213,22 @@ FreeDistance::Plane FreeDistance::plane_of(std::size_t voxel, const Corners& cor
         for (int x = std::max(0, x0 - steps); x <= std::min(int(nx_) - 1, x0 + steps); ++x) {
           if (double(gap2(x - x0) + gap2(y - y0) + gap2(z - z0)) > within2) continue;
           const std::size_t other = std::size_t(x) + nx_ * (std::size_t(y) + ny_ * std::size_t(z));
-          for (std::uint32_t i = corners.first[other]; i < corners.first[other + 1]; ++i)
-            use(corners.corners[i]);
+          for (std::uint32_t i = pieces.first[other]; i < pieces.first[other + 1]; ++i)
+            use(pieces.pieces[pieces.of_voxels[i]]);
         }
   };
   Vec3f sum;
-  for_near([&](const Corner& corner) { sum += corner.normal; });
+  for_near([&](const Piece& piece) {
+    for (std::size_t c = 0; c < 3; ++c) sum += piece.normal;
+  });
   const Vec3d mean = normalized(Vec3d(sum)) * kNormal;
   Plane plane{std::int8_t(std::lround(mean.x)), std::int8_t(std::lround(mean.y)),
               std::int8_t(std::lround(mean.z)), kNoPlane};
   const Vec3f normal(float(plane.x), float(plane.y), float(plane.z));
   float least = std::numeric_limits<float>::infinity();
-  for_near([&](const Corner& corner) { least = std::min(least, dot(normal, corner.place)); });
+  for_near([&](const Piece& piece) {
+    for (const Vec3f& corner : piece.corners) least = std::min(least, dot(normal, corner));
+  });
   if (!std::isfinite(least) || mean == Vec3d{}) return plane;
   const double margin = 1e-5 * kNormal * (std::abs(low_.x) + std::abs(low_.y) + std::abs(low_.z) + edge_);
   const double offset =

@@ -23,8 +23,8 @@ class FreeDistance {
   FreeDistance(const World& world, const Bounds& box, double edge, double reach);
 
   static constexpr std::size_t kMostVoxels = std::size_t(1) << 23;
-  /// What making one takes at the most, of a surface of that area in the box.
-  static double expected_bytes(const Bounds& box, double edge, double area);
+  /// What making one takes.
+  static double expected_bytes(const World& world, const Bounds& box, double edge);
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   /// Where a point is in the grid.
@@ -63,15 +63,16 @@ class FreeDistance {
   };
   static constexpr std::int8_t kNoPlane = -128;
   static constexpr double kNormal = 127, kOffsetUnit = kNormal / 16;
-  /// A corner of a triangle, or of a piece of it no wider than a voxel; `normal`: outward, its length is its share of
-  /// the area.
-  struct Corner {
-    Vec3f place, normal;
+  /// A triangle, or a piece of one no wider than a voxel.
+  struct Piece {
+    std::array<Vec3f, 3> corners;
+    Vec3f normal;  ///< outward, of a third of the piece's area
   };
-  /// The corners of the pieces in each voxel.
-  struct Corners {
-    std::vector<std::uint32_t> first;  ///< one a voxel, and the end
-    std::vector<Corner> corners;
+  /// The pieces that voxels hold.
+  struct Pieces {
+    std::vector<Piece> pieces;
+    std::vector<std::uint32_t> first;      ///< in `of_voxels`, one a voxel, and the end
+    std::vector<std::uint32_t> of_voxels;  ///< indices of pieces
   };
 
   static Vec3d counts_of(const Vec3d& size, double edge);
@@ -85,9 +86,9 @@ class FreeDistance {
   void for_pieces(const World& world, const Use& use) const;
   template <class Use>
   void for_voxels(const std::array<Vec3d, 3>& piece, const Use& use) const;
-  Corners corners_of(const World& world) const;
+  Pieces pieces_of(const World& world) const;
   void spread();
-  Plane plane_of(std::size_t voxel, const Corners& corners) const;
+  Plane plane_of(std::size_t voxel, const Pieces& pieces) const;
 
   Vec3d low_, counts_;
   double edge_, inverse_edge_, reach_, reach_steps_;

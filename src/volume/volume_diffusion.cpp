@@ -77,8 +77,12 @@ double length_to_resolve(double mean_free_path, double absorbed) {
   return mean_free_path * std::min(1., kPerFading / std::sqrt(3 * absorbed));
 }
 
-double expected_cells(double area, double cell) {
-  return 4.5 * area / (cell * cell);  // measured on bunnies and spheres: 4.3 to 4.6
+// For a face of a cell: cells grow inwards (measured on bunnies and spheres: 4.3 to 4.6). Thin bodies have the smallest ones
+// alone, those that fill them and those that their surface cuts.
+double expected_cells(double area, double thickness, double cell) {
+  constexpr double kOfThick = 4.5, kCut = .75;
+  const double for_face = thickness > 0 ? std::min(kOfThick, thickness / (2 * cell) + kCut) : kOfThick;
+  return for_face * area / (cell * cell);
 }
 
 VolumeDiffusion::VolumeDiffusion(const VolumeDiffusionInput& input)

@@ -147,5 +147,41 @@ TEST(CliStart, LoadsNoPictureReader) {
   EXPECT_FALSE(contains(libraries.out, "libOpenImageIO.so")) << libraries.out;
 }
 
+// Claim: a render takes at most the memory that the plan says, and at least two thirds of it: a thin body in fine cells, random
+// walks beside a far coarser ball, a surface cache, a small light in a large image. Source: the design (an upper bound within
+// 1.5; bench_plan renders 500 random scenes). Fails if: cells are counted by the area alone, pieces of triangles in the voxels
+// of walks by the area alone, a cache by the places that it may have, or all pixels count where a lamp can be seen.
+TEST(CliInfo, MemoryIsAnUpperBound) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer takes memory of its own";
+#endif
+  const std::string plate = R"("slab": {"center": [0, 0, 0], "width": 40, "depth": 40, "thickness": 0.4})",
+                    ball = R"("sphere": {"center": [0, 0, 0], "radius": 10})";
+  const std::string small_lamp = R"({"type": "sphere", "center": [0, 20, 0], "radius": 1, "radiance": 20})",
+                    sun = R"({"type": "directional", "direction": [0, -1, -0.3], "irradiance": 2})";
+  const struct {
+    std::string shape, light, settings;
+    int side;
+  } scenes[] = {{plate, sun, R"("method": "volume_diffusion")", 64},
+                {plate, sun, R"("method": "volume", "samples": 200, "until_error": 0.9)", 64},
+                {ball, sun, R"("evaluator": "surface_cache", "samples": 100000)", 64},
+                {ball, small_lamp, R"("method": "lambert")", 1500}};
+  for (const auto& [shape, light, settings, side] : scenes) {
+    const ScratchFolder folder;
+    put_bytes(
+        folder.file("scene.json"),
+        R"({"media": {"m": {"sigma_a": 0.01, "sigma_s_prime": 5}}, "shapes": [{)" + shape +
+            R"(, "medium": "m"}], "lights": [)" + light +
+            R"(], "camera": {"position": [0, 60, 90], "look_at": [0, 0, 0]}, "film": {"resolution": [)" +
+            std::to_string(side) + ", " + std::to_string(side) + R"(]}, "settings": {)" + settings + "}}");
+    const auto events = events_of(
+        run_program({"render", folder.file("scene.json"), "-o", folder.file("o.exr"), "--log", "json"}).out);
+    const double planned = event_of(events, "plan")["memory_bytes"],
+                 peak = event_of(events, "done")["peak_memory_bytes"];
+    EXPECT_GE(planned / peak, 1) << shape << settings;
+    EXPECT_LE(planned / peak, 1.5) << shape << settings;
+  }
+}
+
 }  // namespace
 }  // namespace opaline

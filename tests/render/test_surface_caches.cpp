@@ -49,7 +49,7 @@ TEST(SurfaceCaches, WhereManyPointsAskForThem) {
 
 // Claim: a long thin bar of few samples, whose sides would be cut into a hundred thousand squares of the near
 // field's size, is evaluated at the points of the picture though a surface cache is asked for, and the plan's
-// memory says what such a cache may take at most. Source: most_wanted_places. Measured without the bound: 204
+// memory says what such a cache is expected to take. Source: most_wanted_places. Measured without the bound: 204
 // MB where 11 were foreseen. Fails if: most_cache_places lets a wanted cache have any number of places.
 TEST(SurfaceCaches, NeedlesFallBackToPoints) {
   Scene scene = single_shape(SlabShape{{}, 30, 32000, 1}, marble(), 500);

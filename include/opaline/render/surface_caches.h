@@ -14,6 +14,8 @@ namespace opaline {
 /// squares of the near field's size, is evaluated at the points of the picture.
 std::size_t most_wanted_places(const GroupPlan& group, const World& world);
 inline constexpr std::size_t kBytesOfPlace = 250;
+/// The places that such a cache is expected to have, at most most_wanted_places.
+std::size_t expected_cache_places(const GroupPlan& group, const World& world);
 
 /// For each group of the plan the most places that a surface cache may have: most_wanted_places if the
 /// settings ask for one, 0 if they ask for another evaluator; if they leave it open a part of the points at

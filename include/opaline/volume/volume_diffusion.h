@@ -34,10 +34,11 @@ double length_to_resolve(double mean_free_path, double absorbed);
 /// Edge of a cell over that, at most: what is shorter is taken as this, the albedo as it is.
 inline constexpr double kWidestCell = 3;
 
-/// About how many cells a body has, from its area and the edge of a cell.
-double expected_cells(double area, double cell);
+/// About how many cells a body has.
+/// in    area, thickness (twice the volume over the area; 0: not known), cell: edge at the surface; of one unit of length
+double expected_cells(double area, double thickness, double cell);
 /// Measured, of each: with both grids and the solver's vectors.
-inline constexpr double kBytesOfCell = 200;
+inline constexpr double kBytesOfCell = 275;
 
 /// Light collides for the first time along the refracted rays and spreads by diffusion from there, on cells that
 /// grow inwards. Linear in the lights; the cells do not depend on them. Theory and measurements: src/volume/README.md.
