@@ -15,7 +15,6 @@ inline constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o bunny.exr --time-budget 2s
   opaline render bunny.json -o warm.exr --set media.marble.eta=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
   opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
-  opaline render bunny.json -o bunny.exr --write-partial --display-server localhost
   opaline render bunny.json -o bunny.exr --log json --threads 4
   opaline compare bunny.exr reference.exr --fail-above 1%
   opaline bench bunny.json -o report --resolution 256x256
