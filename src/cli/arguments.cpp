@@ -315,7 +315,6 @@ void add_commands(CLI::App& app, Parsed& parsed) {
 
 RenderArguments checked(RenderArguments render, const Options& options) {
   if (!options.layers.empty()) render.layers = *layers_of(options.layers);
-  render.display_server = parse_server_address(options.display_server);
   check_outputs(render);
   check_layers_have_a_file(render, options.layers);
   if (!options.target_error.empty()) render.target_error = share_of(options.target_error);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "benchmark/bench_command.h"
-#include "cli/display_server.h"
 #include "core/log.h"
 #include "opaline/cache/blob_cache.h"
 #include "opaline/core/error.h"
@@ -32,8 +31,6 @@ struct RenderArguments {
   std::vector<int> frames;  ///< empty: one picture; else outputs have a place for the frame's number
   int threads = 0;          ///< 0: one for each core
   bool timings_in_metadata = false;
-  bool write_partial = false;
-  std::optional<ServerAddress> display_server;
   std::optional<double> target_error;  ///< settings are chosen for it; relative, > 0
   std::optional<double> time_budget;   ///< settings are chosen for it; CPU of the whole process, s, > 0
   bool verify = false;                 ///< measure the error of the picture

@@ -129,13 +129,6 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
              "keep samples, irradiance and trees in this folder, and take from it what was computed from "
              "the same")
           ->type_name("FOLDER");
-  app.add_flag("--write-partial", render.write_partial,
-               "write coarse pictures to the outputs, the first within a tenth of the time, and what is done "
-               "every five seconds; an interrupted run leaves the last one");
-  app.add_option("--display-server", options.display_server,
-                 "show the same in the viewer tev, tile by tile (default port 14158)")
-      ->check(server_address_check())
-      ->type_name("HOST:PORT");
   add_frames_option(
       app, options,
       "## in the names of outputs and meshes is their number; frames that are there already, whole "

@@ -28,7 +28,6 @@ struct Options {
   std::string reference_error;
   std::vector<std::string> rungs;
   std::optional<std::string> frames;
-  std::string display_server;
   std::string layers;
 };
 

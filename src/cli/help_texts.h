@@ -15,7 +15,6 @@ inline constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o bunny.exr --time-budget 2s
   opaline render bunny.json -o warm.exr --set media.marble.eta=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
   opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
-  opaline render bunny.json -o bunny.exr --write-partial --display-server localhost
   opaline render bunny.json -o bunny.exr --log json --threads 4
   opaline compare bunny.exr reference.exr --fail-above 1%
   opaline bench bunny.json -o report --resolution 256x256
@@ -98,7 +97,7 @@ sets its key at the frame shown.
 Who has the URL can edit, and write such files into the scene's folder. Other requests are refused, with a line on
 stderr: another token, Origin or host name, messages above 64 kB, more than 16 pages or 64 connections. What is
 sent is not encrypted: with --listen, trust the network, or use ssh -L 8080:127.0.0.1:8080 and --port 8080.
-Over a slow line pictures come as JPEGs first, and then exactly.
+Over a slow connection a page skips pictures: the next one sent is always the newest.
 A page that lost its server tries again; with --port and --token the next server is at the same URL, and takes over
 the page's edits.
 

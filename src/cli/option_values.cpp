@@ -13,7 +13,6 @@
 #include <sstream>
 #include <vector>
 
-#include "cli/display_server.h"
 #include "opaline/scene/json_tree.h"
 #include "opaline/scene/nearest_name.h"
 #include "opaline/scene/schema.h"
@@ -121,11 +120,6 @@ std::optional<double> share_of(std::string_view text) {
 CLI::Validator resolution_check() {
   return check("WIDTHxHEIGHT, each 1 to 65536, such as 640x480",
                [](const std::string& text) { return !resolution_json(text).empty(); });
-}
-
-CLI::Validator server_address_check() {
-  return check("HOST or HOST:PORT, such as localhost:14158",
-               [](const std::string& text) { return parse_server_address(text).has_value(); });
 }
 
 CLI::Validator crop_check() {

@@ -41,8 +41,6 @@ CLI::Validator number_check();
 CLI::Validator log_check();
 /// Of a file's name.
 CLI::Validator extension_check(const std::string& extension);
-/// What parse_server_address takes.
-CLI::Validator server_address_check();
 /// "diffuse,N", "all" or "none"; nothing if a name is no layer's.
 std::optional<LayerChoice> layers_of(const std::string& text);
 CLI::Validator layers_check();

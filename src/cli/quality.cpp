@@ -73,8 +73,6 @@ void check_budget(const RenderArguments& render) {
     throw bad_usage("--time-budget plans by what stages cost, and what is found in a --cache costs nothing",
                     "one of the two");
   const std::pair<bool, const char*> unplanned[] = {
-      {render.write_partial, "--write-partial"},
-      {render.display_server.has_value(), "--display-server"},
       {!render.samples_ply.empty(), "--samples-ply"},
       {!render.resume.empty(), "--resume"},
       {is_named(render.layers, kLightGroups), "--layers light_groups"},

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
 #include <csignal>
@@ -11,7 +10,6 @@
 #include "cli/frames.h"
 #include "cli/memory_check.h"
 #include "cli/metadata.h"
-#include "cli/partial_picture.h"
 #include "cli/quality.h"
 #include "cli/render_outputs.h"
 #include "cli/report.h"
@@ -101,21 +99,15 @@ void prepare(StageRunner& stages, const RenderArguments& arguments, Session& ses
   }
 }
 
-/// partial: null, or shows what is done.
-Shading shade(StageRunner& stages, const RenderArguments& arguments, Session& session,
-              PartialPicture* partial) {
-  AfterTile show_tile;
-  if (partial != nullptr)
-    show_tile = [partial](const Image& image, const Rectangle& done) { partial->show_tile(image, done); };
+Shading shade(StageRunner& stages, const RenderArguments& arguments, Session& session) {
   Shading shading;
   const RayScene::Statistics before = session.rays().statistics();
   shading.picture = stages.run("shading", [&] {
     if (session.scene().settings.method == Method::direct) {
       shading.direct = shade_direct(arguments, session, stages.monitor());
-      if (show_tile) show_tile(shading.direct->picture.image, rendered_part(session.scene().film));
       return std::move(shading.direct->picture);
     }
-    return session.render(&stages.monitor(), show_tile);
+    return session.render(&stages.monitor());
   });
   const RayScene::Statistics after = session.rays().statistics();
   shading.rays = after.rays - before.rays;
@@ -155,26 +147,6 @@ Summary summarize(const Session& session, const Shading& shading) {
   return summary;
 }
 
-void show_first_light(StageRunner& stages, Session& session, PartialPicture& partial) {
-  stages.run_unmeasured("rays", [&] { session.prepare_rays(); });
-  for (const StageCost& cost : session.costs()) stages.note(cost);
-  partial.show(stages.run("first light", [&] { return session.first_light(&stages.monitor()); }),
-               "first light");
-}
-
-/// With all samples now, at four times as many pixels.
-void show_refinement(StageRunner& stages, const Session& session, PartialPicture& partial) {
-  if (session.scene().settings.method == Method::direct) return;
-  const int stride = first_light_stride(session.scene().film) / 2;
-  partial.show(stages.run("refinement",
-                          [&] {
-                            return coarse_picture({session.scene(), session.world(), session.rays(),
-                                                   session.bodies(), &stages.monitor()},
-                                                  stride);
-                          }),
-               "refinement");
-}
-
 /// The arguments, with what --time-budget or --target-error chose in its place.
 RenderArguments repeating(const RenderArguments& arguments, const Session& session, const Shading& shading) {
   if (!chooses_settings(arguments)) return arguments;
@@ -192,7 +164,6 @@ RenderArguments repeating(const RenderArguments& arguments, const Session& sessi
 /// What is shared by all pictures of the command; null where there is none.
 struct Shared {
   const StageCache* cache = nullptr;
-  DisplayServer* viewer = nullptr;
   std::vector<std::string>* last_plan = nullptr;
 };
 
@@ -251,9 +222,8 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
 }
 
 /// The picture without its metadata, with warnings about it.
-/// partial: null, or shows what is done
 Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Session& session,
-                     const Shared& shared, PartialPicture* partial, bool is_frame) {
+                     const Shared& shared, bool is_frame) {
   const std::size_t noted = session.costs().size();
   prepare(stages, arguments, session);
   for (std::size_t i = noted; i < session.costs().size(); ++i) stages.note(session.costs()[i]);
@@ -263,8 +233,7 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
   for (const Body& body : session.bodies())
     for (const std::string& text : walk_warnings(body, session.world().unit))
       print_warning(arguments.log, text);
-  if (partial != nullptr) show_refinement(stages, session, *partial);
-  Shading shading = shade(stages, arguments, session, partial);
+  Shading shading = shade(stages, arguments, session);
   if (shading.picture.non_finite > 0)
     print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
                                      " pixels are not finite and were written as 0; this is a defect");
@@ -272,23 +241,6 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
     print_warning(arguments.log, text);
   for (const std::string& text : model_warnings(session.plan())) print_warning(arguments.log, text);
   return shading;
-}
-
-/// The same, shown while it is made where that is asked for. Ctrl-C says what is left.
-Shading make_shown_picture(StageRunner& stages, const RenderArguments& arguments, Session& session,
-                           const Shared& shared, bool is_frame) {
-  if (!arguments.write_partial && shared.viewer == nullptr)
-    return make_picture(stages, arguments, session, shared, nullptr, is_frame);
-  PartialPicture partial(arguments, session.scene().film, shared.viewer);
-  try {
-    show_first_light(stages, session, partial);
-    return make_picture(stages, arguments, session, shared, &partial, is_frame);
-  } catch (const Error& stopped) {
-    if (stopped.kind != ErrorKind::interrupted || !partial.is_written()) throw;
-    throw Error(
-        ErrorKind::interrupted, {}, 0, 0,
-        fmt::format("{}; what was done is in {}", stopped.message, fmt::join(arguments.outputs, ", ")));
-  }
 }
 
 /// Writes the outputs, and says what they are and what they cost.
@@ -323,7 +275,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   }
   const Scene& scene = session.scene();
   KnownErrors errors = plan(stages, arguments, session, shared);
-  Shading shading = make_shown_picture(stages, arguments, session, shared, frame.has_value());
+  Shading shading = make_picture(stages, arguments, session, shared, frame.has_value());
   std::optional<Error> stopped;  // by Ctrl-C while the error was measured; the picture is there
   try {
     errors.measured = verify_picture(stages, arguments, session, errors, shading.picture);
@@ -362,10 +314,8 @@ void render_command(const RenderArguments& arguments) {
     check_writable(arguments);
   else
     for (const int frame : arguments.frames) check_writable(arguments_of_frame(arguments, frame));
-  std::optional<DisplayServer> viewer;
-  if (arguments.display_server) viewer.emplace(*arguments.display_server, arguments.log);
   std::vector<std::string> last_plan;
-  const Shared shared{cache ? &*cache : nullptr, viewer ? &*viewer : nullptr, &last_plan};
+  const Shared shared{cache ? &*cache : nullptr, &last_plan};
   if (arguments.frames.empty()) {
     render_scene(arguments, session, shared, {});
     return;

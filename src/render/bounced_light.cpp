@@ -270,7 +270,7 @@ std::shared_ptr<const BouncedPlaces> bounced_places(const RenderInput& input) {
 
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
                                                   HeldView* view) {
-  const RenderInput lit{input.scene, input.world, input.rays, bodies, input.monitor, {}, view};
+  const RenderInput lit{input.scene, input.world, input.rays, bodies, input.monitor, view};
   const Shader shader(lit);
   std::vector<std::vector<RgbF>> bounced;
   if (input.monitor != nullptr) {

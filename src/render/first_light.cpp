@@ -55,6 +55,14 @@ Scene coarse_scene(Scene scene, const CoarseGrid& grid) {
   return scene;
 }
 
+/// Pixels between two camera rays in each direction: at least 8, more where that leaves a coarse image of more than
+/// 48 x 48.
+int stride_of(const Film& film) {
+  constexpr int kStride = 8, kWidest = 48;
+  const Rectangle part = rendered_part(film);
+  return std::max(kStride, divided_up(std::max(part.x1 - part.x0, part.y1 - part.y0), kWidest));
+}
+
 /// Two neighbours of a row or column of pixels, and the second one's share.
 struct Between {
   std::size_t first, second;
@@ -122,12 +130,6 @@ std::vector<Body> draft_groups(const PrecomputeInput& input) {
 
 }  // namespace
 
-int first_light_stride(const Film& film) {
-  constexpr int kStride = 8, kWidest = 48;
-  const Rectangle part = rendered_part(film);
-  return std::max(kStride, divided_up(std::max(part.x1 - part.x0, part.y1 - part.y0), kWidest));
-}
-
 Image coarse_picture(const RenderInput& input, int stride) {
   const CoarseGrid grid(input.scene.film, stride);
   const Scene scene = coarse_scene(input.scene, grid);
@@ -146,8 +148,7 @@ Image first_light(const PrecomputeInput& input) {
   std::vector<Body> groups;
   if (scene.settings.method == Method::hierarchical)
     groups = draft_groups({scene, input.world, input.rays, input.plan, input.monitor});
-  return coarse_picture({scene, input.world, input.rays, groups, input.monitor},
-                        first_light_stride(scene.film));
+  return coarse_picture({scene, input.world, input.rays, groups, input.monitor}, stride_of(scene.film));
 }
 
 }  // namespace opaline

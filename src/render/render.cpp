@@ -49,9 +49,8 @@ HeldView* view_of(const RenderInput& input, std::size_t tiles) {
 
 RenderResult render(const RenderInput& input) {
   const Film& film = input.scene.film;
-  const Rectangle part = rendered_part(film);
   RenderResult result;
-  result.image = empty_image(part, film, layer_names(input.scene.settings.method));
+  result.image = empty_image(rendered_part(film), film, layer_names(input.scene.settings.method));
   result.translucent.resize(std::size_t(result.image.width) * std::size_t(result.image.height));
   Shader shader(input);
   std::optional<BouncedLight> bounced;
@@ -67,7 +66,6 @@ RenderResult render(const RenderInput& input) {
         renderer.render(tiles[begin], {}, view != nullptr ? &view->tiles[begin] : nullptr);
     queries += tile.queries;
     non_finite += store(tiles[begin], tile.sums, input.scene, result);
-    if (input.after_tile) input.after_tile(result.image, common_part(tiles[begin], part));
   });
   result.queries = queries;
   result.non_finite = non_finite;

@@ -40,8 +40,8 @@ Image Session::first_light(Monitor* monitor) {
 void Session::prepare(Monitor* monitor) {
   state_->prepare(monitor);
 }
-RenderResult Session::render(Monitor* monitor, const AfterTile& after_tile) {
-  return state_->render(monitor, after_tile);
+RenderResult Session::render(Monitor* monitor) {
+  return state_->render(monitor);
 }
 
 const Scene& Session::scene() const {

@@ -240,12 +240,12 @@ void Session::State::update_sums(const PrecomputeInput& input, const std::vector
   if (!has_caches && !costs_.empty() && costs_.back().stage == "exitance") costs_.pop_back();
 }
 
-RenderResult Session::State::render(Monitor* monitor, const AfterTile& after_tile) {
+RenderResult Session::State::render(Monitor* monitor) {
   const CancelScope scope(monitor);
   prepare(monitor);
   HeldView* const view = held_view();
   if (view != nullptr) view->next_picture();
-  RenderInput input{scene_, *world_, *rays_, bodies_, monitor, after_tile, view};
+  RenderInput input{scene_, *world_, *rays_, bodies_, monitor, view};
   if (bounces_of(scene_) > 0) update_bounced_places(input);
   input.bounced = bounced_;
   RenderResult result = opaline::render(input);

@@ -26,7 +26,7 @@ struct Session::State {
   void prepare_rays();
   Image first_light(Monitor* monitor);
   void prepare(Monitor* monitor);
-  RenderResult render(Monitor* monitor, const AfterTile& after_tile);
+  RenderResult render(Monitor* monitor);
 
   using BodyWork = std::function<void(Body& body, BodyKeys& known, std::size_t index)>;
   void each_of(Method method, const char* stage, const BodyWork& work);

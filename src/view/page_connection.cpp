@@ -14,25 +14,10 @@ namespace websocket = beast::websocket;
 constexpr std::size_t kLongestMessage = 1 << 16;  // bytes
 constexpr std::size_t kMostAnswers = 16, kMostFrames = 2;
 constexpr std::chrono::seconds kSilence{60};  // then the page is gone; half of it without a word is a ping
-constexpr int kOnTheWay = 1 << 17;  // bytes that the machine takes before the line does; Linux doubles it
-constexpr std::size_t kMeasurable = 4 * kOnTheWay;
-constexpr double kForgotten = .8;      // of a rate, by each picture that is too short to tell a newer one
-constexpr double kLongestFrame = .15;  // s that a whole frame may take
+// Bytes that the system buffers: small, as a frame in its buffer cannot be replaced by a newer one. Linux doubles it.
+constexpr int kSendBuffer = 1 << 17;
 
 }  // namespace
-
-void LineRate::begin() {
-  start_ = std::chrono::steady_clock::now();
-  bytes_ = 0;
-}
-
-void LineRate::end() {
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
-  if (bytes_ > kMeasurable)
-    seconds_per_byte_ = seconds.count() / double(bytes_ - 2 * kOnTheWay);
-  else
-    seconds_per_byte_ *= kForgotten;
-}
 
 PageConnection::PageConnection(beast::tcp_stream&& stream, Events events, std::shared_ptr<void> slot)
     : socket_(std::move(stream)), events_(std::move(events)), slot_(std::move(slot)), in_(kLongestMessage) {}
@@ -40,8 +25,8 @@ PageConnection::PageConnection(beast::tcp_stream&& stream, Events events, std::s
 void PageConnection::start(const HttpRequest& request) {
   beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has times of its own
   beast::error_code not_vital;
-  beast::get_lowest_layer(socket_).socket().set_option(boost::asio::socket_base::send_buffer_size(kOnTheWay),
-                                                       not_vital);
+  beast::get_lowest_layer(socket_).socket().set_option(
+      boost::asio::socket_base::send_buffer_size(kSendBuffer), not_vital);
   socket_.set_option(websocket::stream_base::timeout{kSilence, kSilence, true});
   socket_.read_message_max(kLongestMessage);
   socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
@@ -108,52 +93,18 @@ void PageConnection::write() {
       [self = shared_from_this()](beast::error_code error, std::size_t) { self->written(error); });
 }
 
-/// The newest picture before what is left of older ones.
 bool PageConnection::take_frame() {
   auto& next = picture_ != nullptr ? picture_ : reference_;
-  if (next == nullptr) return take_band(bands_) || take_band(reference_bands_);
-  const std::shared_ptr<const ViewPicture> picture = std::exchange(next, nullptr);
-  FrameBands& bands = picture->step == PictureStep::reference ? reference_bands_ : bands_;
-  bands.stop();
-  const bool is_slow = rate_.seconds_for(frame_size(*picture, layer_)) > kLongestFrame;
-  const bool is_jpeg = is_slow && layer_.empty() && can_be_jpeg(*picture);
-  const bool stays = picture->step == PictureStep::final || picture->step == PictureStep::reference;
-  if (is_slow && (stays || !is_jpeg)) bands.begin(picture, layer_);
-  if (is_slow && !is_jpeg) return take_band(bands);
-  PackedFrame frame;
-  if (is_jpeg) {
-    frame.number = events_.number();
-    frame.bytes = std::make_shared<const std::string>(pack_jpeg(*picture, frame.number));
-  } else {
-    frame = events_.pack(picture, layer_);
-  }
+  if (next == nullptr) return false;
+  const PackedFrame frame = events_.pack(std::exchange(next, nullptr), layer_);
   unshown_.push_back(frame.number);
   out_ = frame.bytes;
-  if (!is_slow && out_->size() > kMeasurable) {
-    rate_.begin();
-    rate_.add(out_->size());
-    measures_ = true;
-  }
-  return true;
-}
-
-bool PageConnection::take_band(FrameBands& bands) {
-  if (!bands.has_next()) return false;
-  if (bands.is_first()) rate_.begin();
-  const std::uint32_t number = events_.number();
-  out_ = std::make_shared<const std::string>(bands.next(number));
-  rate_.add(out_->size());
-  if (!bands.has_next()) {
-    unshown_.push_back(number);
-    measures_ = true;
-  }
   return true;
 }
 
 void PageConnection::written(beast::error_code error) {
   out_ = nullptr;
   if (error) return end(error);
-  if (std::exchange(measures_, false)) rate_.end();
   read();
   write();
 }

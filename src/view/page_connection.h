@@ -7,14 +7,12 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
-#include <chrono>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 
-#include "view/view_frame.h"
 #include "view/view_renderer.h"
 
 namespace opaline {
@@ -43,25 +41,7 @@ struct PackedFrame {
   SharedText bytes;
 };
 
-/// How fast a line is, by what took longer than the machine keeps on the way; forgotten bit by bit where nothing does, so
-/// that a slow moment is not for ever.
-class LineRate {
- public:
-  void begin();
-  void add(std::size_t bytes) { bytes_ += bytes; }
-  /// All that was added since `begin` is written.
-  void end();
-  /// As last seen; 0 where nothing was.
-  double seconds_for(std::size_t bytes) const { return double(bytes) * seconds_per_byte_; }
-
- private:
-  std::chrono::steady_clock::time_point start_;
-  std::size_t bytes_ = 0;
-  double seconds_per_byte_ = 0;
-};
-
-/// A picture goes out whole, or, where the line would take long for it, as a JPEG while it changes and exactly, by the
-/// bands that changed, once it is final or stays.
+/// Pictures are sent whole. Behind a slow connection the newest one waits, in place of older ones, which are never sent.
 class PageConnection : public std::enable_shared_from_this<PageConnection> {
  public:
   /// All on the thread of the connection.
@@ -70,7 +50,6 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
     std::function<void(PageConnection& page, std::string_view text)> message;
     std::function<PackedFrame(const std::shared_ptr<const ViewPicture>& picture, const std::string& layer)>
         pack;
-    std::function<std::uint32_t()> number;                                     ///< of another frame
     std::function<void(PageConnection& page, const std::string& why)> closed;  ///< why: empty if it just left
   };
 
@@ -93,7 +72,6 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   void read();
   void write();
   bool take_frame();
-  bool take_band(FrameBands& bands);
   void written(boost::beast::error_code error);
   void end(boost::beast::error_code error);
 
@@ -106,10 +84,7 @@ class PageConnection : public std::enable_shared_from_this<PageConnection> {
   std::shared_ptr<const ViewPicture> picture_, reference_;
   std::deque<std::uint32_t> unshown_;
   std::string layer_;
-  FrameBands bands_, reference_bands_;
-  LineRate rate_;
-  bool measures_ = false;  ///< `out_` is the last of what the rate is measured by
-  SharedText out_;         ///< being written
+  SharedText out_;  ///< being written
   bool is_open_ = false, is_reading_ = false, has_ended_ = false;
 };
 

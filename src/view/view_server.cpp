@@ -174,7 +174,6 @@ PageConnection::Events ViewServer::State::page_events() {
           [this](const std::shared_ptr<const ViewPicture>& shown, const std::string& layer) {
             return pack(shown, layer);
           },
-          [this] { return ++frames; },
           [this](PageConnection& page, const std::string& why) {
             pages.erase(&page);
             if (pages.empty()) work_behind({});  // for nobody

@@ -247,7 +247,6 @@ TEST(CliQuality, SenselessOptionsAreErrors) {
       {{"--time-budget", "1s", "--target-error", "1%"}, "one of the two"},
       {{"--time-budget", "1s", "--set", "settings.samples=100"}, "chooses settings.samples itself"},
       {{"--time-budget", "1s", "--cache", "stages"}, "--cache"},
-      {{"--time-budget", "1s", "--write-partial"}, "does not plan for --write-partial"},
       {{"--time-budget", "1s", "--samples-ply", "a.ply"}, "does not plan for --samples-ply"},
       {{"--time-budget", "1s", "--method", "lambert"}, "--method hierarchical or direct"},
       {{"--time-budget", "1s", "--evaluator", "classic"}, "classic"}};

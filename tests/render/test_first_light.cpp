@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <mutex>
 
 #include "opaline/core/stopwatch.h"
 #include "opaline/render/first_light.h"
@@ -117,36 +116,6 @@ TEST(FirstLight, Crop) {
         ASSERT_NEAR(channel(part, x, y, name), channel(all, x + crop[0], y + crop[1], name),
                     1e-3 * double(channel(all, x + crop[0], y + crop[1], name)))
             << x << ' ' << y;
-}
-
-// Claim: after_tile is told of each pixel of the picture once, and by then it is what it will be. Source:
-// render.h. Fails if: it is called before the tile is stored, or of what lies outside a crop.
-TEST(FirstLight, TilesAreDone) {
-  Scene scene = torus_and_wall(100, 70);
-  scene.film.crop = {{3, 5, 91, 64}};
-  const Prepared ball(scene);
-  std::mutex mutex;
-  Image seen;
-  std::size_t pixels = 0;
-  const Image picture = render({ball.scene, ball.world, ball.rays, ball.bodies, nullptr,
-                                [&](const Image& image, const Rectangle& done) {
-                                  const std::lock_guard lock(mutex);
-                                  if (seen.pixels.empty()) {
-                                    seen.channels = image.channels;
-                                    seen.pixels.resize(image.pixels.size());
-                                  }
-                                  for (int y = done.y0; y < done.y1; ++y)
-                                    for (int x = done.x0; x < done.x1; ++x, ++pixels) {
-                                      const std::size_t size = image.channels.size(),
-                                                        at =
-                                                            std::size_t((y - 5) * image.width + x - 3) * size;
-                                      std::copy_n(image.pixels.data() + at, size, seen.pixels.data() + at);
-                                    }
-                                }})
-                            .image;
-  EXPECT_EQ(pixels, std::size_t(88 * 59));
-  EXPECT_TRUE(
-      std::equal(seen.pixels.begin(), seen.pixels.end(), picture.pixels.begin(), picture.pixels.end()));
 }
 
 }  // namespace

@@ -149,8 +149,7 @@ TEST(HeldGathering, HasABound) {
   const auto parts_of = [&](std::size_t bytes_before) {
     HeldView view;
     *view.gathered_bytes = bytes_before;
-    const Image picture =
-        render({balls.scene, balls.world, balls.rays, balls.bodies, nullptr, {}, &view}).image;
+    const Image picture = render({balls.scene, balls.world, balls.rays, balls.bodies, nullptr, &view}).image;
     EXPECT_TRUE(same_pixels(picture, balls.picture()));
     std::size_t parts = 0;
     for (const std::vector<HeldView::Gathering>& chunk : view.at_places)

@@ -154,6 +154,31 @@ TEST(ViewHostile, ASlowPageMissesFrames) {
   EXPECT_EQ(slow.frame.colours, quick.frame.colours);
 }
 
+// Claim: a page behind a connection that stalls costs the others nothing, and then gets the newest picture: pictures that
+// were made meanwhile are dropped, but for the two at most that were being sent. Fails if: pictures queue up.
+TEST(ViewHostile, AStalledPageGetsTheNewestFrame) {
+  constexpr std::uint32_t kEdits = 5, kLast = 2 + kEdits;
+  const ViewFolder folder;
+  const RunningView view(folder.scene);
+  ViewClient stalled(view, "", 1 << 14), quick(view);
+  quick.set({{"film.resolution", {512, 480}}});  // 2 MB a frame: more than the sockets buffer
+  ASSERT_TRUE(quick.read_final(2) && stalled.read_final(2));
+  for (std::uint32_t i = 0; i < kEdits; ++i) {
+    quick.set({{"lights.key.intensity", {1e4 + i, 2e4, 3e4}}});
+    ASSERT_TRUE(quick.read_final(3 + i));
+  }
+  const std::size_t before = stalled.frames;
+  std::size_t older = 0;
+  while (stalled.frame.revision != kLast || stalled.frame.step != PictureStep::final) {
+    const std::size_t frames = stalled.frames;
+    ASSERT_TRUE(stalled.read());
+    if (stalled.frames != frames && stalled.frame.revision != kLast) ++older;
+  }
+  EXPECT_LE(older, 2u);
+  EXPECT_EQ(stalled.frames - before, older + 1);
+  EXPECT_EQ(stalled.frame.colours, quick.frame.colours);
+}
+
 // Claim: of 200 connections at most 64 are kept, each other one is closed with a line in the log; the page that was
 // there before is served, and a new one is when they are gone.
 TEST(ViewHostile, TwoHundredConnections) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -23,10 +22,6 @@ struct Rectangle {
 /// What the film's crop leaves, or all of it.
 Rectangle rendered_part(const Film& film);
 
-/// Told of pixels of the picture under way that are as they will be; from several threads, the others' pixels
-/// may be written meanwhile.
-using AfterTile = std::function<void(const Image& image, const Rectangle& done)>;
-
 /// Light that surfaces send to what a camera sees, at places of its picture.
 class BouncedPlaces;
 
@@ -36,7 +31,6 @@ struct RenderInput {
   const RayScene& rays;
   std::span<const Body> groups = {};  ///< of the precompute; not needed by Method::lambert
   Monitor* monitor = nullptr;
-  AfterTile after_tile = {};
   HeldView* view = nullptr;  ///< of an earlier picture that saw the same, or new; kept up to kMostHeldBytes
   /// Where light bounces: gathered for this or another view of the same surfaces in the same light; null: for this one,
   /// by render.

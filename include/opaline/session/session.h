@@ -123,7 +123,7 @@ class Session {
   void prepare(Monitor* monitor = nullptr);
 
   /// The picture of the scene; prepares it first.
-  RenderResult render(Monitor* monitor = nullptr, const AfterTile& after_tile = {});
+  RenderResult render(Monitor* monitor = nullptr);
 
   /// The scene of the last edit, with the profiles that were chosen.
   const Scene& scene() const;

@@ -3,10 +3,9 @@
 import {Ahead} from "./ahead.js";
 import {cameraOf, dolly, lookOf, orbit, pan, turnedLight} from "./camera.js";
 import {Connection, newStroke, pausedStroke} from "./connection.js";
-import {FrameReader} from "./frames.js";
 import {Knobs} from "./knobs.js";
 import {Overlay} from "./overlay.js";
-import {draw, valuesAt} from "./picture.js";
+import {draw, parseFrame, valuesAt} from "./picture.js";
 import {Trade} from "./trade.js";
 
 const one = (id) => document.getElementById(id);
@@ -325,18 +324,18 @@ const takes = {
   },
 };
 
-const reader = new FrameReader((news) => {
-  if (news.step === "reference") {
-    if (!waitingReference) requestAnimationFrame(showReference);
-    waitingReference = news;
-  } else {
-    if (!waiting) requestAnimationFrame(showFrame);
-    waiting = news;
-  }
-});
 const connection = new Connection({
   text: (message) => takes[message.is]?.(message),
-  frame: (buffer) => reader.receive(buffer),
+  frame: (buffer) => {
+    const news = parseFrame(buffer);
+    if (news.step === "reference") {
+      if (!waitingReference) requestAnimationFrame(showReference);
+      waitingReference = news;
+    } else {
+      if (!waiting) requestAnimationFrame(showFrame);
+      waiting = news;
+    }
+  },
   lost: () => { one("lost").hidden = false; },
   found: () => {
     one("lost").hidden = true;

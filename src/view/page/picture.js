@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Frames on a canvas: exposure, view transform and channels are this page's own, and so at once.
 
+const kSteps = ["moving", "sharper", "final", "reference"];
+const kMark = 0x314c504f, kHeader = 32;  // as src/view/view_frame.h has them
+
 function floatOfHalf(bits) {
   const sign = bits & 0x8000 ? -1 : 1, exponent = bits >> 10 & 31, fraction = bits & 1023;
   if (exponent === 31) return fraction ? NaN : sign * Infinity;
   return exponent ? sign * 2 ** (exponent - 15) * (1 + fraction / 1024) : sign * 2 ** -24 * fraction;
 }
-export const kFloats = Float32Array.from({length: 65536}, (_, bits) => floatOfHalf(bits));
+const kFloats = Float32Array.from({length: 65536}, (_, bits) => floatOfHalf(bits));
 
 const srgb = (x) => x <= .0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - .055;
 const toByte = (x) => Math.max(0, Math.min(255, Math.round(255 * x))) || 0;
@@ -67,6 +70,17 @@ function greyCurve(transform) {
   return (x) => {
     show(transform, x, x, x);
     return shownByte(0);
+  };
+}
+
+export function parseFrame(buffer) {
+  const [mark, number, revision, step, width, height, channels, microseconds] = new Uint32Array(buffer, 0, 8);
+  if (mark !== kMark) throw new Error("not a frame");
+  const pixels = width * height;
+  return {
+    number, revision, width, height, channels, step: kSteps[step], seconds: microseconds / 1e6,
+    colours: new Uint16Array(buffer, kHeader, 4 * pixels),
+    layer: channels ? new Float32Array(buffer, kHeader + 8 * pixels, channels * pixels) : null,
   };
 }
 
