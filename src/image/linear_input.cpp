@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/linear_input.h"
 
+#include <Imath/half.h>
 #include <OpenImageIO/color.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <mutex>
 
@@ -25,6 +27,18 @@ struct Registry {
 Registry& registry() {
   static Registry known;
   return known;
+}
+
+template <class Value>
+bool all_within_range(const void* values, std::size_t count) {
+  return std::all_of(static_cast<const Value*>(values), static_cast<const Value*>(values) + count,
+                     [](Value value) { return std::abs(double(value)) <= kLargestTexel; });
+}
+
+bool all_within_range(const void* values, std::size_t count, OIIO::TypeDesc type) {
+  if (type == OIIO::TypeFloat) return all_within_range<float>(values, count);
+  if (type == OIIO::TypeHalf) return all_within_range<half>(values, count);
+  return type != OIIO::TypeDesc::DOUBLE || all_within_range<double>(values, count);
 }
 
 }  // namespace
@@ -141,6 +155,12 @@ void LinearInput::finish(void* texels, std::size_t pixels, OIIO::TypeDesc type) 
     layout_->take(read_.data(), pixels, type.size(), static_cast<unsigned char*>(texels));
 }
 
+bool LinearInput::check_range(const void* values, std::size_t count, OIIO::TypeDesc type) {
+  if (all_within_range(values, count, type)) return true;
+  errorfmt("{}", kTexelOutOfRange);
+  return false;
+}
+
 bool LinearInput::make_linear(std::size_t pixels, void* data) {
   const auto channels = std::size_t(m_spec.nchannels);
   for (std::size_t i = 0; i < pixels * channels; ++i)
@@ -174,6 +194,7 @@ bool LinearInput::read_native_scanlines(int subimage, int miplevel, int y_begin,
       return complain();
     finish(target, pixels, type);
   }
+  if (!check_range(target, values, type)) return false;
   return !to_linear_ || make_linear(pixels, data);
 }
 
@@ -188,6 +209,7 @@ bool LinearInput::read_native_tile(int subimage, int miplevel, int x, int y, int
                                  buffer_for(target, pixels, type)))
     return complain();
   finish(target, pixels, type);
+  if (!check_range(target, pixels * std::size_t(m_spec.nchannels), type)) return false;
   return !to_linear_ || make_linear(pixels, data);
 }
 

@@ -10,6 +10,10 @@
 
 namespace opaline {
 
+/// Largest absolute value of a texel: slopes between larger ones would not be finite.
+inline constexpr double kLargestTexel = 1e30;
+inline constexpr const char* kTexelOutOfRange = "has a texel that is not finite or above 1e30";
+
 /// Texels fill the file's display window; outside of its data window they are 0. They have the channels Y, Y A, R G B or
 /// R G B A; one of R, G and B that the file lacks is 0.
 struct TexelLayout {

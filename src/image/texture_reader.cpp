@@ -106,7 +106,7 @@ void for_each_texel(const PictureSource& source, bool to_linear, const Visit& vi
         const std::size_t i = std::size_t(row - y) * width + std::size_t(x - spec.x);
         const Texel texel{value(i, 0, 0), value(i, 1, 0), value(i, 2, 0), value(i, 3, 1)};
         for (const double v : texel)
-          if (!std::isfinite(v)) throw bad_file(source.path, "has a texel that is not finite");
+          if (!(std::abs(v) <= kLargestTexel)) throw bad_file(source.path, kTexelOutOfRange);
         if (!visit(texel, std::size_t(1))) return;
       }
   }

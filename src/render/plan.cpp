@@ -110,7 +110,7 @@ double needle_share(const World& world, const GroupPlan& group) {
 }
 
 // Measured: where a cell cuts the surface, its exitance and error, while all are fitted.
-constexpr std::size_t kBytesOfCutSample = 600;
+constexpr std::size_t kBytesOfCutSample = 640;
 // Of a cell whose medium is its own: that, and what flows to each neighbour.
 constexpr double kBytesOfCellMedium = 350;
 // Of a cut sample besides, where light bounces: weights kept for a second fit, that fit, what is gathered and what it brings.

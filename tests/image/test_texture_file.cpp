@@ -279,6 +279,31 @@ TEST(TextureFile, RefusesChunksWithoutTheirPixels) {
   });
 }
 
+// Claim: a texture with one texel that is no number, infinite, or so large that slopes between texels are infinite, is refused
+// where that texel is looked up, by name. Source: by hand. Fails if lookups return it.
+TEST(TextureFile, RefusesTexelsOutOfRange) {
+  const ScratchFolder folder;
+  const auto message_of_lookup = [&](OIIO::TypeDesc type, int tile, float value) -> std::string {
+    OIIO::ImageSpec spec(64, 64, 1, type);
+    spec.tile_width = spec.tile_height = tile;
+    const std::string path = folder.file(std::to_string(value) + std::to_string(tile) + ".exr");
+    put_channels(path, spec, {"Y"}, {std::vector<float>{1}, std::vector<float>{value}});
+    try {
+      TextureFile::open(path, ColorSpace::linear)->at({.75f, .5f, {}, {}});
+    } catch (const Error& error) {
+      return error.message;
+    }
+    return {};
+  };
+  const std::string refused = "has a texel that is not finite or above 1e30";
+  for (const int tile : {0, 32}) {
+    EXPECT_EQ(message_of_lookup(OIIO::TypeFloat, tile, 9e29f), "");
+    for (const float value : {NAN, INFINITY, -1.1e30f})
+      EXPECT_NE(message_of_lookup(OIIO::TypeFloat, tile, value).find(refused), std::string::npos) << value;
+    EXPECT_NE(message_of_lookup(OIIO::TypeHalf, tile, NAN).find(refused), std::string::npos);
+  }
+}
+
 // Claim: where all texels are alike their value is exact, that of "#808080" in a scene file; one other texel makes the
 // difference. Tolerance: none. Fails if the constant is found by a filtered lookup, or only the first rows are looked at.
 TEST(TextureFile, FindsConstants) {
