@@ -14,7 +14,7 @@ Settings settings_with(const std::vector<std::string>& overrides) {
   return parse_scene("{}", "empty.json", overrides).settings;
 }
 
-// Claim: the six parts of the error (the table in README.md); the two pictures of a part differ in what it
+// Claim: the six parts of the error (the table in bench/README.md); the two pictures of a part differ in what it
 // names and in nothing else: samples 16 times as many (and the cap with them; light samples so that as many
 // rays are traced), light samples, the exact sum, the near field, the cache, the method. By hand. Fails if: a part's own
 // setting is misspelt (a scene refuses it), or a second one slips in.

@@ -279,7 +279,7 @@ TEST(CliAssets, BrokenAssetsAreNamed) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("a.json")));
 }
 
-// Claim: the picture of README, Cycles' on the left and ours on the right, is the same twice. Tolerance: 1 % of white in the
+// Claim: the image of docs/assets.md, Cycles' on the left and ours on the right, is the same twice. Tolerance: 1 % of white in the
 // mean (measured .1 %: edges of 64 rays). Fails if: the two are not of one camera, light or paint.
 TEST(LongCliAssets, SideBySideWithBlender) {
   if (!std::filesystem::exists(OPALINE_SCENES_DIR "/../build-blender/bin/python3"))

@@ -97,7 +97,7 @@ TEST(CliReport, FolderIsWholeAndKept) {
 // Claim: --truth adds a scene of its own to every form of the report: rows whose halves are random walks, the same body as
 // the scene's, lambert first; volume_diffusion is nearer to them than the scene's own profile, and lambert farther; the
 // rows of the scene itself are those of a report without it, and a second time nothing is walked again. Source: the help of
-// bench (and of the stages, bounces and diffusion, that its rows can name); a ball of 26 mean free paths, where the models are 7 and 2 % off (README, the table of models). Tolerance: the
+// bench (and of the stages, bounces and diffusion, that its rows can name); a ball of 26 mean free paths, where the models are 7 and 2 % off (bench/README.md, the table of models). Tolerance: the
 // noise here is 1.5 %, so a factor of two. Fails if: the halves are `direct`'s, or the profile of a rung is not set.
 TEST(CliReport, AgainstRandomWalks) {
   const SceneFolder folder;

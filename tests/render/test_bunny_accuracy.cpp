@@ -60,7 +60,7 @@ MeanAndTail error_between(const std::vector<Exitance>& a, const std::vector<Exit
   return {sum / double(errors.size()), errors[errors.size() * 99 / 100]};
 }
 
-// Claim: the exact sum over 100k samples is within 1 % (mean) of the one over 600k. Source: README.md, "How
+// Claim: the exact sum over 100k samples is within 1 % (mean) of the one over 600k. Source: bench/README.md, "How
 // accurate it is"; the long test below goes to 3M. Measured: mean .3 %, p99 1.5 %. Fails when: shares are
 // equal instead of Voronoi cells (mean 2 %).
 TEST(BunnyAccuracy, HundredThousandSamples) {
@@ -73,7 +73,7 @@ TEST(BunnyAccuracy, HundredThousandSamples) {
 }
 
 // Claim: the mean error falls with the number of samples, to at most 1 % at 100k, against 3M samples. Source:
-// README.md, "How accurate it is".
+// bench/README.md, "How accurate it is".
 TEST(LongBunnyAccuracy, AgainstThreeMillionSamples) {
   const std::vector<Query> points = shading_points(64, 3);
   const std::vector<Exitance> reference = exact_sum(3'000'000, points);
@@ -119,7 +119,7 @@ std::vector<double> blurred(const std::vector<double>& ratio, int width) {
 
 // Claim: no mottling at 100k samples: the ratio to a 3M-sample picture, minus its own 8-pixel blur, is at
 // most .5 % rms.
-// Source: README.md, "How accurate it is". Fails when: the near field is not split off.
+// Source: bench/README.md, "How accurate it is". Fails when: the near field is not split off.
 TEST(LongBunnyAccuracy, NoMottling) {
   const std::vector<double> picture_100k = bunny_picture(100'000), reference = bunny_picture(3'000'000);
   std::vector<double> ratio(reference.size());

@@ -112,7 +112,7 @@ struct Measured {
 };
 
 // Claim: the expected errors are those measured, of the profile that is chosen and of volume_diffusion. Source: the table
-// of `bench_volume_models FOLDER` in README.md. Tolerance: a factor of 2. Fails if: a line of the rule has another base
+// of `bench_volume_models FOLDER` in bench/README.md. Tolerance: a factor of 2. Fails if: a line of the rule has another base
 // or slope, or another profile is chosen for a row.
 TEST(ChooseModels, ExpectedErrorsAreThoseMeasured) {
   const auto expect_rows = [](const BodyShape& shape, const std::array<Measured, 3>& rows) {

@@ -30,7 +30,7 @@ void expect_no_flicker(const std::vector<Scene>& shot) {
 
 // Claim: while a surface bends slowly its shading changes, beyond the change of a picture with 16 times the
 // samples, by less than .5 % of the signal from frame to frame, and 10 times less than with samples drawn
-// anew. Each pixel shows one place of the surface, so that silhouettes do not count. Source: README.md, "How
+// anew. Each pixel shows one place of the surface, so that silhouettes do not count. Source: bench/README.md, "How
 // accurate it is".
 // Measured: .0045 % against .30 %. Fails if: a surface that bends is sampled anew, with one seed even.
 TEST(Flicker, SlowDeformation) {
@@ -38,7 +38,7 @@ TEST(Flicker, SlowDeformation) {
   expect_no_flicker(rippling(balls_in_point_light(), 25, 96, kFrames, folder.path.string()));
 }
 
-// Claim: the same while a light goes around. Source: README.md, "How accurate it is". Measured: .0017 %
+// Claim: the same while a light goes around. Source: bench/README.md, "How accurate it is". Measured: .0017 %
 // against .34 %. Fails if:
 // the light that enters samples is kept where the light has moved.
 TEST(Flicker, SlowLight) {
