@@ -96,7 +96,7 @@ std::set<std::string> anchors_of(const fs::path& page) {
 }
 
 std::vector<fs::path> pages() {
-  std::vector<fs::path> pages{root / "README.md"};
+  std::vector<fs::path> pages{root / "README.md", root / "CHANGELOG.md"};
   for (const char* folder : {"docs", "bench", "scenes", "src", ".github"})
     for (const auto& entry : fs::recursive_directory_iterator(root / folder))
       if (entry.path().extension() == ".md") pages.push_back(entry.path());
