@@ -195,7 +195,9 @@ configure() {
     rm -rf "$cache" "$folder/CMakeFiles"
   fi
   [[ -f $cache ]] || generator=(-G Ninja)
-  logged cmake -S "$root" -B "$folder" "${generator[@]}" --log-level=NOTICE "$@" || fail 3 "cmake could not configure $folder"
+  # Warnings are errors here, for both commands alike: other flags would build everything twice.
+  logged cmake -S "$root" -B "$folder" "${generator[@]}" --log-level=NOTICE -DCMAKE_COMPILE_WARNING_AS_ERROR=ON "$@" ||
+    fail 3 "cmake could not configure $folder"
 }
 
 # in    a build folder, then options for cmake --build

@@ -2,6 +2,8 @@
 // What a glTF material becomes: a translucent medium where it scatters light inside, else a coated colour or metal.
 #pragma once
 
+#include <cstdint>
+
 #include "assets/asset_scene.h"
 #include "assets/gltf_model.h"
 

@@ -2,6 +2,7 @@
 // The command line as data.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>

@@ -2,6 +2,8 @@
 // A chunk of neighbouring queries as packets of lanes.
 #pragma once
 
+#include <cstdint>
+
 #include "exitance/query_order.h"
 #include "exitance/simd/lane_kernels.h"
 

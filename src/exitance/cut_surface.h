@@ -2,6 +2,7 @@
 // The patches of a surface cache before anything is known of the light.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "exitance/point_sums.h"
 #include "opaline/exitance/evaluate.h"

@@ -2,6 +2,7 @@
 // What is summed sample by sample at a packet, and what its sums come to.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -2,6 +2,7 @@
 // From any triangles to ones the renderer can trust.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "geometry/mesh_parts.h"

@@ -2,6 +2,7 @@
 // Unit normals at vertices.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -2,6 +2,8 @@
 // How a tree of lights is built.
 #pragma once
 
+#include <cstdint>
+
 #include "opaline/lights/light_tree.h"
 
 namespace opaline {

@@ -2,6 +2,7 @@
 // Light that points gather from the surfaces around them.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>

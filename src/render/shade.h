@@ -2,6 +2,7 @@
 // From the hits of a batch of camera rays to radiance.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 

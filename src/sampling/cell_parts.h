@@ -3,6 +3,7 @@
 // bent.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -2,6 +2,7 @@
 // Each sample's share of the surface: its Voronoi cell on the mesh.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "opaline/core/monitor.h"

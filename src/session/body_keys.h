@@ -2,6 +2,8 @@
 // The keys of one body's results; a key of zeros stands for a result that is not there.
 #pragma once
 
+#include <cstdint>
+
 #include "opaline/render/precompute.h"
 #include "opaline/sampling/carry_samples.h"
 #include "opaline/session/stage_keys.h"

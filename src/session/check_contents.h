@@ -3,6 +3,7 @@
 // rely on, and what the surface alone says of the values. It costs a pass over them.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "opaline/session/stage_cache.h"

@@ -3,6 +3,7 @@
 // stands for (check_contents.h): an entry may have been made by hand.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 

@@ -2,6 +2,7 @@
 // What the server tells its pages, each a JSON text with the member "is".
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "opaline/core/monitor.h"

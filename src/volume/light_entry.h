@@ -2,6 +2,7 @@
 // Where and how light from outside arrives at a body: what walks start from.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>

@@ -2,6 +2,7 @@
 // Entered irradiance at surface samples, kept per light.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>

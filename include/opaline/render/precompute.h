@@ -3,6 +3,7 @@
 // camera.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>

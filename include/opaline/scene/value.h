@@ -3,6 +3,7 @@
 // expected.
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <span>

@@ -2,6 +2,7 @@
 // Which result of a scene's stages depends on what: the one notion that the disk cache and the session share.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -2,6 +2,8 @@
 // The samples of cut_surface, on the surface of the solid that closed meshes enclose.
 #pragma once
 
+#include <cstdint>
+
 #include "opaline/geometry/ray_scene.h"
 #include "opaline/volume/cut_surface.h"
 
