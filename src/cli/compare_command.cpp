@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <utility>
 
 #include "cli/commands.h"
@@ -70,6 +71,10 @@ std::vector<Picture> load_all(const CompareArguments& arguments) {
     paths.push_back(arguments.reference);
   else
     paths.insert(paths.end(), arguments.halves.begin(), arguments.halves.end());
+  std::error_code missing;
+  for (const std::string& path : paths)
+    if (std::filesystem::equivalent(path, arguments.error_picture, missing))
+      throw bad_file(arguments.error_picture, "is compared and would be overwritten", "another output name");
   std::vector<Picture> pictures;
   for (const std::string& path : paths) {
     pictures.push_back(load(path, arguments.layer));

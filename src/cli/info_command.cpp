@@ -11,6 +11,7 @@ void info_command(const InfoArguments& arguments) {
   const World world = make_world(scene);
   choose_models(scene, world);
   const Plan plan = make_plan(scene, world);
+  warn_of_unused_media(arguments.log, arguments.overrides, scene);
   print_plan(arguments.log, scene, world, plan);
   print_plates(arguments.log, compare_plates(scene, plan));
 }

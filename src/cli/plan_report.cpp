@@ -227,6 +227,20 @@ void print_plates(const Log& log, const std::vector<PlateModel>& plates) {
       print_plate(plate);
 }
 
+void warn_of_unused_media(const Log& log, std::span<const std::string> overrides, const Scene& scene) {
+  for (std::size_t m = 0; m < scene.media.size(); ++m) {
+    const std::string prefix = "media." + scene.media[m].name + ".";
+    const bool is_set =
+        std::ranges::any_of(overrides, [&](const std::string& text) { return text.starts_with(prefix); });
+    const bool is_used =
+        std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return shape.medium == m; });
+    if (is_set && !is_used)
+      print_warning(log, fmt::format("no shape has the medium '{0}' of --set {1}...; --set "
+                                     "shapes.NAME.medium={0} gives it to one",
+                                     scene.media[m].name, prefix));
+  }
+}
+
 void print_plan(const Log& log, const Scene& scene, const World& world, const Plan& plan,
                 std::vector<std::string>* last) {
   if (!log.quiet && log.format == LogFormat::json) print_event(log, "plan", plan_json(scene, world, plan));

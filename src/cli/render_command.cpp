@@ -209,6 +209,7 @@ double seconds_of_trial(const Session& session) {
 KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session& session,
                  const Shared& shared) {
   const Scene& scene = session.scene();
+  check_outputs_are_no_inputs(arguments, scene);
   check_method_options(arguments, scene);
   check_layers(arguments.layers, scene);
   check_precompute(arguments, scene, session.plan());
@@ -216,6 +217,7 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   check_memory(scene, session.plan(), layer_bytes);
   if (arguments.target_error) print_trial(arguments.log, seconds_of_trial(session));
   KnownErrors errors = choose_settings(stages, arguments, session);
+  if (shared.last_plan->empty()) warn_of_unused_media(arguments.log, arguments.overrides, scene);
   print_plan(arguments.log, scene, session.world(), announced_plan(arguments, session), shared.last_plan);
   check_memory(scene, session.plan(), layer_bytes);  // of the settings that were chosen
   return errors;

@@ -2,15 +2,55 @@
 #include "cli/render_outputs.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/image/texture_file.h"
+#include "opaline/lights/environment_picture.h"
 #include "opaline/render/layers.h"
 #include "opaline/render/mattes.h"
 #include "opaline/scene/names.h"
 #include "opaline/session/light_groups.h"
 
 namespace opaline {
+namespace {
+
+/// The files that a scene was read from. Names with <UDIM> stand for several.
+std::vector<std::string> input_files(const Scene& scene) {
+  std::vector<std::string> files{scene.file};
+  for (const Shape& shape : scene.shapes) {
+    if (const auto* mesh = std::get_if<MeshFile>(&shape.source)) files.push_back(mesh->path);
+    for (const Texture* texture : textures_of(scene, shape)) files.push_back(texture->file->path());
+  }
+  for (const Light& light : scene.lights)
+    if (const auto* environment = std::get_if<EnvironmentLight>(&light.source))
+      files.push_back(environment->picture->path());
+  return files;
+}
+
+/// Whether a name stands for an existing file.
+bool is_name_of(const std::string& name, const std::string& file) {
+  constexpr std::string_view kTile = "<UDIM>";
+  constexpr std::size_t kDigits = 4;
+  const std::size_t tile = name.find(kTile);
+  std::string other = name;
+  if (tile != name.npos && file.size() + kTile.size() == name.size() + kDigits)
+    other.replace(tile, kTile.size(), file.substr(tile, kDigits));
+  std::error_code missing;
+  return std::filesystem::equivalent(other, file, missing);
+}
+
+}  // namespace
+
+void check_outputs_are_no_inputs(const RenderArguments& arguments, const Scene& scene) {
+  const std::vector<std::string> inputs = input_files(scene);
+  std::vector<std::string> outputs = arguments.outputs;
+  if (!arguments.samples_ply.empty()) outputs.push_back(arguments.samples_ply);
+  for (const std::string& output : outputs)
+    if (std::ranges::any_of(inputs, [&](const std::string& input) { return is_name_of(input, output); }))
+      throw bad_file(output, "is an input of the scene and would be overwritten", "another output name");
+}
 
 void check_writable(const RenderArguments& arguments) {
   for (const std::string& path : arguments.outputs) const AtomicFile probe(path);

@@ -16,6 +16,9 @@ namespace opaline {
 /// error Error{run_failed} naming the file
 void check_writable(const RenderArguments& arguments);
 
+/// error Error{bad_input}: an output is a file that the scene was read from
+void check_outputs_are_no_inputs(const RenderArguments& arguments, const Scene& scene);
+
 /// EXR or PNG, as the name ends.
 /// error as write_exr
 WriteReport write_picture(const std::string& path, const Image& image, const Film& film,

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@
 #include "opaline/render/plate_model.h"
 
 namespace opaline {
+
+/// Warns of media that --set changes and no shape has: most often a misspelt name.
+void warn_of_unused_media(const Log& log, std::span<const std::string> overrides, const Scene& scene);
 
 /// What the scene requires and why, then the plan's warnings; nothing but the warnings with --quiet.
 /// last: null, or the texts of the frame before, which are not repeated as text, and then of this one

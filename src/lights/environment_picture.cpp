@@ -127,6 +127,7 @@ std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::st
   NegativePixels negative;
   const auto picture = std::make_shared<EnvironmentPicture>(
       std::size_t(image.full_width), std::size_t(image.full_height), colours_of(path, image, negative));
+  picture->path_ = path;
   if (negative.count > 0)
     picture->warning_ =
         fmt::format("{}: {} of {} pixels have a negative radiance, taken as 0; the lowest is {:.3g} at {}",

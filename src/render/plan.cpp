@@ -276,6 +276,33 @@ std::size_t picture_bytes(const Scene& scene, const std::vector<const Environmen
   return held + decoded + (files.empty() ? 0 : std::min(cached, TextureFile::cache_limit()));
 }
 
+/// Rays start off surfaces by what single precision needs, which grows with the sizes and distances of shapes.
+void warn_of_large_scene(const Scene& scene, const World& world, std::vector<std::string>& warnings) {
+  constexpr double kOfSize = 0x1p-18, kOfDistance = 0x1p-20;  // RayScene::offset
+  constexpr double kSeen = 4e-3;                              // of the smallest shape: measured
+  if (world.boxes.empty()) return;
+  const auto size = [&](std::size_t m) { return length(world.boxes[m].high - world.boxes[m].low); };
+  std::size_t smallest = 0, farthest = 0;
+  for (std::size_t m = 0; m < world.boxes.size(); ++m)
+    if (size(m) > 0 && !(size(smallest) <= size(m))) smallest = m;
+  const Vec3d middle = (world.boxes[smallest].low + world.boxes[smallest].high) * .5;
+  const auto reach = [&](std::size_t m) {
+    return length(component_max(world.boxes[m].high - middle, middle - world.boxes[m].low));
+  };
+  double offset = 0;
+  for (std::size_t m = 0; m < world.boxes.size(); ++m) {
+    const Vec3d away = component_max(world.boxes[m].high - world.origin, world.origin - world.boxes[m].low);
+    offset = std::max(offset, kOfSize * size(m) + kOfDistance * (away.x + away.y + away.z));
+    if (reach(m) > reach(farthest)) farthest = m;
+  }
+  if (!(offset > kSeen * size(smallest))) return;
+  warnings.push_back(fmt::format(
+      "shape '{}' reaches {:.2g} mm from shape '{}', which is {:.2g} mm across: rays start up to {:.2g} "
+      "mm off surfaces, and smaller shadows and gaps are wrong; make '{}' smaller or move it nearer",
+      scene.shapes[farthest].name, reach(farthest), scene.shapes[smallest].name, size(smallest), offset,
+      scene.shapes[farthest].name));
+}
+
 void warn_of_unused_colors(const Scene& scene, const World& world, std::vector<std::string>& warnings) {
   for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
     const Shape& shape = scene.shapes[i];
@@ -303,6 +330,7 @@ Plan make_plan(const Scene& scene, const World& world) {
     for (const std::string& warning : report.warnings)
       if (said.insert(warning).second) plan.warnings.push_back(warning);
   warn_of_unused_colors(scene, world, plan.warnings);
+  warn_of_large_scene(scene, world, plan.warnings);
   if (scene.shapes.empty())
     plan.warnings.push_back("the scene has no shapes: the picture shows its surroundings");
   if (scene.lights.empty()) plan.warnings.push_back("the scene has no lights: the picture is black");

@@ -216,5 +216,70 @@ TEST(CliFailures, DeepOverrides) {
   }
 }
 
+// Claim: no output replaces a file that the scene was read from, nor `compare` an image that it compares. Source: outputs and inputs
+// of usual names (spot.obj with spot.png). Fails if a texture, one tile of several, an environment or a reference is written over.
+TEST(CliFailures, OutputsAreNoInputs) {
+  const SceneFolder folder;
+  const std::string place = folder.path.string() + "/";
+  const auto rendered = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> all{"render", folder.scene, "--resolution", "32x16"};
+    all.insert(all.end(), words.begin(), words.end());
+    return run_program(all, place);
+  };
+  ASSERT_EQ(rendered({"-o", "ball.png", "-o", "ball.1001.png", "-o", "a.exr", "-o", "room.exr"}).exit_code,
+            0);
+  const struct {
+    std::string file;
+    std::vector<std::string> words;
+  } cases[] = {
+      {"ball.png", {"-o", "ball.png", "--set", R"(media.marble.tint={"texture": "ball.png"})"}},
+      {"ball.1001.png",
+       {"-o", "ball.1001.png", "--set", R"(media.marble.tint={"texture": "ball.<UDIM>.png"})"}},
+      {"room.exr", {"-o", "room.exr", "--environment", "room.exr"}},
+  };
+  for (const auto& [file, words] : cases) {
+    const std::string before = bytes_of(place + file);
+    const Outcome outcome = rendered(words);
+    EXPECT_EQ(outcome.exit_code, 2) << file;
+    EXPECT_TRUE(contains(outcome.err, file + ": is an input of the scene and would be overwritten"))
+        << outcome.err;
+    EXPECT_EQ(bytes_of(place + file), before);
+  }
+  const std::string before = bytes_of(place + "a.exr");
+  const Outcome compared = run_program({"compare", "room.exr", "a.exr", "--error-picture", "a.exr"}, place);
+  EXPECT_EQ(compared.exit_code, 2);
+  EXPECT_TRUE(contains(compared.err, "a.exr: is compared and would be overwritten")) << compared.err;
+  EXPECT_EQ(bytes_of(place + "a.exr"), before);
+}
+
+// Claim: a medium that --set changes and no shape has is reported, one that a shape has is not. Fails if a misspelt name of a
+// medium renders the old image without a word.
+TEST(CliFailures, UnusedMediaAreReported) {
+  const SceneFolder folder;
+  const auto warnings = [&](const std::string& name) {
+    return run_program({"info", folder.scene, "--set", "media." + name + ".preset=skin1"}).err;
+  };
+  EXPECT_TRUE(contains(warnings("wax"), "no shape has the medium 'wax' of --set media.wax...."))
+      << warnings("wax");
+  EXPECT_EQ(warnings("marble"), "");
+}
+
+// Claim: a floor so large that rays from it start visibly above it is reported with the shape that it dwarfs, one of usual size is
+// not. Source: by eye, a lit disc in the contact shadow from 20,000 mm on. Fails if shadows vanish without a word.
+TEST(CliFailures, HugeShapesAreReported) {
+  const auto warnings = [&](const std::string& half) {
+    const ScratchFolder folder;
+    put_bytes(folder.file("scene.json"),
+              R"({"shapes": [{"name": "ball", "sphere": {"center": [0, 10, 0], "radius": 10}},
+      {"name": "floor", "quad": {"corner": [-)" +
+                  half + ", 0, " + half + R"(], "u": [)" + half + R"(, 0, 0], "v": [0, 0, -)" + half +
+                  R"(]}}], "lights": [{"type": "directional", "direction": [0, -1, -0.3], "irradiance": 2}],
+      "camera": {"position": [0, 40, 60], "look_at": [0, 5, 0]}})");
+    return run_program({"info", folder.file("scene.json")}).err;
+  };
+  EXPECT_TRUE(contains(warnings("40000"), "shape 'floor' reaches ")) << warnings("40000");
+  EXPECT_EQ(warnings("2000"), "");
+}
+
 }  // namespace
 }  // namespace opaline

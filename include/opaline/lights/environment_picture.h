@@ -26,6 +26,7 @@ class EnvironmentPicture {
   /// somebody holds it. Negative radiance counts as 0, see warning().
   /// error Error{bad_input}: as read_image; the shape is not that of an environment; a value is not finite
   static std::shared_ptr<const EnvironmentPicture> read(const std::string& path);
+  const std::string& path() const { return path_; }  ///< of the file that was read; empty: none
 
   /// in    direction: unit
   RgbF radiance(const Vec3d& direction) const;
@@ -87,6 +88,7 @@ class EnvironmentPicture {
   std::uint64_t hash() const { return hash_; }
 
  private:
+  std::string path_;
   static constexpr std::size_t kNormals = 17;  ///< along each side of the unfolded octahedron
 
   /// Column and row, in pixels, from the picture's corner.
