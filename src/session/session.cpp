@@ -61,7 +61,7 @@ std::shared_ptr<const BouncedPlaces> Session::bounced_places() const {
 }
 
 std::span<const Body> Session::bodies() const {
-  return state_->bodies_;
+  return state_->bodies();
 }
 const SessionWork& Session::work() const {
   return state_->work_;

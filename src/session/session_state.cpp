@@ -245,7 +245,7 @@ RenderResult Session::State::render(Monitor* monitor) {
   prepare(monitor);
   HeldView* const view = held_view();
   if (view != nullptr) view->next_picture();
-  RenderInput input{scene_, *world_, *rays_, bodies_, monitor, view};
+  RenderInput input{scene_, *world_, *rays_, bodies(), monitor, view};
   if (bounces_of(scene_) > 0) update_bounced_places(input);
   input.bounced = bounced_;
   RenderResult result = opaline::render(input);

@@ -32,6 +32,8 @@ struct Session::State {
   void each_of(Method method, const char* stage, const BodyWork& work);
   void update_sums(const PrecomputeInput& input, const std::vector<Light>& lights);
   bool is_needed() const { return has_samples(scene_.settings.method) && !plan_.groups.empty(); }
+  /// Bodies that the image depends on: none if the method or the plan has none, even if later scenes may reuse some.
+  std::span<const Body> bodies() const { return is_needed() ? bodies_ : std::span<const Body>{}; }
   void arrange_memories(const Scene& scene, const std::vector<StageKey>& sources);
   World loaded_world(const Scene& scene, const std::vector<StageKey>& sources,
                      const std::vector<StageKey>& shapes, SessionWork& work);

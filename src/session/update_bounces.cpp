@@ -17,46 +17,57 @@ void add_bounced(Body& body, std::span<const RgbF> bounced) {
   for (std::size_t i = 0; i < bounced.size(); ++i) body.irradiance[i] += bounced[i];
 }
 
-/// While it lives, bodies have the light of lights alone, as what bounces once needs it, in place of all they have.
-class LitByLightsAlone {
+/// The parts of a body that depend on its light.
+struct BodyLight {
+  std::vector<RgbF> irradiance;
+  Octree octree;
+  std::optional<SurfaceCache> surface_cache;
+  std::shared_ptr<const CellFit> volume_fit;
+};
+
+/// Direct light of a body, without bounces.
+/// error Error{interrupted}
+BodyLight direct_light(const Body& body, const BodyKeys& keys, const std::vector<Light>& lights) {
+  BodyLight direct;
+  if (body.plan.method == Method::volume_diffusion) {
+    direct.volume_fit = keys.lit_fit;
+    return direct;
+  }
+  direct.volume_fit = body.volume_fit;
+  direct.irradiance = entered_irradiance(body, lights);
+  direct.octree = gather_flux(body.surface.samples, direct.irradiance);
+  if (body.kernel.far_side != nullptr) bound_normals(direct.octree);
+  return direct;
+}
+
+/// Replaces the light of bodies by their direct light, from which the first bounce is gathered; the destructor restores
+/// it. An interrupted constructor leaves the bodies unchanged: it replaces nothing before it has computed everything,
+/// because no destructor would restore it.
+class DirectlyLitBodies {
  public:
-  LitByLightsAlone(std::vector<Body>& bodies, const std::vector<BodyKeys>& keys,
-                   const std::vector<Light>& lights)
+  DirectlyLitBodies(std::vector<Body>& bodies, const std::vector<BodyKeys>& keys,
+                    const std::vector<Light>& lights)
       : bodies_(bodies) {
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      Body& body = bodies[b];
-      all_.push_back({std::move(body.irradiance), std::move(body.octree), std::move(body.surface_cache),
-                      body.volume_fit});
-      body.surface_cache.reset();
-      if (body.plan.method == Method::volume_diffusion) {
-        body.volume_fit = keys[b].lit_fit;
-        continue;
-      }
-      body.irradiance = entered_irradiance(body, lights);
-      body.octree = gather_flux(body.surface.samples, body.irradiance);
-      bound_far_side(body);
-    }
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      other_.push_back(direct_light(bodies[b], keys[b], lights));
+    exchange();
   }
-  ~LitByLightsAlone() {
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      bodies_[b].irradiance = std::move(all_[b].irradiance);
-      bodies_[b].octree = std::move(all_[b].octree);
-      bodies_[b].surface_cache = std::move(all_[b].surface_cache);
-      bodies_[b].volume_fit = std::move(all_[b].volume_fit);
-    }
-  }
-  LitByLightsAlone(const LitByLightsAlone&) = delete;
-  LitByLightsAlone& operator=(const LitByLightsAlone&) = delete;
+  ~DirectlyLitBodies() { exchange(); }
+  DirectlyLitBodies(const DirectlyLitBodies&) = delete;
+  DirectlyLitBodies& operator=(const DirectlyLitBodies&) = delete;
 
  private:
-  struct AllLight {
-    std::vector<RgbF> irradiance;
-    Octree octree;
-    std::optional<SurfaceCache> surface_cache;
-    std::shared_ptr<const CellFit> volume_fit;
-  };
+  void exchange() noexcept {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      std::swap(bodies_[b].irradiance, other_[b].irradiance);
+      std::swap(bodies_[b].octree, other_[b].octree);
+      std::swap(bodies_[b].surface_cache, other_[b].surface_cache);
+      std::swap(bodies_[b].volume_fit, other_[b].volume_fit);
+    }
+  }
+
   std::vector<Body>& bodies_;
-  std::vector<AllLight> all_;
+  std::vector<BodyLight> other_;  // one a body
 };
 
 }  // namespace
@@ -140,12 +151,16 @@ void Session::State::update_bounced_places(const RenderInput& input) {
   builder.add(view_key(precompute, mesh_keys_));
   builder.add(surfaces_key(precompute, mesh_keys_, recentred_lights(scene_, *world_)));
   for (const Light& light : scene_.lights) builder.add(light.is_seen);  // else surfaces behind it are seen
-  for (const BodyKeys& known : keys_)
-    builder.add(known.tree_key).add(known.kernel_key).add(known.bounced_key);
+  for (std::size_t b = 0; b < bodies_.size(); ++b)  // a method that was used before leaves its keys
+    if (has_cells(bodies_[b].plan.method))
+      builder.add(keys_[b].bounced_key);
+    else
+      builder.add(keys_[b].tree_key).add(keys_[b].kernel_key);
   // The keys of bodies say nothing where none are prepared.
   const StageKey key = is_needed() ? builder.key() : StageKey{};
   if (bounced_ != nullptr && key != StageKey{} && key == bounced_key_) return;
-  const LitByLightsAlone lit(bodies_, keys_, recentred_lights(scene_, *world_));
+  std::optional<DirectlyLitBodies> directly_lit;
+  if (is_needed()) directly_lit.emplace(bodies_, keys_, recentred_lights(scene_, *world_));
   bounced_ = opaline::bounced_places(input);
   bounced_key_ = key;
 }

@@ -323,5 +323,71 @@ TEST(Reuse, Interrupted) {
   }
 }
 
+/// two_balls, whose surfaces light each other once.
+Scene balls_that_bounce() {
+  Scene scene = two_balls();
+  scene.settings.bounces = 1;
+  scene.settings.samples = 800;
+  return scene;
+}
+
+// Claim: a render that is cancelled before it gathers bounced light for the camera leaves the bodies unchanged: the next
+// image is that of a new session. Source: session.h. Fails if: an interrupted DirectlyLitBodies (update_bounces.cpp) has
+// taken the light of a body: one body is then black, and others have no bounced light.
+TEST(Reuse, CancelledBeforeBouncedPlaces) {
+  for (const Method method : {Method::hierarchical, Method::volume_diffusion})
+    for (const bool hold_view : {false, true}) {
+      Scene scene = balls_that_bounce();
+      scene.settings.method = method;
+      Session session;
+      session.hold_view(hold_view);
+      picture_of(session, scene);
+      scene.camera.position.x = 20;
+      session.edit(scene);
+      session.prepare();
+      Monitor monitor;
+      monitor.cancelled = true;
+      EXPECT_THROW(session.render(&monitor), Error);
+      EXPECT_TRUE(same_pixels(session.render().image, cold_picture(scene)));
+    }
+}
+
+// Claim: each method gathers bounced light from its own bodies, also if its other results are reused. Source: session.h.
+// Fails if: the key of bounced places contains keys that belong to the method before.
+TEST(Reuse, MethodsInTurnGatherTheirBouncedLight) {
+  Scene scene = balls_that_bounce();
+  scene.settings.light_samples = 256;  // fewer: the methods' ray structures differ, and hence their keys
+  Session session;
+  for (const Method method :
+       {Method::volume_diffusion, Method::hierarchical, Method::volume_diffusion, Method::hierarchical}) {
+    scene.settings.method = method;
+    EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+  }
+}
+
+// Claim: a method without samples ignores the bodies that another method prepared. Source: session.h. Fails if: their
+// irradiance is computed for lights added since, from which they have no transfer (an invalid read).
+TEST(Reuse, LightsAddedWithoutSamples) {
+  Scene scene = balls_that_bounce();
+  Session session;
+  picture_of(session, scene);
+  scene.settings.method = Method::lambert;
+  for (int i = 0; i < 8; ++i) scene.lights.push_back({"sun", DirectionalLight{{0, -1, 0}, {1, 1, 1}}});
+  EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+}
+
+// Claim: a scene without translucent shapes ignores the bodies of the scene before. Source: session.h. Fails if: they are
+// rendered, for their meshes no longer exist (an invalid write).
+TEST(Reuse, LastTranslucentShapeGone) {
+  Scene scene = balls_that_bounce();
+  std::ranges::rotate(scene.shapes, scene.shapes.begin() + 2);
+  Session session;
+  picture_of(session, scene);
+  EXPECT_EQ(session.bodies().size(), 2u);
+  scene.shapes.resize(1);
+  EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+  EXPECT_TRUE(session.bodies().empty());
+}
+
 }  // namespace
 }  // namespace opaline

@@ -88,9 +88,16 @@ struct LongViewPage : ::testing::Test, PageHands {
     EXPECT_TRUE(page.read_final(least_revision));
     EXPECT_TRUE(browser.comes_true(tab, kIsFinal + std::to_string(page.revision())));
     revision = page.revision();
-    return page.texts.at("scene").at("edits").get<std::vector<std::string>>();
+    const Json& scene = page.texts.at("scene");
+    const Json& own = scene.at("look");
+    look.clear();
+    if (!own.is_null())
+      look = {"camera.position=" + own.at("position").dump(), "camera.look_at=" + own.at("look_at").dump()};
+    return scene.at("edits").get<std::vector<std::string>>();
   }
   std::uint32_t revision = 0;
+  /// The view's own camera when final_edits was last called, as overrides of the scene's; empty: the view has none.
+  std::vector<std::string> look;
 };
 
 }  // namespace opaline::test

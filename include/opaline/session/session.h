@@ -131,8 +131,9 @@ class Session {
   const World& world() const;
   /// What the scene requires.
   const Plan& plan() const;
-  const RayScene& rays() const;          ///< after prepare
-  std::span<const Body> bodies() const;  ///< after prepare
+  const RayScene& rays() const;  ///< after prepare
+  /// After prepare; none where the method or the plan has none.
+  std::span<const Body> bodies() const;
   /// Of the last picture in which light bounced, of whichever view and light; null: none of these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
   const SessionWork& work() const;  ///< of the last edit and since
