@@ -29,14 +29,16 @@ std::vector<std::string> input_files(const Scene& scene) {
   return files;
 }
 
-/// Whether a name stands for an existing file.
+/// Returns whether a name, of which <UDIM> stands for any tile, is that of an existing file.
 bool is_name_of(const std::string& name, const std::string& file) {
   constexpr std::string_view kTile = "<UDIM>";
   constexpr std::size_t kDigits = 4;
-  const std::size_t tile = name.find(kTile);
   std::string other = name;
-  if (tile != name.npos && file.size() + kTile.size() == name.size() + kDigits)
-    other.replace(tile, kTile.size(), file.substr(tile, kDigits));
+  if (const std::size_t tile = name.find(kTile); tile != name.npos) {
+    const std::size_t behind = name.size() - tile - kTile.size() + kDigits;
+    if (file.size() < behind) return false;
+    other.replace(tile, kTile.size(), file.substr(file.size() - behind, kDigits));
+  }
   std::error_code missing;
   return std::filesystem::equivalent(other, file, missing);
 }

@@ -226,7 +226,9 @@ TEST(CliFailures, OutputsAreNoInputs) {
     all.insert(all.end(), words.begin(), words.end());
     return run_program(all, place);
   };
-  ASSERT_EQ(rendered({"-o", "ball.png", "-o", "ball.1001.png", "-o", "a.exr", "-o", "room.exr"}).exit_code,
+  ASSERT_EQ(rendered({"-o", "ball.png", "-o", "ball.1001.png", "-o", "ball.1002.png", "-o", "a.exr", "-o",
+                      "room.exr"})
+                .exit_code,
             0);
   const struct {
     std::string file;
