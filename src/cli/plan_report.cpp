@@ -12,6 +12,7 @@
 #include "opaline/render/expected_seconds.h"
 #include "opaline/render/plan_texts.h"
 #include "opaline/scene/names.h"
+#include "scene/override_key.h"
 
 namespace opaline {
 namespace {
@@ -94,7 +95,8 @@ std::string marble_text(const Scene& scene, const World& world) {
   const bool has_lights = std::ranges::any_of(scene.lights, is_delta);  // whose brightness follows the unit
   const bool has_unit = !(diagonal > 0) || !(is_unitless || (diagonal > kMuch && !has_lights));
   return fmt::format(
-      "; --set media.marble.preset=marble --set shapes.{}.medium=marble{} makes marble of {}{}{}", shape.name,
+      "; --set media.marble.preset=marble --set shapes.{}.medium=marble{} makes marble of {}{}{}",
+      override_key(shape.name, 0),
       has_unit ? "" : fmt::format(" --set mm_per_unit={:.2g}", scene.mm_per_unit * kHandful / diagonal),
       shape.name, has_unit ? "" : fmt::format(", {} mm across", kHandful),
       shape.reflectance_texture ? " and not of its texture" : "");

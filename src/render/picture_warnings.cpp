@@ -11,6 +11,7 @@
 
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/lights/light.h"
+#include "scene/override_key.h"
 
 namespace opaline {
 namespace {
@@ -237,8 +238,11 @@ bool reaches_a_surface(const Light& light, const World& world) {
 std::string way_to_turn(const Scene& scene, const World& world, const Light& light) {
   if (!is_delta(light)) return "it shines where u x v points; exchange u and v";
   const Bounds box = box_of(world);
+  std::size_t index = 0;  // in the file, where the channels of an environment are one light
+  for (std::size_t l = 0; &scene.lights[l] != &light; ++l)
+    index += scene.lights[l].name != scene.lights[l + 1].name ? 1 : 0;
   return fmt::format("its cone misses all shapes; --set lights.{}.direction={} points it at their middle",
-                     light.name,
+                     override_key(light.name, index),
                      point_text(.5 * (box.low + box.high) - *extent(light).center, scene.mm_per_unit));
 }
 

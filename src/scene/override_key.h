@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+namespace opaline {
+
+/// How --set names an element of a list: by its name, by its index where a shell or a path of keys would split the name.
+inline std::string override_key(const std::string& name, std::size_t index) {
+  const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  return !name.empty() && std::ranges::all_of(name, is_plain) ? name : std::to_string(index);
+}
+
+}  // namespace opaline
