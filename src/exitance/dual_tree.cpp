@@ -75,7 +75,7 @@ class Chunk {
     }
     gather(nodes_.data(), std::array{std::uint32_t(0)}, block_);
     const SourceBlock root = block_;
-    refine(0, 0, chunk_.count, {&root, 1}, 1, {}, {});
+    refine(rest_blocks_, 0, chunk_.count, {&root, 1}, 1, {}, {});
     for (std::size_t p = 0, first = 0; p < chunk_.count; first += cut_.counts[p++])
       set_exitance(input_, sums_[p], order_.subspan(first, cut_.counts[p]), result);
   }
@@ -154,8 +154,10 @@ class Chunk {
 
   // Puts nodes far from packets [first, last) into their expansion, and hands the others down. candidates:
   // `count` nodes; inherited: what is known of them already, around `center`
-  void refine(std::size_t depth, std::size_t first, std::size_t last, std::span<const SourceBlock> candidates,
-              std::size_t count, const Expansion& inherited, const Vec3f& center) {
+  // rest_blocks: for this call, and for those that it makes
+  void refine(std::span<std::vector<SourceBlock>> rest_blocks, std::size_t first, std::size_t last,
+              std::span<const SourceBlock> candidates, std::size_t count, const Expansion& inherited,
+              const Vec3f& center) {
     if (last - first == 1) return refine_packets(first, last, candidates, count, inherited, center);
     const Cluster cluster = cluster_of(first, last);
     rest_.clear();
@@ -174,12 +176,13 @@ class Chunk {
       }
     });
     const Expansion all = expansion_of(cluster, lists.expanded, inherited, center);
-    std::vector<SourceBlock>& rest = rest_blocks_[depth];
+    std::vector<SourceBlock>& rest = rest_blocks.front();
     gather_all(rest_, rest);
     const std::size_t rest_count = rest_.size();
     if (last - first <= kTogether) return refine_packets(first, last, rest, rest_count, all, cluster.center);
     for (std::size_t begin = first; begin < last; begin += kTogether)
-      refine(depth + 1, begin, std::min(last, begin + kTogether), rest, rest_count, all, cluster.center);
+      refine(rest_blocks.subspan(1), begin, std::min(last, begin + kTogether), rest, rest_count, all,
+             cluster.center);
   }
 
   void prefetch_samples(const OctreeNode& leaf) const {
@@ -275,7 +278,8 @@ RgbF darkest(const EvaluateInput& input, std::span<const PacketCut> cuts, std::s
 }  // namespace
 
 void evaluate_dual_tree(const EvaluateInput& input, std::span<Exitance> result) {
-  const LaneKernels& kernels = lane_kernels(input.instruction_set);
+  const MachineSets machine = this_machine();
+  const LaneKernels& kernels = lane_kernels(input.instruction_set, machine);
   QueryPackets cut_now;
   const bool is_cut = input.packets != nullptr && !input.packets->order.empty() &&
                       input.packets->radius == input.kernel.radius;
