@@ -340,7 +340,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   for (std::string& text : lights_that_miss(scene, world)) plan.warnings.push_back(std::move(text));
   // Measured by bench_plan: the libraries; layers of the pixels that are not empty, and on their way to the file.
   const std::size_t seen = seen_pixels(scene, lights, world);
-  plan.bytes = 65'000'000 + scene.asset_bytes + seen * 125;
+  plan.bytes = 60'000'000 + scene.asset_bytes + seen * 140;
   for (const Mesh& mesh : world.meshes) {
     plan.triangles += mesh.triangles.size();
     plan.bytes += mesh.positions.size() * 48 + mesh.triangles.size() * 195;  // and Embree's tree
@@ -389,9 +389,10 @@ Plan make_plan(const Scene& scene, const World& world) {
     samples += group.samples;
   }
   // The lattice beside shadow edges has 56 bytes a place: about as many places as pixels there, up to its
-  // finest level; and surface caches have their places, more as there are more pixels. Measured on bunnies: 30 bytes a
-  // pixel at 512 x 512, 300 to 500 a sample above.
-  plan.bytes += std::min(45 * seen, 500 * samples);
+  // finest level; and surface caches have their places, more as there are more pixels. Measured on bunnies: 30 to 60 bytes
+  // a pixel, 300 to 500 a sample above; 5 to 11 MB where a pixel has several camera rays.
+  plan.bytes += std::min(60 * seen, 500 * samples);
+  if (samples > 0 && scene.film.samples_per_pixel > 1) plan.bytes += 5'000'000;
   if (bounces_of(scene) > 0) plan.bytes += kBytesOfBouncePlaces;
   plan.bytes += std::size_t(walked);
   plan.rays = cheaper_build(scene, lights, plan);
