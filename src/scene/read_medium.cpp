@@ -154,7 +154,8 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   if (medium.name.empty()) value.fail_key("has no name", "a name that is not empty");
   const std::string_view form = form_of(reader);
   if (form == "preset") {
-    const Preset& preset = preset_of(reader.need("preset"));
+    const Value name = reader.need("preset");
+    const Preset& preset = preset_of(name);
     medium.coefficients = preset.coefficients;
     medium.eta = preset.eta;
   } else if (form == "subsurface_color") {
