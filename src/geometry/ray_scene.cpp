@@ -11,6 +11,7 @@
 
 #include "geometry/embree_handles.h"
 #include "geometry/oriented_point.h"
+#include "geometry/ray_offset.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 
@@ -97,7 +98,7 @@ void RayScene::attach(const Mesh& mesh, RayBuild build) {
   rtcAttachGeometryByID(handles_->scene, geometry, unsigned(meshes_.size()));
   rtcReleaseGeometry(geometry);
   const Bounds box = bounds(mesh);
-  const float offset = float(length(box.high - box.low) * 0x1p-18);
+  const float offset = float(length(box.high - box.low) * double(kRayOffsetOfSize));
   meshes_.push_back({std::move(vertices), indices, mesh.normals.empty(), offset});
   largest_offset_ = std::max(largest_offset_, offset);
 }
@@ -143,7 +144,7 @@ SurfacePoint RayScene::surface_point(std::uint32_t mesh, std::uint32_t triangle,
 }
 
 float RayScene::offset(std::uint32_t mesh, const Vec3f& p) const {
-  return meshes_[mesh].offset + 0x1p-20f * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
+  return meshes_[mesh].offset + kRayOffsetOfPosition * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
 }
 
 }  // namespace opaline

@@ -61,9 +61,9 @@ class LinearInput : public OIIO::ImageInput {
   void* buffer_for(void* texels, std::size_t pixels, OIIO::TypeDesc type);
   void finish(void* texels, std::size_t pixels, OIIO::TypeDesc type);
   bool complain();
-  /// From values_ to what the cache gets.
   /// Returns whether the values of texels are finite and at most kLargestTexel; else sets the error.
   bool check_range(const void* values, std::size_t count, OIIO::TypeDesc type);
+  /// From values_ to what the cache gets.
   bool make_linear(std::size_t pixels, void* data);
 
   std::shared_ptr<const PictureSource> source_;

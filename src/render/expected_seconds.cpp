@@ -44,7 +44,7 @@ Lighting lighting_of(const Scene& scene) {
   return all;
 }
 
-/// CPU seconds to follow the light that enters at a sample from one direction.
+/// CPU seconds to trace the light transmitted at a sample from one direction.
 double seconds_of_entry(const Medium& medium, const GroupPlan& group) {
   constexpr double kMostCells = 50;  // cells far inside are larger
   const double longest = max_component(make_diffuse_profile(medium).mean_free_path);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "geometry/ray_offset.h"
 #include "image/picture_module.h"
 #include "opaline/image/texture_file.h"
 #include "opaline/lights/environment_picture.h"
@@ -276,10 +277,9 @@ std::size_t picture_bytes(const Scene& scene, const std::vector<const Environmen
   return held + decoded + (files.empty() ? 0 : std::min(cached, TextureFile::cache_limit()));
 }
 
-/// Rays start off surfaces by what single precision needs, which grows with the sizes and distances of shapes.
+/// Warns where rays start visibly off surfaces, in scenes far larger than their smallest shape.
 void warn_of_large_scene(const Scene& scene, const World& world, std::vector<std::string>& warnings) {
-  constexpr double kOfSize = 0x1p-18, kOfDistance = 0x1p-20;  // RayScene::offset
-  constexpr double kSeen = 4e-3;                              // of the smallest shape: measured
+  constexpr double kVisible = 4e-3;  // of the smallest shape; above it a lit sliver shows in contact shadows
   if (world.boxes.empty()) return;
   const auto size = [&](std::size_t m) { return length(world.boxes[m].high - world.boxes[m].low); };
   std::size_t smallest = 0, farthest = 0;
@@ -292,10 +292,11 @@ void warn_of_large_scene(const Scene& scene, const World& world, std::vector<std
   double offset = 0;
   for (std::size_t m = 0; m < world.boxes.size(); ++m) {
     const Vec3d away = component_max(world.boxes[m].high - world.origin, world.origin - world.boxes[m].low);
-    offset = std::max(offset, kOfSize * size(m) + kOfDistance * (away.x + away.y + away.z));
+    offset = std::max(offset, double(kRayOffsetOfSize) * size(m) +
+                                  double(kRayOffsetOfPosition) * (away.x + away.y + away.z));
     if (reach(m) > reach(farthest)) farthest = m;
   }
-  if (!(offset > kSeen * size(smallest))) return;
+  if (!(offset > kVisible * size(smallest))) return;
   warnings.push_back(fmt::format(
       "shape '{}' reaches {:.2g} mm from shape '{}', which is {:.2g} mm across: rays start up to {:.2g} "
       "mm off surfaces, and smaller shadows and gaps are wrong; make '{}' smaller or move it nearer",

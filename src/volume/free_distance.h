@@ -23,7 +23,7 @@ class FreeDistance {
   FreeDistance(const World& world, const Bounds& box, double edge, double reach);
 
   static constexpr std::size_t kMostVoxels = std::size_t(1) << 23;
-  /// What making one takes.
+  /// Memory in bytes during construction.
   static double expected_bytes(const World& world, const Bounds& box, double edge);
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 

@@ -268,7 +268,8 @@ TEST(TextureFile, RefusesChunksWithoutTheirPixels) {
     EXPECT_NE(message_of(path).find("the picture is damaged: "), std::string::npos) << compression << tile;
   };
   const std::string half("Y\0\1\0\0\0", 6);
-  for (const char* const compression : {"none", "rle", "zip", "zips", "piz", "pxr24"})
+  for (const char* const compression :
+       {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"})
     for (const int tile : {0, 16})
       put_and_change(compression, tile, [&](std::string& bytes) { bytes[bytes.find(half) + 2] = 2; });
   put_and_change("zip", 0, [](std::string& bytes) {
@@ -279,8 +280,8 @@ TEST(TextureFile, RefusesChunksWithoutTheirPixels) {
   });
 }
 
-// Claim: a texture with one texel that is no number, infinite, or so large that slopes between texels are infinite, is refused
-// where that texel is looked up, by name. Source: by hand. Fails if lookups return it.
+// Claim: looking up a texel that is NaN, infinite or above 1e30 (slopes between such texels overflow) is an error naming the
+// file. Source: by hand. Fails if the lookup returns the texel.
 TEST(TextureFile, RefusesTexelsOutOfRange) {
   const ScratchFolder folder;
   const auto message_of_lookup = [&](OIIO::TypeDesc type, int tile, float value) -> std::string {

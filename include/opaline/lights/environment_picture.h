@@ -88,7 +88,6 @@ class EnvironmentPicture {
   std::uint64_t hash() const { return hash_; }
 
  private:
-  std::string path_;
   static constexpr std::size_t kNormals = 17;  ///< along each side of the unfolded octahedron
 
   /// Column and row, in pixels, from the picture's corner.
@@ -124,6 +123,7 @@ class EnvironmentPicture {
   std::size_t width_, height_;
   std::vector<RgbF> pixels_;
   bool is_grey_ = true;
+  std::string path_;
   std::uint64_t hash_ = 0;
   std::string warning_;
   // Cells: means over pixels, where there are many.
