@@ -12,6 +12,7 @@
 #include <optional>
 #include <string_view>
 
+#include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/core/stopwatch.h"
 #include "opaline/render/render.h"
 #include "opaline/scene/load_scene.h"
@@ -163,7 +164,7 @@ void run(const char* file, std::size_t samples, ProfileKind profile, bool dual_o
   Exact exact{std::max<std::size_t>(1, points.size() / 1500), {}};
   std::vector<Query> some;
   for (std::size_t i = 0; i < points.size(); i += exact.stride) some.push_back(points[i]);
-  EvaluateInput input{group.octree, group.kernel, some};
+  EvaluateInput input{hierarchical_state(group).octree(), hierarchical_state(group).kernel(), some};
   input.evaluator = EvaluatorKind::brute_force;
   const Stopwatch watch;
   exact.exitance = evaluate(input);

@@ -22,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "methods/volume/volume_state.h"
 #include "model_table.h"
 #include "opaline/core/random.h"
 #include "opaline/scene/load_scene.h"
@@ -116,8 +117,9 @@ int main(int argc, char** argv) {
     session.edit(scene);
     session.prepare();
     const Body& body = session.bodies()[0];
-    truth = {body.volume->exitance, body.volume->error};
-    fmt::print("{} walks, error {:.1f} %\n", body.volume->walks, 100 * body.volume->relative_error);
+    truth = {volume_state(body).exitance.value.exitance, volume_state(body).exitance.value.error};
+    fmt::print("{} walks, error {:.1f} %\n", volume_state(body).exitance.value.walks,
+               100 * volume_state(body).exitance.value.relative_error);
     write_truth(argv[2], truth);
   }
   scene.settings.method = Method::hierarchical;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "methods/volume/volume_state.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 #include "user_seconds.h"
@@ -29,7 +30,7 @@ int main(int argc, char** argv) {
     if (repeat < 2) continue;
     const double time = median(seconds);
     for (const Body& body : session.bodies()) {
-      const VolumeExitance& walked = *body.volume;
+      const VolumeExitance& walked = volume_state(body).exitance.value;
       double leaves = 0, area = 0;
       for (std::size_t i = 0; i < walked.exitance.size(); ++i) {
         leaves += double(body.surface.samples[i].area) * double(walked.exitance[i].y);

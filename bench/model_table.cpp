@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "methods/volume/volume_state.h"
 #include "opaline/core/error.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/volume/nearest_sample.h"
@@ -91,10 +92,10 @@ WalkedCells walked_cells(Scene scene, const std::string& path) {
   const Body& body = session.bodies()[0];
   cells.samples = body.surface.samples;
   if (is_there) return cells;
-  cells.truth = {body.volume->exitance, body.volume->error};
+  cells.truth = {volume_state(body).exitance.value.exitance, volume_state(body).exitance.value.error};
   write_truth(path, cells.truth);
-  fmt::print(stderr, "{}: {} walks a cell, error {:.1f} %\n", path, body.volume->walks,
-             100 * body.volume->relative_error);
+  fmt::print(stderr, "{}: {} walks a cell, error {:.1f} %\n", path, volume_state(body).exitance.value.walks,
+             100 * volume_state(body).exitance.value.relative_error);
   return cells;
 }
 
@@ -213,11 +214,6 @@ Scene scene_of(const Pair& pair, const std::vector<std::string>& overrides) {
 
 std::vector<RgbF> exitance_at(const Session& session, std::span<const SurfaceSample> places) {
   const Body& body = session.bodies()[0];
-  std::vector<RgbF> exitance;
-  if (body.volume_fit != nullptr && has_cells(session.scene().settings.method)) {
-    for (const SurfaceSample& s : places) exitance.push_back(body.volume_fit->at(s.position, s.normal).value);
-    return exitance;
-  }
   std::vector<Vec3d> points;
   std::vector<Vec3f> normals;
   for (const SurfaceSample& s : places) {

@@ -16,13 +16,14 @@
 #include "cli/resumable_state.h"
 #include "cli/resumable_walks.h"
 #include "cli/stages.h"
+#include "methods/method.h"
+#include "methods/volume/volume_state.h"
 #include "opaline/core/error.h"
 #include "opaline/core/units.h"
 #include "opaline/render/direct.h"
 #include "opaline/render/expected_error.h"
 #include "opaline/render/expected_seconds.h"
 #include "opaline/render/picture_warnings.h"
-#include "opaline/render/walk_warnings.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
 #include "opaline/session/scene_hash.h"
@@ -132,9 +133,10 @@ Summary summarize(const Session& session, const Shading& shading) {
   const std::vector<Light> lights = recentred_lights(session.scene(), session.world());
   for (const Body& group : session.bodies()) {
     summary.samples += group.surface.samples.size();
-    if (session.scene().settings.method == Method::volume && group.volume) {
-      summary.walks = std::max(summary.walks, group.volume->walks);
-      summary.walk_noise = std::max(summary.walk_noise, group.volume->relative_error);
+    if (session.scene().settings.method == Method::volume) {
+      const VolumeExitance& walked = volume_state(group).exitance.value;
+      summary.walks = std::max(summary.walks, walked.walks);
+      summary.walk_noise = std::max(summary.walk_noise, walked.relative_error);
     }
     std::map<std::string, double> noise;  // the largest of a light's channels
     for (std::size_t l = 0; l < group.transfers.size(); ++l) {
@@ -233,7 +235,7 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
     print_decisions(arguments.log, session.decisions(),
                     shared.cache != nullptr ? shared.cache->warning() : "");
   for (const Body& body : session.bodies())
-    for (const std::string& text : walk_warnings(body, session.world().unit))
+    for (const std::string& text : method_of(body.plan.method).warnings(body, session.world().unit))
       print_warning(arguments.log, text);
   Shading shading = shade(stages, arguments, session);
   if (shading.picture.non_finite > 0)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/core/stopwatch.h"
 #include "quality/probe.h"
 
@@ -75,7 +76,7 @@ bool SettingsSearch::try_surface_cache() {
   session.edit(scene);
   session.prepare(monitor);
   return std::ranges::any_of(session.bodies(),
-                             [](const Body& group) { return group.surface_cache.has_value(); });
+                             [](const Body& body) { return hierarchical_state(body).uses_surface_cache; });
 }
 
 double tolerance_for(double error) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/core/parallel.h"
 #include "opaline/render/surface_textures.h"
 #include "opaline/sampling/draft_samples.h"
@@ -114,15 +115,12 @@ std::vector<Body> draft_groups(const PrecomputeInput& input) {
     const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
     SurfaceSamples surface =
         draft_samples(input.world, plan.meshes, std::max(kFewest, plan.samples / kFewer));
-    SplitKernel kernel = group_kernel(profile, surface.spacing(), input.world, input.scene);
+    SplitKernel kernel = body_kernel(profile, surface.spacing(), input.world, input.scene);
     std::vector<LightTransfer> transfers = light_samples(input, g, surface.samples, lights);
-    groups.push_back({plan, profile, std::move(surface), std::move(transfers), {}, {}});
+    groups.push_back({plan, profile, std::move(surface), std::move(transfers)});
     Body& body = groups.back();
     body.entering = entering_tints(textures, body.surface.samples);
-    body.irradiance = entered_irradiance(body, lights);
-    body.octree = gather_flux(body.surface.samples, body.irradiance);
-    if (kernel.far_side != nullptr) bound_normals(body.octree);
-    body.kernel = std::move(kernel);
+    set_hierarchical_state(body, entered_irradiance(body, lights), std::move(kernel));
   }
   return groups;
 }

@@ -21,9 +21,6 @@ inline bool is_local(const DiffuseProfile& profile, std::size_t channel) {
   return profile.total[channel] > 0 && !(profile.mean_free_path[channel] > 0);
 }
 
-/// 1/sigma_t of what is walked in a body, the least of the channels, world units.
-double walked_mean_free_path(const Scene& scene, const World& world, const GroupPlan& group);
-
 /// What stands below the surface of bodies of one medium, by the textures above: R G B, reduced, lengths in the world's
 /// unit.
 class LocalMedia {

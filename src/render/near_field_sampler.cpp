@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/core/random.h"
 #include "opaline/exitance/refined_stake.h"
 #include "opaline/lights/light.h"
@@ -76,7 +77,9 @@ struct NearFieldSampler::Places {
 
 NearFieldSampler::NearFieldSampler(const Body& group, int light_samples,
                                    std::shared_ptr<IrradianceLattice>* held)
-    : kernel_(group.kernel), near_(group), is_own_mesh_(*std::ranges::max_element(group.plan.meshes) + 1) {
+    : kernel_(hierarchical_state(group).kernel()),
+      near_(group),
+      is_own_mesh_(*std::ranges::max_element(group.plan.meshes) + 1) {
   for (const std::uint32_t mesh : group.plan.meshes) is_own_mesh_[mesh] = true;
   const double spacing = kCoarsest * double(near_.narrowest), eta = double(float(group.profile.eta));
   const int of_place = std::max(1, light_samples / kFewerRays);

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "opaline/exitance/evaluate.h"
 #include "opaline/render/precompute.h"
 #include "render/irradiance_lattice.h"
 #include "render/near_field_means.h"

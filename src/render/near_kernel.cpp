@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/core/random.h"
 
 namespace opaline {
@@ -16,11 +17,11 @@ constexpr double kBeyondReach = 0.02;  // of a kernel
 
 }  // namespace
 
-NearKernel::NearKernel(const Body& group) : radius(group.kernel.radius) {
+NearKernel::NearKernel(const Body& group) : radius(hierarchical_state(group).kernel().radius) {
   const double h = double(radius);
   std::array<double, kRings> mean_rings{};
   for (std::size_t c = 0; c < 3; ++c) {
-    if (!(group.kernel.own_irradiance[c] > 0)) continue;
+    if (!(hierarchical_state(group).kernel().own_irradiance[c] > 0)) continue;
     std::array<double, kRings> rings;
     for (std::size_t i = 0; i < kRings; ++i)
       rings[i] = near_ring(group.profile.channels[c], h, (double(i) + 0.5) / kRings);

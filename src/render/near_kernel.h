@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "opaline/exitance/evaluate.h"
 #include "opaline/render/precompute.h"
 
 namespace opaline {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/core/parallel.h"
 #include "opaline/core/random.h"
 #include "opaline/exitance/refined_stake.h"
@@ -34,8 +35,8 @@ std::uint64_t key_of(const Vec3f& p) {
 }  // namespace
 
 bool can_hold_own_light(const Scene& scene, const World& world, const Body& group) {
-  const auto& own = group.kernel.own_irradiance;
-  return bounces_of(scene) == 0 && group.kernel.needs_irradiance() &&
+  const auto& own = hierarchical_state(group).kernel().own_irradiance;
+  return bounces_of(scene) == 0 && hierarchical_state(group).kernel().needs_irradiance() &&
          std::ranges::all_of(own, [](float s) { return s <= kSharp; }) &&
          std::ranges::none_of(group.plan.meshes,
                               [&](std::uint32_t m) { return world.meshes[m].normals.empty(); });
@@ -71,7 +72,7 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
                                 point_irradiance_seed(settings),
                                 variance};
   const std::vector<RgbF> own = irradiance_at(lighting);
-  const auto& share = group_.kernel.own_irradiance;
+  const auto& share = hierarchical_state(group_).kernel().own_irradiance;
   for (std::size_t i = 0; i < points.size(); ++i) {
     exitance[i].exitance += own_part(share, exitance[i], own[i]);
     const Rgb& v = variance[i];

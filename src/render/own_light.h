@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "opaline/exitance/surface_cache.h"
 #include "opaline/render/precompute.h"
 #include "render/near_field_sampler.h"
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "methods/method.h"
 #include "opaline/core/random.h"
 #include "opaline/transport/fresnel.h"
 #include "opaline/transport/shared_roughness.h"
@@ -116,9 +117,10 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
       if (light.is_seen) seen_.add(light);
     }
   std::vector<bool> follows_light(input.scene.shapes.size());
-  if (has_samples(input.scene.settings.method))  // else bodies are left from another method
+  if (method_of(input.scene.settings.method).needs_samples())  // else bodies are left from another method
     for (const Body& body : input.groups)
-      for (const std::uint32_t mesh : body.plan.meshes) follows_light[mesh] = has_cells(body.plan.method);
+      for (const std::uint32_t mesh : body.plan.meshes)
+        follows_light[mesh] = method_of(body.plan.method).follows_textures_inside();
   std::map<std::pair<std::size_t, bool>, std::size_t> of_medium;  // the first shape
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];

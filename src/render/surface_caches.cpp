@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "methods/hierarchical/hierarchical_state.h"
 #include "render/camera_rays.h"
 #include "render/own_light.h"
 
@@ -37,8 +38,9 @@ std::vector<double> expected_points(const PrecomputeInput& input) {
 }
 
 bool is_worth_beginning(const PrecomputeInput& input, const Body& group, std::size_t most_places) {
-  return most_places > 0 && double(least_cache_places(input.world, group.plan.meshes, group.kernel)) <=
-                                kBegin / kMost * double(most_places);
+  return most_places > 0 &&
+         double(least_cache_places(input.world, group.plan.meshes, hierarchical_state(group).kernel())) <=
+             kBegin / kMost * double(most_places);
 }
 
 std::size_t vertices_of(const GroupPlan& group, const World& world) {
@@ -84,9 +86,10 @@ bool may_use(const SurfaceCache& cache, const PrecomputeInput& input, const Body
   return is_worth_beginning(input, group, most_places) && cache.places() <= most_places;
 }
 
-std::optional<SurfaceCache> make_group_cache(const PrecomputeInput& input, const Body& group,
-                                             std::size_t most_places) {
+std::optional<SurfaceCache> make_body_cache(const PrecomputeInput& input, const Body& group,
+                                            std::size_t most_places) {
   if (!is_worth_beginning(input, group, most_places)) return {};
+  const HierarchicalState& state = hierarchical_state(group);
   const Settings& settings = input.scene.settings;
   if (input.monitor != nullptr) input.monitor->begin("exitance", 0);
   std::optional<OwnLight> own_light;
@@ -94,11 +97,11 @@ std::optional<SurfaceCache> make_group_cache(const PrecomputeInput& input, const
   return make_surface_cache(
       {.world = input.world,
        .meshes = group.plan.meshes,
-       .octree = group.octree,
-       .kernel = group.kernel,
+       .octree = state.octree(),
+       .kernel = state.kernel(),
        .tolerance = settings.tolerance,
        .instruction_set = settings.instruction_set,
-       .cloud = group.cloud,
+       .cloud = state.cloud,
        .most_places = most_places,
        .add_own_light = own_light ? std::bind_front(&OwnLight::add, &*own_light) : AddOwnLight(),
        .monitor = input.monitor});

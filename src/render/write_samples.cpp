@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "methods/method.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/render/precompute.h"
 
@@ -29,15 +30,17 @@ void write_samples_ply(const std::string& path, std::span<const Body> groups, co
       "property float irradiance_r\nproperty float irradiance_g\nproperty float irradiance_b\n"
       "property uint shape\nend_header\n",
       count);
-  for (const Body& group : groups)
+  for (const Body& group : groups) {
+    const std::span<const RgbF> irradiance = method_of(group.plan.method).irradiance(group);
     for (std::size_t i = 0; i < group.surface.samples.size(); ++i) {
       const SurfaceSample& s = group.surface.samples[i];
       append(bytes, out_of_world(world, Vec3d(s.position)));
       append(bytes, s.normal);
       append(bytes, float(double(s.area) * world.unit * world.unit));
-      append(bytes, group.irradiance.empty() ? RgbF{} : group.irradiance[i]);
+      append(bytes, irradiance.empty() ? RgbF{} : irradiance[i]);
       append(bytes, s.mesh);
     }
+  }
   write_file(path, bytes);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The keys of one body's results; a key of zeros stands for a result that is not there.
+// Keys of one body's samples and of the light transmitted there; a key of zeros: no result.
 #pragma once
 
 #include <cstdint>
@@ -28,24 +28,13 @@ struct SampleOrigin {
 /// the scene allows, or, where the scene sets their number, a small part of that.
 bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings);
 
-/// What a body's results were computed from.
+/// Keys of the stages that all methods share.
 struct BodyKeys {
   SampleOrigin origin;
-  StageKey samples_key, tint_key, tree_key, kernel_key, exitance_key;
-  StageKey lights_key;                      // of the tree before bounced light is added
-  StageKey volume_key;                      // of Body::volume; of walks, but for their number
-  StageKey diffusion_key;                   // of the cells
-  StageKey bounced_key;                     // of Body::bounced
-  std::vector<std::uint32_t> meshes;        // that the samples name
-  std::vector<StageKey> light_keys;         // of the transfers
-  std::vector<StageKey> walk_keys;          // of the walks' sources
-  std::optional<SurfaceCache> spare_cache;  // kept, though this picture does not use it
-
-  std::shared_ptr<const VolumeDiffusion> diffusion;  // its cells
-  std::shared_ptr<const CellFit> lit_fit;            // of Body::volume alone
-  std::vector<Vec3f> cut_normals;                    // of the samples, where cells cut the surface
-  std::shared_ptr<const CellWeights> cell_weights;   // of the samples
-  StageKey cell_weights_key;                         // samples_key with which they were found
+  StageKey samples_key, tint_key;
+  std::vector<std::uint32_t> meshes;  // that the samples name
+  std::vector<StageKey> light_keys;   // of the transfers
+  std::vector<Vec3f> cut_normals;     // of the samples, where cells cut the surface
 
   bool is_carried() const { return samples_key != origin.key; }
 };

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "opaline/session/stage_cache.h"
+#include "session/stage_codecs.h"
 
 namespace opaline {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "methods/method.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 #include "opaline/image/add_channels.h"
@@ -132,7 +133,7 @@ Scene lit_by(Scene scene, const LightGroup& group) {
 
 std::vector<LightGroup> light_groups(const Scene& scene) {
   const Method method = scene.settings.method;
-  if (method == Method::direct || method == Method::volume)
+  if (!method_of(method).separates_lights())
     throw refused({scene.file}, "the method's noise is another for each light",
                   "--method hierarchical, lambert or volume_diffusion", std::string(name_of(method)));
   if (scene.lights.empty()) throw refused({scene.file}, "the scene has no lights", "a light");

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/session_state.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <utility>
 
 #include "core/cancel_check.h"
@@ -120,13 +119,10 @@ World Session::State::loaded_world(const Scene& scene, const std::vector<StageKe
 
 void Session::State::anchor(Scene scene, Monitor* monitor) {
   const CancelScope scope(monitor);
-  const Method method = scene.settings.method;
-  const bool places_samples = has_samples(method) && method != Method::volume_diffusion;
-  if (places_samples) scene.settings.method = Method::hierarchical;
   edit(std::move(scene));
   reference_ = plan_.groups;
-  const auto has_placed = [](const GroupPlan& group) { return group.method == Method::hierarchical; };
-  if (!has_samples(method) || std::ranges::none_of(plan_.groups, has_placed)) return;
+  const auto has_placed = [](const GroupPlan& group) { return !(group.cell > 0); };
+  if (!is_needed() || std::ranges::none_of(plan_.groups, has_placed)) return;
   arrange_bodies();
   update_rays();
   for (std::size_t g = 0; g < bodies_.size(); ++g)
@@ -169,18 +165,12 @@ Image Session::State::first_light(Monitor* monitor) {
   return opaline::first_light({scene_, *world_, *rays_, plan_, monitor});
 }
 
-void bound_far_side(Body& body) {
-  if (body.kernel.far_side != nullptr && body.octree.normal_cones.empty()) bound_normals(body.octree);
-}
-
-/// Calls work(body, known, index) for the bodies of a method, as one stage; without such bodies there is none.
-void Session::State::each_of(Method method, const char* stage, const BodyWork& work) {
-  const auto is_of = [&](const Body& body) { return body.plan.method == method; };
-  if (std::ranges::none_of(bodies_, is_of)) return;
-  const Stopwatch watch;
-  for (std::size_t g = 0; g < bodies_.size(); ++g)
-    if (is_of(bodies_[g])) work(bodies_[g], keys_[g], g);
-  costs_.push_back(watch.cost(stage));
+std::vector<BodyStages> Session::State::body_stages(const PrecomputeInput& input,
+                                                    std::span<const Light> lights) {
+  std::vector<BodyStages> all;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    all.push_back({input, lights, mesh_keys_, bodies_[b], keys_[b], store_, walk_store_, edits_, 0});
+  return all;
 }
 
 void Session::State::prepare(Monitor* monitor) {
@@ -192,52 +182,49 @@ void Session::State::prepare(Monitor* monitor) {
   arrange_bodies();
   const PrecomputeInput input{scene_, *world_, *rays_, plan_, monitor};
   const std::vector<Light> lights = recentred_lights(scene_, *world_);
-  const auto each = [&](const char* stage, const auto& work) {
+  const auto in_stage = [&](const char* stage, const auto& work) {
     const Stopwatch watch;
-    for (std::size_t g = 0; g < bodies_.size(); ++g) work(bodies_[g], keys_[g], g);
-    costs_.push_back(watch.cost(stage));
+    if (work()) costs_.push_back(watch.cost(stage));
   };
-  each("sampling",
-       [&](Body& body, BodyKeys& known, std::size_t g) { update_samples(body, known, input, g); });
-  if (scene_.settings.method == Method::volume) {
-    each("random walks",
-         [&](Body& body, BodyKeys& known, std::size_t) { update_walks(body, known, input, lights); });
-    prepared_ = true;
-    return;
-  }
-  each("irradiance",
-       [&](Body& body, BodyKeys& known, std::size_t g) { update_lights(body, known, input, g, lights); });
-  each_of(Method::volume_diffusion, "diffusion",
-          [&](Body& body, BodyKeys& known, std::size_t) { update_diffusion(body, known, input, lights); });
-  update_sums(input, lights);
-  if (!edits_)
-    for (BodyKeys& known : keys_) {
-      known.diffusion = nullptr;
-      known.cell_weights = nullptr;
+  in_stage("sampling", [&] {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) update_samples(bodies_[b], keys_[b], input, b);
+    return true;
+  });
+  in_stage("irradiance", [&] {
+    bool is_needed = false;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      if (!method_of(bodies_[b].plan.method).needs_transmitted_light()) continue;
+      update_lights(bodies_[b], keys_[b], input, b, lights);
+      update_tint(bodies_[b], keys_[b]);
+      is_needed = true;
     }
-  prepared_ = true;
-}
-
-/// Bounced light, and of the bodies whose exitance is a sum over samples: trees, kernels, surface caches.
-void Session::State::update_sums(const PrecomputeInput& input, const std::vector<Light>& lights) {
-  each_of(Method::hierarchical, "octree", [&](Body& body, BodyKeys& known, std::size_t) {
-    update_tree(body, known, lights);
-    update_kernel(body, known);
+    return is_needed;
   });
-  if (bounces_of(scene_) > 0) {
-    const Stopwatch watch;
-    update_bounces(input, lights);
-    costs_.push_back(watch.cost("bounces"));
+  std::vector<BodyStages> bodies = body_stages(input, lights);
+  for (std::size_t m = kMethodNames.size(); m-- > 0;) {
+    const auto is_of = [&](const BodyStages& stages) { return stages.body.plan.method == Method(m); };
+    if (std::ranges::none_of(bodies, is_of)) continue;
+    const SubsurfaceMethod& method = method_of(Method(m));
+    in_stage(method.stage(), [&] {
+      for (BodyStages& stages : bodies | std::views::filter(is_of)) method.prepare(stages);
+      return true;
+    });
   }
-  const std::vector<std::size_t> most = most_cache_places(input, bodies_, pictures_);
-  bool has_caches = false;
-  each_of(Method::hierarchical, "exitance", [&](Body& body, BodyKeys& known, std::size_t g) {
-    bound_far_side(body);
-    body.cloud = cloud_error(body, *world_, scene_);
-    update_exitance(body, known, input, most[g]);
-    has_caches |= body.surface_cache.has_value();
+  if (bounces_of(scene_) > 0)
+    in_stage("bounces", [&] {
+      update_bounces(bodies);
+      return true;
+    });
+  in_stage("exitance", [&] {
+    const std::vector<std::size_t> most = most_cache_places(input, bodies_, pictures_);
+    bool has_caches = false;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      bodies[b].most_cache_places = most[b];
+      has_caches |= method_of(bodies_[b].plan.method).finish(bodies[b]);
+    }
+    return has_caches;
   });
-  if (!has_caches && !costs_.empty() && costs_.back().stage == "exitance") costs_.pop_back();
+  prepared_ = true;
 }
 
 RenderResult Session::State::render(Monitor* monitor) {
@@ -312,20 +299,12 @@ void Session::State::arrange_bodies() {
       keys[g] = std::move(keys_[std::size_t(old - bodies_.begin())]);
       bodies[g] = std::move(*old);
       old->plan.name.clear();
-      if (bodies[g].surface_cache) keys[g].spare_cache = std::move(bodies[g].surface_cache);
-      bodies[g].surface_cache.reset();
     }
     bodies[g].plan = plan;
     bodies[g].profile = make_diffuse_profile(scene_.media[plan.medium], world_->unit);
   }
   bodies_ = std::move(bodies);
   keys_ = std::move(keys);
-}
-
-void Session::State::note_decision(const Body& body, const std::string& text) {
-  std::string decision = body.plan.name + ": " + text;
-  if (decisions_.empty() || decisions_.back() != decision)  // channels of a room are lights of one name
-    decisions_.push_back(std::move(decision));
 }
 
 }  // namespace opaline

@@ -2,8 +2,7 @@
 // What a session keeps, and how each part of it is brought up to date with the scene.
 #pragma once
 
-#include <functional>
-
+#include "methods/method.h"
 #include "opaline/session/session.h"
 #include "session/body_keys.h"
 #include "session/shape_key.h"
@@ -28,10 +27,9 @@ struct Session::State {
   void prepare(Monitor* monitor);
   RenderResult render(Monitor* monitor);
 
-  using BodyWork = std::function<void(Body& body, BodyKeys& known, std::size_t index)>;
-  void each_of(Method method, const char* stage, const BodyWork& work);
-  void update_sums(const PrecomputeInput& input, const std::vector<Light>& lights);
-  bool is_needed() const { return has_samples(scene_.settings.method) && !plan_.groups.empty(); }
+  bool is_needed() const {
+    return method_of(scene_.settings.method).needs_samples() && !plan_.groups.empty();
+  }
   /// Bodies that the image depends on: none if the method or the plan has none, even if later scenes may reuse some.
   std::span<const Body> bodies() const { return is_needed() ? bodies_ : std::span<const Body>{}; }
   void arrange_memories(const Scene& scene, const std::vector<StageKey>& sources);
@@ -48,30 +46,14 @@ struct Session::State {
   void carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input, const StageKey& key);
   void update_lights(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
                      const std::vector<Light>& lights);
-  std::shared_ptr<const CellFit> fit_of(const Body& body, BodyKeys& known, std::span<const RgbF> means,
-                                        std::span<const RgbF> errors) const;
   void update_tint(Body& body, BodyKeys& known);
-  void update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights);
-  void hold_tree(Body& body, BodyKeys& known, const StageKey& key);
-  std::vector<std::vector<RgbF>> kept_bounces(std::span<const StageKey> keys);
-  void update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights);
-  void find_walked_profiles(const Body& body);
-  void update_kernel(Body& body, BodyKeys& known);
-  void update_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t most_places);
-  void update_walks(Body& body, BodyKeys& known, const PrecomputeInput& input,
-                    const std::vector<Light>& lights);
-  void update_diffusion(Body& body, BodyKeys& known, const PrecomputeInput& input,
-                        const std::vector<Light>& lights);
-  StageKey inside_key(const Body& body) const;
-  StageKey cells_key(const Body& body, const BodyKeys& known) const;
-  const VolumeDiffusion& cells_of(const Body& body, BodyKeys& known, const PrecomputeInput& input);
-  static void forget_bounced(Body& body, BodyKeys& known);
-  void diffuse_bounced(Body& body, BodyKeys& known, const PrecomputeInput& input,
-                       std::span<const RgbF> bounced, const StageKey& key);
+  std::vector<std::vector<RgbF>> cached_bounces(std::span<const StageKey> keys);
+  void update_bounces(std::span<BodyStages> stages);
   HeldView* held_view();
   HeldView* held_view_of_samples(const PrecomputeInput& input);
   void update_bounced_places(const RenderInput& input);
-  void note_decision(const Body& body, const std::string& text);
+  void note_decision(const Body& body, const std::string& text) { store_.note(body.plan.name, text); }
+  std::vector<BodyStages> body_stages(const PrecomputeInput& input, std::span<const Light> lights);
 
   StageCache* cache_;
   Scene scene_;
@@ -99,9 +81,7 @@ struct Session::State {
   SessionWork work_;
   std::vector<std::string> decisions_;
   std::vector<StageCost> costs_;
+  StageStore store_{cache_, work_, decisions_};
 };
-
-/// The normals of a tree's nodes, where the kernel asks for them.
-void bound_far_side(Body& body);
 
 }  // namespace opaline

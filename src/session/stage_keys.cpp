@@ -10,8 +10,9 @@ namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
 constexpr std::uint64_t kSamplesVersion = 2, kCutSurfaceVersion = 2, kCarriedVersion = 3,
-                        kTransferVersion = 4, kOctreeVersion = 1, kExitanceVersion = 8, kWalksVersion = 3,
-                        kWalkedProfileVersion = 1;
+                        kTransferVersion = 4, kOctreeVersion = 1, kWalkedProfileVersion = 1;
+
+}  // namespace
 
 const char* widest_instructions() {
   if (__builtin_cpu_supports("avx512f")) return "avx512";
@@ -20,7 +21,9 @@ const char* widest_instructions() {
   return __builtin_cpu_supports("sse4.2") ? "sse4.2" : "sse2";
 }
 
-}  // namespace
+std::string embree_version() {
+  return RTC_VERSION_STRING;
+}
 
 MeshKeys mesh_keys(const Mesh& mesh) {
   KeyBuilder shape("mesh", 1);
@@ -67,12 +70,12 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
   const GroupPlan& plan = input.plan.groups[group];
   const Settings& settings = input.scene.settings;
   KeyBuilder key("transfer", kTransferVersion);
-  key.add(std::string(RTC_VERSION_STRING)).add(std::string(widest_instructions()));
+  key.add(embree_version()).add(std::string(widest_instructions()));
   key.add(samples).add(input.scene.media[plan.medium].eta).add(std::uint64_t(light.source.index()));
   key.add_array(std::span<const double>(geometry(light)));
   if (!is_delta(light))
     key.add(settings.light_samples).add(light_seed(irradiance_seed(settings, group), light));
-  if (plan.method == Method::volume_diffusion) key.add(std::string("geometric normals"));
+  if (plan.cell > 0) key.add(std::string("geometric normals"));
   for (std::uint32_t m = 0; m < meshes.size(); ++m)
     if (may_shadow(meshes, m, plan, light, input.world.unit)) key.add(meshes[m].shape);
   return key.key();
@@ -171,32 +174,8 @@ StageKey view_light_key(const Light& light) {
   return key.key();
 }
 
-std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& samples,
-                                const StageKey& medium_inside, std::span<const MeshKeys> meshes) {
-  KeyBuilder common("random walks", kWalksVersion);
-  common.add(std::string(RTC_VERSION_STRING)).add(std::string(widest_instructions()));
-  common.add(samples).add(walks.seed).add(walks.reenter);
-  for (const HomogeneousMedium& medium : walks.media) common.add(medium);
-  if (medium_inside != StageKey{}) common.add(medium_inside);
-  for (const std::uint32_t m : walks.meshes) common.add(m);
-  for (const MeshKeys& mesh : meshes) common.add(mesh.shape);
-  const bool alone = walks_by_light(walks);
-  std::vector<StageKey> keys;
-  for (std::size_t l = 0; l < walks.lights.size() && (alone || l == 0); ++l) {
-    KeyBuilder key("random walks of lights", kWalksVersion);
-    key.add(common.key());
-    for (const Light& light : alone ? walks.lights.subspan(l, 1) : walks.lights) {
-      key.add(std::uint64_t(light.source.index())).add(light.name);
-      key.add_array(std::span<const double>(geometry(light)));
-      if (!alone) key.add(emission(light));
-    }
-    keys.push_back(key.key());
-  }
-  return keys;
-}
-
-StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
-                    std::span<const Light> lights, const StageKey& tint) {
+StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> transfers,
+                         std::span<const Light> lights, const StageKey& tint) {
   KeyBuilder key("octree", kOctreeVersion);
   key.add(samples);
   if (tint != StageKey{}) key.add(tint);
@@ -204,33 +183,8 @@ StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers
   return key.key();
 }
 
-StageKey diffusion_cells_key(const Body& body, const StageKey& samples, const StageKey& medium_inside,
-                             std::span<const MeshKeys> meshes) {
-  KeyBuilder key("diffusion cells", 5);
-  key.add(samples).add(body.profile.eta).add(body.plan.cell);
-  key.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
-  if (medium_inside != StageKey{}) key.add(medium_inside);
-  for (const std::uint32_t mesh : body.plan.meshes) key.add(meshes[mesh].shape);
-  return key.key();
-}
-
-StageKey diffusion_key(const StageKey& cells, const StageKey& light) {
-  return KeyBuilder("diffusion", 5).add(cells).add(light).key();
-}
-
 StageKey walked_profile_key(double absorbed, double eta) {
   return KeyBuilder("walked profile", kWalkedProfileVersion).add(absorbed).add(eta).key();
-}
-
-StageKey exitance_key(const StageKey& tree, const StageKey& kernel, std::span<const MeshKeys> meshes,
-                      const GroupPlan& group, const Settings& settings) {
-  KeyBuilder key("exitance", kExitanceVersion);
-  key.add(tree).add(kernel).add(settings.tolerance).add(settings.instruction_set);
-  key.add(settings.evaluator == EvaluatorKind::surface_cache);
-  key.add(settings.light_samples).add(settings.seed);
-  key.add(std::string(widest_instructions()));
-  for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
-  return key.key();
 }
 
 }  // namespace opaline

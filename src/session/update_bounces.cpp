@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The light that goes from one surface to another: at the samples of bodies and at places of the picture.
-#include <algorithm>
+#include <memory>
 
 #include "opaline/lights/light.h"
 #include "session/session_state.h"
+#include "session/stage_codecs.h"
 
 namespace opaline {
 namespace {
@@ -12,44 +13,14 @@ void tint_bounced(const Body& body, std::span<RgbF> bounced) {
   for (std::size_t i = 0; i < body.entering.size(); ++i) bounced[i] = bounced[i] * body.entering[i];
 }
 
-/// What other surfaces send to a body's samples, to what enters there from lights.
-void add_bounced(Body& body, std::span<const RgbF> bounced) {
-  for (std::size_t i = 0; i < bounced.size(); ++i) body.irradiance[i] += bounced[i];
-}
-
-/// The parts of a body that depend on its light.
-struct BodyLight {
-  std::vector<RgbF> irradiance;
-  Octree octree;
-  std::optional<SurfaceCache> surface_cache;
-  std::shared_ptr<const CellFit> volume_fit;
-};
-
-/// Direct light of a body, without bounces.
-/// error Error{interrupted}
-BodyLight direct_light(const Body& body, const BodyKeys& keys, const std::vector<Light>& lights) {
-  BodyLight direct;
-  if (body.plan.method == Method::volume_diffusion) {
-    direct.volume_fit = keys.lit_fit;
-    return direct;
-  }
-  direct.volume_fit = body.volume_fit;
-  direct.irradiance = entered_irradiance(body, lights);
-  direct.octree = gather_flux(body.surface.samples, direct.irradiance);
-  if (body.kernel.far_side != nullptr) bound_normals(direct.octree);
-  return direct;
-}
-
 /// Replaces the light of bodies by their direct light, from which the first bounce is gathered; the destructor restores
 /// it. An interrupted constructor leaves the bodies unchanged: it replaces nothing before it has computed everything,
 /// because no destructor would restore it.
 class DirectlyLitBodies {
  public:
-  DirectlyLitBodies(std::vector<Body>& bodies, const std::vector<BodyKeys>& keys,
-                    const std::vector<Light>& lights)
-      : bodies_(bodies) {
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      other_.push_back(direct_light(bodies[b], keys[b], lights));
+  explicit DirectlyLitBodies(std::span<BodyStages> bodies) : bodies_(bodies) {
+    for (const BodyStages& stages : bodies)
+      other_.push_back(method_of(stages.body.plan.method).direct_state(stages));
     exchange();
   }
   ~DirectlyLitBodies() { exchange(); }
@@ -58,63 +29,40 @@ class DirectlyLitBodies {
 
  private:
   void exchange() noexcept {
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      std::swap(bodies_[b].irradiance, other_[b].irradiance);
-      std::swap(bodies_[b].octree, other_[b].octree);
-      std::swap(bodies_[b].surface_cache, other_[b].surface_cache);
-      std::swap(bodies_[b].volume_fit, other_[b].volume_fit);
-    }
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      std::swap(bodies_[b].body.states.at(bodies_[b].body.plan.method), other_[b]);
   }
 
-  std::vector<Body>& bodies_;
-  std::vector<BodyLight> other_;  // one a body
+  std::span<BodyStages> bodies_;
+  std::vector<std::unique_ptr<MethodState>> other_;  // one a body
 };
 
 }  // namespace
 
-// Trees and cells with the light that bounces in place of those without it. What bounces depends on all bodies.
-void Session::State::update_bounces(const PrecomputeInput& input, const std::vector<Light>& lights) {
-  const auto has_cells = [&](std::size_t b) { return bodies_[b].plan.method == Method::volume_diffusion; };
+// Bounced light depends on all bodies.
+void Session::State::update_bounces(std::span<BodyStages> bodies) {
+  const PrecomputeInput& input = bodies.front().input;
   KeyBuilder all("bounces", 2);
-  all.add(surfaces_key(input, mesh_keys_, lights));
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    if (has_cells(b))
-      all.add(keys_[b].volume_key);
-    else
-      all.add(keys_[b].lights_key).add(keys_[b].kernel_key);
-  const StageKey bounces = all.key();
+  all.add(surfaces_key(input, mesh_keys_, bodies.front().lights));
+  for (const Body& body : bodies_) all.add(method_of(body.plan.method).direct_key(body));
   std::vector<StageKey> wanted;
-  bool are_there = true;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const BodyKeys& known = keys_[b];
-    KeyBuilder key(has_cells(b) ? "diffusion with bounces" : "octree with bounces", 1);
-    wanted.push_back(key.add(bounces).add(has_cells(b) ? known.volume_key : known.lights_key).key());
-    are_there = are_there && (has_cells(b) ? known.bounced_key : known.tree_key) == wanted[b];
+  bool is_there = true;
+  for (const Body& body : bodies_) {
+    const SubsurfaceMethod& method = method_of(body.plan.method);
+    wanted.push_back(KeyBuilder("body with bounces", 1).add(all.key()).add(method.direct_key(body)).key());
+    is_there = is_there && method.bounced_key(body) == wanted.back();
   }
-  if (are_there) return;
-  std::vector<std::vector<RgbF>> bounced = kept_bounces(wanted);
+  if (is_there) return;
+  std::vector<std::vector<RgbF>> bounced = cached_bounces(wanted);
   if (bounced.empty()) {
-    for (std::size_t b = 0; b < bodies_.size(); ++b)
-      if (has_cells(b)) {
-        forget_bounced(bodies_[b], keys_[b]);
-      } else {
-        bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
-        hold_tree(bodies_[b], keys_[b], keys_[b].lights_key);
-        bound_far_side(bodies_[b]);
-      }
+    for (BodyStages& stages : bodies) method_of(stages.body.plan.method).remove_bounced(stages);
     bounced = bounced_at_samples(input, bodies_, held_view_of_samples(input));
-    for (std::size_t b = 0; cache_ != nullptr && b < bodies_.size(); ++b)
-      cache_->keep_bounced(wanted[b], bounced[b]);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      store_.keep(wanted[b], bounced[b], BouncedCodec{bounced[b].size()});
   }
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
     tint_bounced(bodies_[b], bounced[b]);
-    if (has_cells(b)) {
-      diffuse_bounced(bodies_[b], keys_[b], input, bounced[b], wanted[b]);
-    } else {
-      bodies_[b].irradiance = entered_irradiance(bodies_[b], lights);
-      add_bounced(bodies_[b], bounced[b]);
-      hold_tree(bodies_[b], keys_[b], wanted[b]);
-    }
+    method_of(bodies_[b].plan.method).add_bounced(bodies[b], bounced[b], wanted[b]);
     note_decision(bodies_[b], "light of other surfaces gathered");
   }
 }
@@ -133,11 +81,11 @@ HeldView* Session::State::held_view_of_samples(const PrecomputeInput& input) {
   return view;
 }
 
-/// From the cache; empty where it lacks one of them.
-std::vector<std::vector<RgbF>> Session::State::kept_bounces(std::span<const StageKey> keys) {
+/// Bounced light of all bodies from the cache; empty: one of them is missing.
+std::vector<std::vector<RgbF>> Session::State::cached_bounces(std::span<const StageKey> keys) {
   std::vector<std::vector<RgbF>> all;
-  for (std::size_t b = 0; cache_ != nullptr && b < bodies_.size(); ++b) {
-    auto found = cache_->find_bounced(keys[b], bodies_[b].surface.samples.size());
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    auto found = store_.find(keys[b], BouncedCodec{bodies_[b].surface.samples.size()});
     if (!found) return {};
     all.push_back(std::move(*found));
   }
@@ -151,16 +99,17 @@ void Session::State::update_bounced_places(const RenderInput& input) {
   builder.add(view_key(precompute, mesh_keys_));
   builder.add(surfaces_key(precompute, mesh_keys_, recentred_lights(scene_, *world_)));
   for (const Light& light : scene_.lights) builder.add(light.is_seen);  // else surfaces behind it are seen
-  for (std::size_t b = 0; b < bodies_.size(); ++b)  // a method that was used before leaves its keys
-    if (has_cells(bodies_[b].plan.method))
-      builder.add(keys_[b].bounced_key);
-    else
-      builder.add(keys_[b].tree_key).add(keys_[b].kernel_key);
+  for (const Body& body : bodies()) {
+    const SubsurfaceMethod& method = method_of(body.plan.method);
+    builder.add(method.bounced_key(body)).add(method.direct_key(body));
+  }
   // The keys of bodies say nothing where none are prepared.
   const StageKey key = is_needed() ? builder.key() : StageKey{};
   if (bounced_ != nullptr && key != StageKey{} && key == bounced_key_) return;
   std::optional<DirectlyLitBodies> directly_lit;
-  if (is_needed()) directly_lit.emplace(bodies_, keys_, recentred_lights(scene_, *world_));
+  const std::vector<Light> lights = recentred_lights(scene_, *world_);
+  std::vector<BodyStages> stages = body_stages(precompute, lights);
+  if (is_needed()) directly_lit.emplace(stages);
   bounced_ = opaline::bounced_places(input);
   bounced_key_ = key;
 }

@@ -2,12 +2,11 @@
 // Each stage's result: kept, from the cache, or computed; under its key only once it is whole.
 #include <fmt/format.h>
 
-#include "opaline/exitance/cloud_error.h"
 #include "opaline/lights/light.h"
-#include "opaline/render/surface_caches.h"
 #include "opaline/render/surface_textures.h"
 #include "opaline/sampling/carry_samples.h"
 #include "session/session_state.h"
+#include "session/stage_codecs.h"
 
 namespace opaline {
 namespace {
@@ -69,7 +68,7 @@ void Session::State::keep_samples(Body& body, BodyKeys& known) {
     known.origin.world = world_;
     known.origin.meshes = known.meshes;
   }
-  note_decision(body, fmt::format("{} samples kept", body.surface.samples.size()));
+  note_decision(body, fmt::format("{} samples reused", body.surface.samples.size()));
 }
 
 // Next to nothing beside what follows, so that they are not kept in a cache.
@@ -94,17 +93,16 @@ void Session::State::place_anew(Body& body, BodyKeys& known, const PrecomputeInp
   if (anchored_ && !known.is_carried()) known.origin.surface = std::move(body.surface);
   known.samples_key = {};
   if (!anchored_) known.origin = {};
-  std::optional<SurfaceSamples> found;
   SurfaceCells cells;
-  if (cache_ != nullptr) found = cache_->find_samples(key, {*world_, body.plan.meshes, body.plan.samples});
-  work_.found += found ? 1 : 0;
+  const SamplesCodec codec{{*world_, body.plan.meshes, body.plan.samples}};
+  std::optional<SurfaceSamples> found = store_.find(key, codec);
   if (found) {
     body.surface = std::move(*found);
   } else {
     body.surface = place_samples(input, group, edits_ && !anchored_ ? &cells : nullptr);
     work_.samples_placed += body.surface.samples.size();
     work_.samples_divided += body.surface.samples.size();
-    if (cache_ != nullptr) cache_->keep_samples(key, body.surface, body.plan.meshes);
+    store_.keep(key, body.surface, codec);
   }
   known.meshes = body.plan.meshes;
   if (!anchored_)
@@ -127,12 +125,9 @@ void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeIn
                                  const StageKey& key) {
   if (!known.is_carried()) known.origin.surface = std::move(body.surface);
   known.samples_key = {};
-  std::optional<SurfaceSamples> found;
-  if (cache_ != nullptr)
-    found = cache_->find_samples(key, {*world_, body.plan.meshes, carried_count(known.origin, body.plan)});
-  if (found) {
+  const SamplesCodec codec{{*world_, body.plan.meshes, carried_count(known.origin, body.plan)}};
+  if (auto found = store_.find(key, codec)) {
     body.surface = std::move(*found);
-    ++work_.found;
     note_decision(body, fmt::format("{} samples from the cache", body.surface.samples.size()));
   } else {
     CarriedSamples carried =
@@ -143,7 +138,7 @@ void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeIn
     work_.samples_placed += carried.added;
     work_.samples_removed += carried.removed;
     work_.samples_divided += carried.divided ? body.surface.samples.size() : 0;
-    if (cache_ != nullptr) cache_->keep_samples(key, body.surface, body.plan.meshes);
+    store_.keep(key, body.surface, codec);
     note_decision(body, carried.rigid
                             ? fmt::format("{} samples went along", body.surface.samples.size())
                             : fmt::format("{} samples went along, {} added, {} removed",
@@ -155,6 +150,7 @@ void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeIn
 
 void Session::State::update_lights(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                    std::size_t group, const std::vector<Light>& lights) {
+  const LightCodec codec{body.surface.samples.size()};
   std::vector<StageKey> keys;
   std::vector<LightTransfer> transfers(lights.size());
   std::vector<Light> missing;
@@ -162,13 +158,11 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
   for (std::size_t l = 0; l < lights.size(); ++l) {
     keys.push_back(transfer_key(input, known.samples_key, mesh_keys_, group, lights[l]));
     const auto old = std::ranges::find(known.light_keys, keys[l]);
-    std::optional<LightTransfer> found;
     if (old != known.light_keys.end()) {
       transfers[l] = body.transfers[std::size_t(old - known.light_keys.begin())];
-      note_decision(body, fmt::format("light of {} kept", lights[l].name));
-    } else if (cache_ != nullptr && (found = cache_->find_light(keys[l], body.surface.samples.size()))) {
+      note_decision(body, fmt::format("light of {} reused", lights[l].name));
+    } else if (auto found = store_.find(keys[l], codec)) {
       transfers[l] = std::move(*found);
-      ++work_.found;
       note_decision(body, fmt::format("light of {} from the cache", lights[l].name));
     } else {
       missing.push_back(lights[l]);
@@ -182,7 +176,7 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
     work_.sample_rays += rays_->statistics().rays - before;
     work_.lights_traced += missing.size();
     for (std::size_t i = 0; i < missing.size(); ++i) {
-      if (cache_ != nullptr) cache_->keep_light(keys[places[i]], traced[i]);
+      store_.keep(keys[places[i]], traced[i], codec);
       transfers[places[i]] = std::move(traced[i]);
     }
   }
@@ -198,104 +192,6 @@ void Session::State::update_tint(Body& body, BodyKeys& known) {
   if (key != StageKey{})
     body.entering = entering_tints(SurfaceTextures(scene_, *world_), body.surface.samples);
   known.tint_key = key;
-}
-
-void Session::State::update_tree(Body& body, BodyKeys& known, const std::vector<Light>& lights) {
-  update_tint(body, known);
-  const StageKey key = octree_key(known.samples_key, known.light_keys, lights, known.tint_key);
-  const bool may_hold_bounces = bounces_of(scene_) > 0 && known.tree_key != StageKey{};
-  if (key == known.lights_key && (key == known.tree_key || may_hold_bounces))
-    return note_decision(body, "tree kept");
-  known.lights_key = {};
-  body.irradiance = entered_irradiance(body, lights);
-  known.tree_key = {};
-  const std::uint64_t before = work_.nodes_built;
-  hold_tree(body, known, key);
-  known.lights_key = key;
-  note_decision(body, work_.nodes_built == before ? "tree from the cache" : "tree built");
-}
-
-/// The tree of the body's irradiance, which has that key.
-void Session::State::hold_tree(Body& body, BodyKeys& known, const StageKey& key) {
-  if (known.tree_key == key) return;
-  known.tree_key = {};
-  std::optional<Octree> found;
-  if (cache_ != nullptr) found = cache_->find_octree(key, body.surface);
-  if (found) {
-    body.octree = std::move(*found);
-    ++work_.found;
-  } else {
-    body.octree = gather_flux(body.surface.samples, body.irradiance);
-    work_.nodes_built += body.octree.nodes.size();
-    if (cache_ != nullptr) cache_->keep_octree(key, body.octree);
-  }
-  known.tree_key = key;
-}
-
-/// The shapes of tabulated profiles: those in the cache need not be walked, and what is walked is kept there.
-void Session::State::find_walked_profiles(const Body& body) {
-  if (cache_ == nullptr) return;
-  for (const ChannelProfile& channel : body.profile.channels) {
-    const auto* profile = std::get_if<TabulatedProfile>(&channel);
-    if (profile == nullptr || profile->mean_free_path == 0) continue;
-    const double absorbed = profile->shape->absorbed(), eta = profile->shape->eta();
-    if (WalkedShape::find(absorbed, eta) != nullptr) continue;
-    const StageKey key = walked_profile_key(absorbed, eta);
-    if (std::optional<RadialTable> found = cache_->find_walked_profile(key)) {
-      WalkedShape::hand_over(absorbed, eta, std::move(*found));
-      ++work_.found;
-    } else {
-      cache_->keep_walked_profile(key, profile->shape->table());
-    }
-  }
-}
-
-void Session::State::update_kernel(Body& body, BodyKeys& known) {
-  const Medium& medium = scene_.media[body.plan.medium];
-  KeyBuilder key("kernel", 3);
-  std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
-  key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(profile_kind(medium));
-  if (profile_kind(medium) == ProfileKind::multipole) key.add(profile_thickness(medium));
-  key.add(body.surface.spacing()).add(world_->diagonal).add(world_->unit);
-  key.add(scene_.settings.near_field).add(near_irradiance(scene_));
-  if (key.key() == known.kernel_key) return;
-  known.kernel_key = {};
-  find_walked_profiles(body);
-  body.kernel = group_kernel(body.profile, body.surface.spacing(), *world_, scene_);
-  body.wider_kernel = group_kernel(body.profile, kWiderField * body.surface.spacing(), *world_, scene_);
-  known.kernel_key = key.key();
-}
-
-// Whether a cache is used depends on the scene alone, not on what is at hand.
-void Session::State::update_exitance(Body& body, BodyKeys& known, const PrecomputeInput& input,
-                                     std::size_t most_places) {
-  if (most_places == 0) return;
-  const StageKey key = exitance_key(known.tree_key, known.kernel_key, mesh_keys_, body.plan, scene_.settings);
-  if (key != known.exitance_key) known.spare_cache.reset();
-  const bool at_hand = known.spare_cache.has_value();
-  std::optional<SurfaceCache> found;
-  if (!at_hand && cache_ != nullptr) found = cache_->find_exitance(key, *world_, body.plan.meshes);
-  work_.found += found ? 1 : 0;
-  if (found) known.spare_cache = std::move(found);
-  if (!known.spare_cache) {
-    known.spare_cache = make_group_cache(input, body, most_places);
-    if (!known.spare_cache) {
-      if (scene_.settings.evaluator == EvaluatorKind::surface_cache)
-        note_decision(body,
-                      fmt::format("more than {} places of the surface: evaluated at the picture's points",
-                                  most_places));
-      return;
-    }
-    work_.places_evaluated += known.spare_cache->places();
-    if (cache_ != nullptr) cache_->keep_exitance(key, *known.spare_cache, body.plan.meshes);
-  }
-  known.exitance_key = key;
-  if (!may_use(*known.spare_cache, input, body, most_places)) return;
-  body.surface_cache = std::move(known.spare_cache);
-  known.spare_cache.reset();
-  note_decision(body,
-                at_hand ? "exitance of the surface kept"
-                        : fmt::format("exitance of the surface {}", found ? "from the cache" : "evaluated"));
 }
 
 }  // namespace opaline

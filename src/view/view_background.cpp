@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "methods/volume/volume_state.h"
 #include "opaline/core/error.h"
 
 namespace opaline {
@@ -237,9 +238,9 @@ void ViewBackground::refine_volume(const Job& job) {
     RenderResult result = session_->render(&monitor_);
     ReferenceState state{0, Method::volume, 0, 0, 0};
     for (const Body& body : session_->bodies()) {
-      if (!body.volume) continue;
-      state.samples = std::max(state.samples, body.volume->walks);
-      state.noise = std::max(state.noise, body.volume->relative_error);
+      const VolumeExitance& walked = volume_state(body).exitance.value;
+      state.samples = std::max(state.samples, walked.walks);
+      state.noise = std::max(state.noise, walked.relative_error);
     }
     const Layer variance = squared(extract_layer(result.image, "error"));
     publish(job, std::move(result), variance, state);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "methods/method.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
 #include "opaline/core/stopwatch.h"
@@ -12,7 +13,6 @@
 #include "opaline/render/direct.h"
 #include "opaline/render/expected_error.h"
 #include "opaline/render/picture_warnings.h"
-#include "opaline/render/walk_warnings.h"
 #include "view/lit_anew.h"
 
 namespace opaline {
@@ -255,7 +255,7 @@ void ViewRenderer::report(const Wanted& wanted, const Image& image, double error
   report.costs.push_back(std::move(shading));
   report.warnings = picture_warnings(wanted.scene, session_->world(), image);
   for (const Body& body : session_->bodies())
-    for (std::string& text : walk_warnings(body, session_->world().unit))
+    for (std::string& text : method_of(body.plan.method).warnings(body, session_->world().unit))
       report.warnings.push_back(std::move(text));
   for (std::string& text : model_warnings(session_->plan())) report.warnings.push_back(std::move(text));
   events_.report(report);

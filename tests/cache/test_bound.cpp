@@ -20,7 +20,7 @@ struct BoundedCache : ScratchFolder {
   /// Entries 0 to count - 1 of one size, used in that order, minutes ago.
   explicit BoundedCache(std::uint64_t count) {
     StageCache cache(path.string());
-    for (std::uint64_t i = 0; i < count; ++i) cache.keep_light({0, i}, some_light(1000));
+    for (std::uint64_t i = 0; i < count; ++i) cache.keep({0, i}, some_light(1000), LightCodec{0});
     const auto now = std::filesystem::file_time_type::clock::now();
     for (std::uint64_t i = 0; i < count; ++i)
       std::filesystem::last_write_time(entry(i), now - std::chrono::minutes(count - i));
@@ -40,8 +40,8 @@ struct BoundedCache : ScratchFolder {
 TEST(CacheBound, LeastRecentlyUsedGo) {
   const BoundedCache folder(4);
   StageCache cache(folder.path.string(), 3 * folder.one);
-  ASSERT_TRUE(cache.find_light({0, 0}, 1000));
-  cache.keep_light({0, 4}, some_light(1000));
+  ASSERT_TRUE(cache.find({0, 0}, LightCodec{1000}));
+  cache.keep({0, 4}, some_light(1000), LightCodec{0});
   EXPECT_EQ(folder.there(5), (std::vector<bool>{true, false, false, true, true}));
   EXPECT_EQ(cache.warning(), "");
 }
@@ -51,8 +51,8 @@ TEST(CacheBound, LeastRecentlyUsedGo) {
 TEST(CacheBound, LargerThanAll) {
   const BoundedCache folder(3);
   StageCache cache(folder.path.string(), 4 * folder.one);
-  cache.keep_light({0, 9}, some_light(100000));
-  cache.keep_light({0, 3}, some_light(1000));
+  cache.keep({0, 9}, some_light(100000), LightCodec{0});
+  cache.keep({0, 3}, some_light(1000), LightCodec{0});
   EXPECT_EQ(folder.there(4), (std::vector<bool>{true, true, true, true}));
   EXPECT_FALSE(std::filesystem::exists(folder.entry(9)));
   EXPECT_NE(cache.warning().find("larger than the whole cache"), std::string::npos);
@@ -74,8 +74,8 @@ TEST(CacheBound, NotRegularFiles) {
     bad += problem_of(folder.path.string(), entry) == "is not a regular file" ? 1 : 0;
   EXPECT_EQ(bad, 4);
   StageCache cache(folder.path.string());
-  for (std::uint64_t i = 1; i < 5; ++i) EXPECT_FALSE(cache.find_light({0, i}, 1000)) << i;
-  cache.keep_light({0, 3}, some_light(10));
+  for (std::uint64_t i = 1; i < 5; ++i) EXPECT_FALSE(cache.find({0, i}, LightCodec{1000})) << i;
+  cache.keep({0, 3}, some_light(10), LightCodec{0});
   EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(folder.entry(3))));
   EXPECT_FALSE(std::filesystem::exists(folder.file("nothing")));
   prune_cache(folder.path.string(), 0);
@@ -89,8 +89,8 @@ TEST(CacheBound, HeldLock) {
   const int lock = ::open(folder.file(".opaline-lock").c_str(), O_RDWR | O_CREAT, 0600);
   ASSERT_EQ(::flock(lock, LOCK_EX), 0);
   StageCache cache(folder.path.string(), 3 * folder.one);
-  cache.keep_light({0, 3}, some_light(1000));
-  cache.keep_light({0, 4}, some_light(1000));
+  cache.keep({0, 3}, some_light(1000), LightCodec{0});
+  cache.keep({0, 4}, some_light(1000), LightCodec{0});
   EXPECT_NE(cache.warning().find("another process holds its lock"), std::string::npos) << cache.warning();
   EXPECT_EQ(folder.there(5), (std::vector<bool>{true, true, true, true, true}));
   int asked = 0;

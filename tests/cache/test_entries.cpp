@@ -23,30 +23,30 @@ TEST(CacheEntries, RoundTrip) {
     const LightTransfer light = some_light(count);
     const Octree octree = some_octree(count);
     StageCache writer(folder.path.string()), reader(folder.path.string());
-    writer.keep_samples(kKey, samples, kMeshes);
-    writer.keep_light(kKey, light);
-    writer.keep_octree(kKey, octree);
-    const auto same = reader.find_samples(kKey, surface_of(count));
+    writer.keep(kKey, samples, SamplesCodec{surface_of(0)});
+    writer.keep(kKey, light, LightCodec{0});
+    writer.keep(kKey, octree, OctreeCodec{samples});
+    const auto same = reader.find(kKey, SamplesCodec{surface_of(count)});
     ASSERT_TRUE(same) << reader.warning();
     EXPECT_TRUE(same_bytes(samples.samples, same->samples));
     EXPECT_EQ(samples.area, same->area);
     EXPECT_EQ(samples.radius, same->radius);
-    const auto renumbered = reader.find_samples(kKey, surface_of(count, kOthers));
+    const auto renumbered = reader.find(kKey, SamplesCodec{surface_of(count, kOthers)});
     ASSERT_TRUE(renumbered);
     for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(renumbered->samples[i].mesh, i % 3 == 0 ? 0u : 9u);
-    const auto same_light = reader.find_light(kKey, count);
+    const auto same_light = reader.find(kKey, LightCodec{count});
     ASSERT_TRUE(same_light);
     EXPECT_TRUE(same_bytes(light.weights, same_light->weights));
     EXPECT_EQ(light.relative_error, same_light->relative_error);
-    const auto tree = reader.find_octree(kKey, samples);
+    const auto tree = reader.find(kKey, OctreeCodec{samples});
     ASSERT_TRUE(tree);
     EXPECT_TRUE(same_bytes(octree.nodes, tree->nodes));
     EXPECT_TRUE(same_bytes(octree.samples, tree->samples));
     EXPECT_TRUE(same_bytes(octree.normals, tree->normals));
     EXPECT_EQ(octree.flux_unit, tree->flux_unit);
     const SurfaceCache exitance = some_exitance(count);
-    writer.keep_exitance(kKey, exitance, kMeshes);
-    const auto cache = reader.find_exitance(kKey, some_world(), kOthers);
+    writer.keep(kKey, exitance, SurfaceCacheCodec{some_world(), kMeshes});
+    const auto cache = reader.find(kKey, SurfaceCacheCodec{some_world(), kOthers});
     ASSERT_TRUE(cache);
     ASSERT_EQ(cache->splits.size(), 12u);
     EXPECT_TRUE(same_bytes(exitance.splits[4], cache->splits[0]));
@@ -66,9 +66,9 @@ TEST(CacheEntries, RoundTrip) {
 // the time into its data sets.
 TEST(CacheEntries, SameBytes) {
   const ScratchFolder one, two;
-  StageCache(one.path.string()).keep_samples(kKey, some_samples(1000), kMeshes);
+  StageCache(one.path.string()).keep(kKey, some_samples(1000), SamplesCodec{surface_of(0)});
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5's clock has seconds
-  StageCache(two.path.string()).keep_samples(kKey, some_samples(1000), kMeshes);
+  StageCache(two.path.string()).keep(kKey, some_samples(1000), SamplesCodec{surface_of(0)});
   EXPECT_FALSE(bytes_of(one.file(kName)).empty());
   EXPECT_TRUE(bytes_of(one.file(kName)) == bytes_of(two.file(kName)));
 }
@@ -77,7 +77,7 @@ TEST(CacheEntries, SameBytes) {
 // stands where HDF5 does not look past it.
 TEST(CacheEntries, IsPlainHdf5) {
   const ScratchFolder folder;
-  StageCache(folder.path.string()).keep_samples(kKey, some_samples(10), kMeshes);
+  StageCache(folder.path.string()).keep(kKey, some_samples(10), SamplesCodec{surface_of(0)});
   const std::string path = folder.file(kName);
   ASSERT_GT(H5Fis_hdf5(path.c_str()), 0);
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
@@ -93,14 +93,14 @@ TEST(CacheEntries, IsPlainHdf5) {
 struct Spoiled : ScratchFolder {
   std::string entry = file(kName), whole;
   Spoiled() {
-    StageCache(path.string()).keep_samples(kKey, some_samples(12000), kMeshes);
+    StageCache(path.string()).keep(kKey, some_samples(12000), SamplesCodec{surface_of(0)});
     whole = bytes_of(entry);
   }
   /// What is said of these bytes; "" if they are taken for samples.
   std::string said_of(const std::string& bytes) const {
     put_bytes(entry, bytes);
     StageCache cache(path.string());
-    return cache.find_samples(kKey, surface_of(12000)) ? "" : cache.warning();
+    return cache.find(kKey, SamplesCodec{surface_of(12000)}) ? "" : cache.warning();
   }
 };
 
@@ -156,7 +156,7 @@ TEST(CacheEntries, NotThisEntry) {
   std::filesystem::remove(spoiled.entry);
   std::filesystem::create_directory(spoiled.entry);
   StageCache cache(spoiled.path.string());
-  EXPECT_FALSE(cache.find_samples(kKey, surface_of(12000)));
+  EXPECT_FALSE(cache.find(kKey, SamplesCodec{surface_of(12000)}));
   EXPECT_NE(cache.warning().find("is not a regular file"), std::string::npos) << cache.warning();
 }
 
@@ -167,12 +167,12 @@ TEST(CacheEntries, BadOnesAreReplaced) {
   put_bytes(spoiled.entry, "x");
   put_bytes(spoiled.file("light" + kName.substr(7)), "y");
   StageCache cache(spoiled.path.string());
-  EXPECT_FALSE(cache.find_samples(kKey, surface_of(12000)));
-  EXPECT_FALSE(cache.find_light(kKey, 1));
-  EXPECT_FALSE(cache.find_octree(kKey, {}));  // there is none: nothing to say
+  EXPECT_FALSE(cache.find(kKey, SamplesCodec{surface_of(12000)}));
+  EXPECT_FALSE(cache.find(kKey, LightCodec{1}));
+  EXPECT_FALSE(cache.find(kKey, OctreeCodec{{}}));  // there is none: nothing to say
   EXPECT_EQ(cache.warning(), "cache " + spoiled.path.string() + ": " + kName + " is truncated, light" +
                                  kName.substr(7) + " is truncated, and was computed again");
-  cache.keep_samples(kKey, some_samples(12000), kMeshes);
+  cache.keep(kKey, some_samples(12000), SamplesCodec{surface_of(0)});
   EXPECT_TRUE(bytes_of(spoiled.entry) == spoiled.whole);
 }
 

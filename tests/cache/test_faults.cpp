@@ -52,7 +52,7 @@ KilledWriters kill_writers(int times) {
   const std::string path = folder.path.string();
   const SurfaceSamples samples = some_samples(4000);
   const auto write = [&](std::uint64_t i) {
-    StageCache(path).keep_samples(key(i), samples, kMeshes);
+    StageCache(path).keep(key(i), samples, SamplesCodec{surface_of(0)});
     return 0;
   };
   const auto start = std::chrono::steady_clock::now();
@@ -65,7 +65,7 @@ KilledWriters kill_writers(int times) {
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
     StageCache cache(path);
-    const auto found = cache.find_samples(key(std::uint64_t(i)), surface_of(4000));
+    const auto found = cache.find(key(std::uint64_t(i)), SamplesCodec{surface_of(4000)});
     killed.warning += cache.warning();
     if (!found) continue;
     ++killed.written;
@@ -117,21 +117,21 @@ TEST(CacheFaults, FullDisk) {
   const ScratchFolder folder;
   const SurfaceSamples samples = some_samples(4000);
   const LightTransfer light = some_light(10);
-  StageCache(folder.path.string()).keep_light(key(1), light);
+  StageCache(folder.path.string()).keep(key(1), light, LightCodec{0});
   for (std::size_t limit = 0; limit < 220000; limit += 1777) {
     StageCache cache(folder.path.string());
     {
       const FullDisk disk(limit);
-      cache.keep_samples(key(2), samples, kMeshes);
-      cache.keep_light(key(3), some_light(1));  // small enough, but the disk is full: not tried
+      cache.keep(key(2), samples, SamplesCodec{surface_of(0)});
+      cache.keep(key(3), some_light(1), LightCodec{0});  // small enough, but the disk is full: not tried
     }
     ASSERT_NE(cache.warning().find("not all was kept"), std::string::npos) << limit;
     ASSERT_EQ(folder.entries(), 2u) << limit;
     ASSERT_EQ(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL), 0) << limit;
   }
   StageCache cache(folder.path.string());
-  EXPECT_TRUE(cache.find_light(key(1), 10));
-  cache.keep_samples(key(2), samples, kMeshes);
+  EXPECT_TRUE(cache.find(key(1), LightCodec{10}));
+  cache.keep(key(2), samples, SamplesCodec{surface_of(0)});
   EXPECT_EQ(cache.warning(), "");
   EXPECT_EQ(whole_entries(folder.path.string()), 2);
 }
@@ -140,13 +140,13 @@ TEST(CacheFaults, FullDisk) {
 // stage_cache.h. Root may write everywhere, so it becomes nobody. Fails if: a hit must be marked as used.
 TEST(CacheFaults, ReadOnlyFolder) {
   const ScratchFolder folder;
-  StageCache(folder.path.string()).keep_samples(key(1), some_samples(100), kMeshes);
+  StageCache(folder.path.string()).keep(key(1), some_samples(100), SamplesCodec{surface_of(0)});
   ::chmod(folder.path.c_str(), 0555);
   const int result = exit_code(in_child([&] {
     if (::geteuid() == 0 && ::setuid(65534) != 0) return 2;
     StageCache cache(folder.path.string());
-    if (!cache.find_samples(key(1), surface_of(100)) || !cache.warning().empty()) return 3;
-    cache.keep_samples(key(2), some_samples(100), kMeshes);
+    if (!cache.find(key(1), SamplesCodec{surface_of(100)}) || !cache.warning().empty()) return 3;
+    cache.keep(key(2), some_samples(100), SamplesCodec{surface_of(0)});
     return cache.warning().find("Permission denied") == std::string::npos ? 4 : 0;
   }));
   EXPECT_EQ(result, 0);
@@ -173,9 +173,9 @@ TEST(CacheFaults, TwoProcesses) {
     for (std::uint64_t i = 0; i < 60; ++i) {
       StageCache cache(folder.path.string(), 300000);  // some five entries
       const std::size_t count = 1000 + 10 * (i % 7);
-      const auto found = cache.find_samples(key(i % 7), surface_of(count));
+      const auto found = cache.find(key(i % 7), SamplesCodec{surface_of(count)});
       if (found && !same_bytes(found->samples, some_samples(count).samples)) return 1;
-      if (!found) cache.keep_samples(key(i % 7), some_samples(count), kMeshes);
+      if (!found) cache.keep(key(i % 7), some_samples(count), SamplesCodec{surface_of(0)});
       if (!cache.warning().empty()) return 2;
     }
     return 0;

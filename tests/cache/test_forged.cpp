@@ -21,26 +21,26 @@ const StageKey kForgedKey{1, 2};
 bool is_believed(const SurfaceSamples& samples) {
   const ScratchFolder folder;
   StageCache cache(folder.path.string());
-  cache.keep_samples(kForgedKey, samples, kMeshes);
-  return cache.find_samples(kForgedKey, surface_of(kCount)).has_value();
+  cache.keep(kForgedKey, samples, SamplesCodec{surface_of(0)});
+  return cache.find(kForgedKey, SamplesCodec{surface_of(kCount)}).has_value();
 }
 bool is_believed(const LightTransfer& light) {
   const ScratchFolder folder;
   StageCache cache(folder.path.string());
-  cache.keep_light(kForgedKey, light);
-  return cache.find_light(kForgedKey, kCount).has_value();
+  cache.keep(kForgedKey, light, LightCodec{0});
+  return cache.find(kForgedKey, LightCodec{kCount}).has_value();
 }
 bool is_believed(const Octree& tree) {
   const ScratchFolder folder;
   StageCache cache(folder.path.string());
-  cache.keep_octree(kForgedKey, tree);
-  return cache.find_octree(kForgedKey, some_samples(kCount)).has_value();
+  cache.keep(kForgedKey, tree, OctreeCodec{some_samples(0)});
+  return cache.find(kForgedKey, OctreeCodec{some_samples(kCount)}).has_value();
 }
 bool is_believed(const SurfaceCache& exitance) {
   const ScratchFolder folder;
   StageCache cache(folder.path.string());
-  cache.keep_exitance(kForgedKey, exitance, kMeshes);
-  return cache.find_exitance(kForgedKey, some_world(), kMeshes).has_value();
+  cache.keep(kForgedKey, exitance, SurfaceCacheCodec{some_world(), kMeshes});
+  return cache.find(kForgedKey, SurfaceCacheCodec{some_world(), kMeshes}).has_value();
 }
 
 /// None of the changes to a result that is believed is.
@@ -182,7 +182,7 @@ TEST(CacheForged, Listing) {
   const auto is_found = [&](const std::string& listing) {
     put_bytes(folder.file(file_name(name)), entry_of(name, listing, bytes));
     StageCache cache(folder.path.string());
-    return cache.find_light(kForgedKey, kCount).has_value();
+    return cache.find(kForgedKey, LightCodec{kCount}).has_value();
   };
   EXPECT_TRUE(is_found("weights 600 x 4 at 1024\n" + error));
   for (const char* weights : {
@@ -221,9 +221,9 @@ TEST(CacheForged, SparseEntry) {
   }
   StageCache cache(folder.path.string());
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_FALSE(cache.find_samples(kForgedKey, surface_of(kCount)));
-  EXPECT_FALSE(cache.find_light(kForgedKey, kCount));
-  EXPECT_FALSE(cache.find_octree(kForgedKey, some_samples(kCount)));
+  EXPECT_FALSE(cache.find(kForgedKey, SamplesCodec{surface_of(kCount)}));
+  EXPECT_FALSE(cache.find(kForgedKey, LightCodec{kCount}));
+  EXPECT_FALSE(cache.find(kForgedKey, OctreeCodec{some_samples(kCount)}));
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), .5);
   EXPECT_NE(cache.warning().find("is larger than its result can be"), std::string::npos) << cache.warning();
 }

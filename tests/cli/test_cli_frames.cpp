@@ -130,7 +130,7 @@ TEST(CliFrames, AnyProcessAnyOrder) {
   ASSERT_EQ(cached.exit_code, 0) << cached.out;
   EXPECT_TRUE(shot.pictures("cached") == expected);
   for (const std::string& line : decisions_of(cached))
-    EXPECT_TRUE(line.ends_with("from the cache") || line.ends_with("kept")) << line;
+    EXPECT_TRUE(line.ends_with("from the cache") || line.ends_with("reused")) << line;
 }
 
 // Claim: where only the camera moves the exitance of the surface is evaluated once, in whichever frame comes
@@ -148,7 +148,7 @@ TEST(CliFrames, CameraAlone) {
   ASSERT_EQ(all.exit_code, 0) << all.out;
   const std::vector<std::string> decisions = decisions_of(all);
   EXPECT_EQ(std::ranges::count_if(decisions, [](auto& d) { return d.ends_with("surface evaluated"); }), 1);
-  EXPECT_EQ(std::ranges::count_if(decisions, [](auto& d) { return d.ends_with("surface kept"); }), 5);
+  EXPECT_EQ(std::ranges::count_if(decisions, [](auto& d) { return d.ends_with("surface reused"); }), 5);
   std::vector<std::string> fill{"precompute", shot.scene, "--cache", shot.file("cache"),
                                 "--frames",   "2",        "--quiet"};
   fill.insert(fill.end(), still.begin(), still.end());
@@ -157,7 +157,7 @@ TEST(CliFrames, CameraAlone) {
   cached.insert(cached.end(), {"--cache", shot.file("cache")});
   for (const char* frame : {"4", "1", "6", "2,3", "5"})
     for (const std::string& line : decisions_of(shot.render(frame, "each", cached)))
-      EXPECT_TRUE(line.ends_with("from the cache") || line.ends_with("kept")) << line;
+      EXPECT_TRUE(line.ends_with("from the cache") || line.ends_with("reused")) << line;
   EXPECT_TRUE(shot.pictures("each") == shot.pictures("all"));
 }
 

@@ -6,9 +6,11 @@
 #include "cache/content_hash.h"
 #include "cache/entry_header.h"
 #include "fuzz_target.h"
+#include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/render/surface_caches.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
+#include "session/stage_codecs.h"
 
 namespace opaline::fuzz {
 namespace {
@@ -58,9 +60,10 @@ void look_up(const SurfaceCache& exitance, const World& world, std::uint32_t mes
 }
 
 void evaluate_with(const Octree& tree, const Computed& computed) {
-  Body group = computed.group();
-  group.octree = tree;
-  group.surface_cache.reset();
+  const Body& known = computed.group();
+  Body group{known.plan, known.profile, known.surface, known.transfers, known.entering};
+  hierarchical_state(group).kernels = hierarchical_state(known).kernels;
+  hierarchical_state(group).tree.value = tree;
   for (const EvaluatorKind evaluator : {EvaluatorKind::dual_tree, EvaluatorKind::classic}) {
     Settings settings = computed.session.scene().settings;
     settings.evaluator = evaluator;
@@ -73,12 +76,12 @@ void evaluate_with(const Octree& tree, const Computed& computed) {
 void try_entry(const std::string& stage, StageCache& cache, const StageKey& key, const Computed& computed) {
   const World& world = computed.session.world();
   const Body& group = computed.group();
-  if (stage == "samples") cache.find_samples(key, {world, group.plan.meshes, group.plan.samples});
-  if (stage == "light") cache.find_light(key, group.surface.samples.size());
+  if (stage == "samples") cache.find(key, SamplesCodec{{world, group.plan.meshes, group.plan.samples}});
+  if (stage == "light") cache.find(key, LightCodec{group.surface.samples.size()});
   if (stage == "octree")
-    if (const auto tree = cache.find_octree(key, group.surface)) evaluate_with(*tree, computed);
+    if (const auto tree = cache.find(key, OctreeCodec{group.surface})) evaluate_with(*tree, computed);
   if (stage == "exitance")
-    if (const auto exitance = cache.find_exitance(key, world, group.plan.meshes))
+    if (const auto exitance = cache.find(key, SurfaceCacheCodec{world, group.plan.meshes}))
       look_up(*exitance, world, group.plan.meshes[0]);
 }
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "methods/volume/volume_state.h"
+#include "methods/volume_diffusion/volume_diffusion_state.h"
 #include "opaline/core/error.h"
 #include "opaline/render/direct.h"
 #include "opaline/scene/load_scene.h"
@@ -265,18 +267,29 @@ TEST(BouncedLight, IsThatOfDirect) {
     }
 }
 
+/// Exitance of the samples' cells.
+std::vector<RgbF> cell_exitance(const Body& body) {
+  if (body.plan.method == Method::volume) return volume_state(body).exitance.value.exitance;
+  const VolumeDiffusionState& state = volume_diffusion_state(body);
+  std::vector<RgbF> exitance = state.direct.value.exitance;
+  for (std::size_t i = 0; i < state.bounced.value.exitance.size(); ++i)
+    exitance[i] += state.bounced.value.exitance[i];
+  return exitance;
+}
+
 /// Mean exitance of a body on the parts that face to the left and lie right of the middle.
 RgbF mean_on_the_right(const Scene& scene) {
   Session session;
   session.edit(scene);
   session.prepare();
   const Body& body = session.bodies()[0];
+  const std::vector<RgbF> exitance = cell_exitance(body);
   RgbF sum;
   float area = 0;
   for (std::size_t i = 0; i < body.surface.samples.size(); ++i) {
     const SurfaceSample& s = body.surface.samples[i];
     if (!(s.position.x > 0 && s.normal.x < -.5f)) continue;
-    sum += (body.volume->exitance[i] + (body.bounced ? body.bounced->exitance[i] : RgbF())) * s.area;
+    sum += exitance[i] * s.area;
     area += s.area;
   }
   return sum * (1 / area);

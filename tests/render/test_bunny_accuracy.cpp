@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/scene/load_scene.h"
 #include "support/scenes.h"
 
@@ -42,7 +43,11 @@ std::vector<Query> shading_points(int resolution, std::size_t stride) {
 std::vector<Exitance> exact_sum(std::size_t samples, std::span<const Query> points) {
   const Prepared prepared(bunny(samples));
   const Body& group = prepared.bodies[0];
-  return evaluate({group.octree, group.kernel, points, {}, EvaluatorKind::brute_force});
+  return evaluate({hierarchical_state(group).octree(),
+                   hierarchical_state(group).kernel(),
+                   points,
+                   {},
+                   EvaluatorKind::brute_force});
 }
 
 struct MeanAndTail {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/scratch_folder.h"
+#include "methods/volume_diffusion/volume_diffusion_state.h"
 #include "opaline/geometry/nearest_surface.h"
 #include "opaline/volume/nearest_sample.h"
 #include "support/pictures.h"
@@ -113,7 +114,8 @@ CellExitance exitance_of(const ScratchFolder& folder, const std::string& text) {
   session.prepare();
   const Body& body = session.bodies()[0];
   EXPECT_EQ(session.world().unit, 1);
-  return {body.surface.samples, body.volume.value().exitance, body.volume.value().error};
+  return {body.surface.samples, volume_diffusion_state(body).direct.value.exitance,
+          volume_diffusion_state(body).direct.value.error};
 }
 
 // Claim: a ball whose texture has two colours, and one whose texture has two radii, send out, cell for cell, what random walks

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/image/metrics.h"
 #include "opaline/render/surface_caches.h"
@@ -26,7 +27,7 @@ Scene torus_scene(int side, int samples_per_pixel) {
 }
 
 bool has_cache(const Scene& scene) {
-  return Prepared(scene).bodies[0].surface_cache.has_value();
+  return hierarchical_state(Prepared(scene).bodies[0]).uses_surface_cache;
 }
 
 // Claim: left to itself a picture of many points has a surface cache and one of few has none, by pixels and
@@ -134,7 +135,7 @@ TEST(SurfaceCaches, FollowTheTolerance) {
   Scene scene = torus_scene(2500, 1);
   const auto places = [&](double tolerance) {
     scene.settings.tolerance = tolerance;
-    return Prepared(scene).bodies[0].surface_cache->places();
+    return hierarchical_state(Prepared(scene).bodies[0]).cache()->places();
   };
   const double coarse = double(places(.005)), fine = double(places(.001));
   RecordProperty("coarse", std::to_string(coarse));

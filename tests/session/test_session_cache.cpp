@@ -3,6 +3,7 @@
 #include "../core/scratch_folder.h"
 #include "opaline/cache/cache_folder.h"
 #include "opaline/session/stage_keys.h"
+#include "session/stage_codecs.h"
 #include "session_test.h"
 
 namespace opaline {
@@ -81,7 +82,7 @@ TEST(SessionCache, DiffusionOfBouncedLightIsFound) {
       EXPECT_TRUE(same_pixels(picture_of(session, *each), cold_picture(*each)));
       EXPECT_EQ(session.work().sample_rays > 0, is_first && each == &scene);
     }
-    EXPECT_EQ(session.work().found, is_first ? 0u : 2u);  // what each ball sends of it
+    EXPECT_EQ(session.work().found, is_first ? 0u : 4u);  // bounced light of each ball, and its diffusion
     EXPECT_EQ(cache.warning(), "");
   }
   EXPECT_FALSE(same_pixels(cold_picture(scene), cold_picture(red)));
@@ -135,7 +136,7 @@ TEST(SessionCache, WalkedProfilesAreKept) {
   StageCache cache(folder.path.string());
   for (const ChannelProfile& channel : profile.channels) {
     const WalkedShape& shape = *std::get<TabulatedProfile>(channel).shape;
-    const auto kept = cache.find_walked_profile(walked_profile_key(shape.absorbed(), shape.eta()));
+    const auto kept = cache.find(walked_profile_key(shape.absorbed(), shape.eta()), WalkedProfileCodec{});
     ASSERT_TRUE(kept);
     for (const double r : {.01, 1., 40.}) EXPECT_EQ(kept->density(r), shape.table().density(r));
   }

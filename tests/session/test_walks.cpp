@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random walks from edit to edit.
+#include "methods/volume/volume_state.h"
 #include "opaline/lights/light.h"
 #include "opaline/transport/fresnel.h"
 #include "opaline/transport/laboratory.h"
@@ -69,7 +70,7 @@ TEST(Walks, EditsWalkForWhatTheyConcern) {
     const Image picture = picture_of(session, scene);
     EXPECT_EQ(session.work().walk_passes, edit.passes);
     EXPECT_EQ(session.decisions().back(),
-              edit.passes > 0 ? "shape: walked at random" : "shape: random walks kept");
+              edit.passes > 0 ? "shape: walked at random" : "shape: random walks reused");
     EXPECT_TRUE(same_pixels(picture, cold_picture(scene)));
   }
 }
@@ -138,7 +139,7 @@ double mean_exitance(const Session& session, const Counts& counts) {
     const SurfaceSample& s = body.surface.samples[i];
     if (!counts(out_of_world(session.world(), Vec3d(s.position)), s.normal)) continue;
     area += double(s.area);
-    sum += double(s.area) * double(body.volume->exitance[i].y);
+    sum += double(s.area) * double(volume_state(body).exitance.value.exitance[i].y);
   }
   return sum / area;
 }
@@ -195,7 +196,7 @@ TEST(Walks, NoMeanFreePath) {
     session.edit(scene);
     session.prepare();
     EXPECT_NEAR(mean_exitance(session, everywhere) / white, 1, .03);
-    for (const RgbF& value : session.bodies()[0].volume->exitance) {
+    for (const RgbF& value : volume_state(session.bodies()[0]).exitance.value.exitance) {
       EXPECT_TRUE(is_finite(value));
       EXPECT_EQ(value.x, 0);
     }

@@ -10,6 +10,7 @@
 #include "opaline/cache/cache_folder.h"
 #include "opaline/core/random.h"
 #include "opaline/session/stage_cache.h"
+#include "session/stage_codecs.h"
 
 namespace opaline::test {
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "opaline/exitance/surface_cache.h"
 #include "opaline/render/precompute.h"
 
 namespace opaline {
@@ -24,12 +25,12 @@ std::size_t expected_cache_places(const GroupPlan& group, const World& world);
 std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::span<const Body> groups,
                                            std::size_t pictures = 1);
 
-/// Whether make_group_cache would make this cache.
+/// Whether make_body_cache would make this cache.
 bool may_use(const SurfaceCache& cache, const PrecomputeInput& input, const Body& group,
              std::size_t most_places);
 
 /// None if it would take more than most_places, or so many vertices that it would look likely.
-std::optional<SurfaceCache> make_group_cache(const PrecomputeInput& input, const Body& group,
-                                             std::size_t most_places);
+std::optional<SurfaceCache> make_body_cache(const PrecomputeInput& input, const Body& group,
+                                            std::size_t most_places);
 
 }  // namespace opaline

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "opaline/cache/stage_key.h"
@@ -18,6 +19,10 @@ struct MeshKeys {
   Vec3d center{};
   double radius = 0;
 };
+/// Instruction set and ray tracer that results depend on.
+const char* widest_instructions();
+std::string embree_version();
+
 /// Of one mesh.
 MeshKeys mesh_keys(const Mesh& mesh);
 /// One a mesh of the world.
@@ -43,9 +48,10 @@ StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light);
 
-/// Of the tree: its samples, each light's transfer and colour, and what tints them as they enter (tint_key).
-StageKey octree_key(const StageKey& samples, std::span<const StageKey> transfers,
-                    std::span<const Light> lights, const StageKey& tint);
+/// Cache key of the light transmitted at samples from all lights: each light's transfer and colour, and the tint
+/// (tint_key).
+StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> transfers,
+                         std::span<const Light> lights, const StageKey& tint);
 
 /// Of the shape of a profile that is walked, in mean free paths.
 StageKey walked_profile_key(double absorbed, double eta);
@@ -73,30 +79,10 @@ StageKey view_coats_key(const Scene& scene);
 /// in    light: recentred
 StageKey view_light_key(const Light& light);
 
-/// Of the sums of random walks, one for each of their sources (VolumeSums): the samples (or their tint_key where one
-/// colours light that enters), the media's coefficients, all meshes, where the source's light is and how large; its
-/// colour only where sources have several lights.
-/// in    medium_inside: medium_key
-std::vector<StageKey> walk_keys(const VolumeInput& walks, const StageKey& samples,
-                                const StageKey& medium_inside, std::span<const MeshKeys> meshes);
-
-/// Of the cells of volume_diffusion inside a body.
-/// in    samples: key of the body's; medium_inside: medium_key
-StageKey diffusion_cells_key(const Body& body, const StageKey& samples, const StageKey& medium_inside,
-                             std::span<const MeshKeys> meshes);
-/// Of what leaves by diffusion.
-/// in    light: octree_key of what enters
-StageKey diffusion_key(const StageKey& cells, const StageKey& light);
-
 /// Whether a mesh could be in the way between a light and a group's meshes, to judge by the balls around them
 /// all; at most too cautious.
 /// in    light: recentred; unit: World::unit
 bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
                 const Light& light, double unit);
-
-/// Of the exitance all over a group's surfaces: its tree, its kernel, its meshes with their normals, the
-/// tolerance, and the instruction set, which rounds.
-StageKey exitance_key(const StageKey& tree, const StageKey& kernel, std::span<const MeshKeys> meshes,
-                      const GroupPlan& group, const Settings& settings);
 
 }  // namespace opaline

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "methods/method.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/irradiance/sample_key.h"
 #include "opaline/lights/light.h"
@@ -10,8 +11,6 @@
 #include "render/fields/direct_field.h"
 #include "render/fields/local_field.h"
 #include "render/fields/partly_opaque_field.h"
-#include "render/fields/sample_field.h"
-#include "render/fields/volume_field.h"
 
 namespace opaline {
 namespace {
@@ -23,7 +22,7 @@ bool has_mesh(const std::vector<std::uint32_t>& meshes, std::size_t mesh) {
 /// Of each mesh, or null.
 std::vector<const Body*> bodies_of_meshes(const RenderInput& input) {
   std::vector<const Body*> bodies(input.world.meshes.size());
-  if (!has_samples(input.scene.settings.method)) return bodies;
+  if (!method_of(input.scene.settings.method).needs_samples()) return bodies;
   for (const Body& body : input.groups)
     for (const std::uint32_t mesh : body.plan.meshes) bodies[mesh] = &body;
   return bodies;
@@ -51,9 +50,7 @@ Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_s
 
 std::unique_ptr<Field> make_field(const RenderInput& input, const Source& source,
                                   const SurfaceTextures& textures, std::span<const RgbF> albedos) {
-  if (source.group != nullptr && has_cells(source.group->plan.method))
-    return std::make_unique<VolumeField>(input, *source.group);
-  if (source.group != nullptr) return std::make_unique<SampleField>(input, *source.group);
+  if (source.group != nullptr) return method_of(source.group->plan.method).field(input, *source.group);
   if (source.entries != nullptr) return std::make_unique<DirectField>(*source.entries, textures, source.eta);
   return std::make_unique<LocalField>(input, albedos, source.eta);
 }

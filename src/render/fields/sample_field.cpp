@@ -13,8 +13,8 @@
 namespace opaline {
 namespace {
 
-bool needs_irradiance(const Body& group) {
-  return group.surface_cache ? group.surface_cache->needs_irradiance() : group.kernel.needs_irradiance();
+bool needs_irradiance(const HierarchicalState& state) {
+  return state.cache() != nullptr ? state.cache()->needs_irradiance() : state.kernel().needs_irradiance();
 }
 
 bool leaves_some_to_points(const SurfaceCache& cache) {
@@ -45,9 +45,10 @@ void put(const std::vector<T>& values, std::span<const std::uint32_t> places, st
 }
 
 RgbF crease_deviation(const RenderInput& input, const Body& group) {
+  const HierarchicalState& state = hierarchical_state(group);
   const Vec3f eye(into_world(input.world, input.scene.camera.position));
-  const std::array<float, 3> error =
-      crease_error({group.octree, group.kernel, group.profile, eye, input.scene.settings.instruction_set});
+  const std::array<float, 3> error = crease_error(
+      {state.octree(), state.kernel(), group.profile, eye, input.scene.settings.instruction_set});
   return RgbF{error[0], error[1], error[2]} * std::sqrt(float(std::numbers::pi) / 2);
 }
 
@@ -67,17 +68,18 @@ std::shared_ptr<IrradianceLattice>* held_lattice(const RenderInput& input, const
 SampleField::SampleField(const RenderInput& input, const Body& group)
     : input_(input),
       group_(group),
+      state_(hierarchical_state(group)),
       is_noisy_(has_area_lights(input.scene)),
-      asks_irradiance_(needs_irradiance(group)),
+      asks_irradiance_(needs_irradiance(state_)),
       creases_(crease_deviation(input, group)) {
-  if (asks_irradiance_ || (group.surface_cache && leaves_some_to_points(*group.surface_cache)))
+  if (asks_irradiance_ || (state_.cache() != nullptr && leaves_some_to_points(*state_.cache())))
     near_field_.emplace(group, light_samples_of_ray(input.scene), held_lattice(input, group));
 }
 
 LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                              HeldView::Surface* held) const {
   const bool looks_near = near_field_ && pass.is_seen;
-  if (!group_.surface_cache || asks_irradiance_) return at_points(hits, lighting, looks_near, held);
+  if (state_.cache() == nullptr || asks_irradiance_) return at_points(hits, lighting, looks_near, held);
   LeavingLight light;
   put_exitance(looked_up(hits, {}), light);
   if (looks_near) replace_left(hits, lighting, light);
@@ -91,7 +93,7 @@ void SampleField::replace_left(const SurfaceHits& hits, const PointIrradianceInp
   const std::size_t count = hits.hits.size();
   for (std::uint32_t i = 0; i < count; ++i) {
     const Hit& hit = hits.hits[i];
-    if (group_.surface_cache->is_left_to_points(hit.mesh, hit.triangle, hit.u, hit.v)) left.push_back(i);
+    if (state_.cache()->is_left_to_points(hit.mesh, hit.triangle, hit.u, hit.v)) left.push_back(i);
   }
   if (left.empty()) return;
   const SurfaceHits some = chosen_hits(hits, left);
@@ -117,7 +119,7 @@ LeavingLight SampleField::at_points(const SurfaceHits& hits, PointIrradianceInpu
     tint_entering(hits.textures, light.irradiance, light.noise);
   }
   std::vector<Exitance> exitance =
-      group_.surface_cache && asks_irradiance_
+      state_.cache() != nullptr && asks_irradiance_
           ? looked_up(hits, light.irradiance)
           : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
   // Beside a tint's edges the samples' irradiance differs from that of the point without a shadow's edge near.
@@ -144,8 +146,9 @@ std::vector<Exitance> SampleField::summed(const SurfaceHits& hits, std::span<con
   queries.reserve(hits.points.size());
   for (const SurfacePoint& point : hits.points) queries.push_back({point.position, point.normal});
   const Settings& settings = input_.scene.settings;
-  return evaluate({group_.octree, group_.kernel, queries, irradiance, settings.evaluator, settings.tolerance,
-                   settings.max_solid_angle, settings.instruction_set, group_.cloud, nullptr, packets});
+  return evaluate({state_.octree(), state_.kernel(), queries, irradiance, settings.evaluator,
+                   settings.tolerance, settings.max_solid_angle, settings.instruction_set, state_.cloud,
+                   nullptr, packets});
 }
 
 std::vector<Exitance> SampleField::looked_up(const SurfaceHits& hits,
@@ -154,8 +157,8 @@ std::vector<Exitance> SampleField::looked_up(const SurfaceHits& hits,
   exitance.reserve(hits.hits.size());
   for (std::size_t i = 0; i < hits.hits.size(); ++i) {
     const Hit& hit = hits.hits[i];
-    exitance.push_back(group_.surface_cache->at(hit.mesh, hit.triangle, hit.u, hit.v,
-                                                irradiance.empty() ? nullptr : &irradiance[i]));
+    exitance.push_back(state_.cache()->at(hit.mesh, hit.triangle, hit.u, hit.v,
+                                          irradiance.empty() ? nullptr : &irradiance[i]));
   }
   return exitance;
 }
@@ -163,7 +166,7 @@ std::vector<Exitance> SampleField::looked_up(const SurfaceHits& hits,
 // The irradiance at the hit is noisy, and beside a shadow edge not that of its near field.
 void SampleField::refine_near_field(const PointIrradianceInput& lighting, std::vector<Exitance>& exitance,
                                     LeavingLight& light) const {
-  const auto& share = group_.kernel.own_irradiance;
+  const auto& share = state_.kernel().own_irradiance;
   for (std::size_t i = 0; i < light.noise.size(); ++i) {
     const Rgb own(own_part(share, exitance[i], RgbF(1)));
     light.noise[i] = light.noise[i] * own * own;

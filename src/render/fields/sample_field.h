@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/render/render.h"
 #include "render/fields/field.h"
 #include "render/near_field_sampler.h"
@@ -35,6 +36,7 @@ class SampleField : public Field {
 
   const RenderInput& input_;
   const Body& group_;
+  const HierarchicalState& state_;
   bool is_noisy_, asks_irradiance_;
   std::optional<NearFieldSampler> near_field_;  ///< none: samples or cache tell all
   RgbF creases_{};  ///< what a near field misses beside creases, over the exitance, as a standard deviation

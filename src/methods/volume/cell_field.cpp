@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/fields/volume_field.h"
+#include "methods/volume/cell_field.h"
 
 #include <array>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "render/fields/make_fields.h"
-#include "render/local_media.h"
 
 namespace opaline {
 namespace {
@@ -34,26 +33,17 @@ Blocks blocks_of(const SurfaceHits& hits) {
   return blocks;
 }
 
-RgbF local_reflectance(const Scene& scene, const Body& body) {
-  RgbF local;
-  if (body.plan.method != Method::volume_diffusion ||
-      varies_inside(scene.media[body.plan.medium], body.plan.method))
-    return local;
-  for (std::size_t c = 0; c < 3; ++c)
-    if (is_local(body.profile, c)) local[c] = float(body.profile.total[c]);
-  return local;
-}
-
 }  // namespace
 
-VolumeField::VolumeField(const RenderInput& input, const Body& body)
+CellField::CellField(const RenderInput& input, const Body& body, const CellFit& fit, const RgbF& local)
     : body_(body),
-      local_(local_reflectance(input.scene, body)),
+      fit_(fit),
+      local_(local),
       is_noisy_(has_area_lights(input.scene)),
       samples_per_pixel_(input.scene.film.samples_per_pixel) {}
 
-void VolumeField::add_local(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
-                            HeldView::Surface* held, LeavingLight& light) const {
+void CellField::add_local(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
+                          HeldView::Surface* held, LeavingLight& light) const {
   if (is_noisy_) light.noise.resize(hits.points.size());
   lighting.variance = light.noise;
   light.irradiance = irradiance_at_hits(lighting, pass.is_seen ? samples_per_pixel_ : 1, held);
@@ -64,12 +54,12 @@ void VolumeField::add_local(const SurfaceHits& hits, PointIrradianceInput lighti
   }
 }
 
-LeavingLight VolumeField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
-                             HeldView::Surface* held) const {
+LeavingLight CellField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
+                           HeldView::Surface* held) const {
   LeavingLight light;
   light.exitance.resize(hits.points.size());
   light.error.resize(hits.points.size());
-  CellFit::Reader reader(*body_.volume_fit);
+  CellFit::Reader reader(fit_);
   std::vector<Vec3f> positions;
   const Blocks blocks = blocks_of(hits);
   for (std::size_t b = 0; b < kBlocks; ++b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "session/entry_contents.h"
+#include "session/stage_codecs.h"
 
 #include <algorithm>
 
@@ -105,15 +105,16 @@ BlobType blob_type<SurfaceCache::Split>() {
   return {sizeof(S), {{"first", offsetof(S, first), kUint}, {"segments", offsetof(S, segments), kUint}}};
 }
 
-void put_samples(BlobWriter& file, const SurfaceSamples& samples, std::span<const std::uint32_t> meshes) {
+void SamplesCodec::put(BlobWriter& file, const SurfaceSamples& samples) const {
   std::vector<SurfaceSample> local = samples.samples;
-  for (SurfaceSample& s : local) s.mesh = std::uint32_t(std::ranges::find(meshes, s.mesh) - meshes.begin());
+  for (SurfaceSample& s : local)
+    s.mesh = std::uint32_t(std::ranges::find(surface.meshes, s.mesh) - surface.meshes.begin());
   file.put("samples", std::span<const SurfaceSample>(local));
   file.put("area", samples.area);
   file.put("radius", samples.radius);
 }
 
-std::optional<SurfaceSamples> get_samples(const BlobReader& entry, const SampledSurface& surface) {
+std::optional<SurfaceSamples> SamplesCodec::get(const BlobReader& entry) const {
   auto samples = entry.get<SurfaceSample>("samples");
   const std::optional<double> area = entry.number("area"), radius = entry.number("radius");
   if (!samples || !area || !radius) return {};
@@ -126,13 +127,13 @@ std::optional<SurfaceSamples> get_samples(const BlobReader& entry, const Sampled
   return all;
 }
 
-void put_light(BlobWriter& file, const LightTransfer& transfer) {
+void LightCodec::put(BlobWriter& file, const LightTransfer& transfer) const {
   file.put("weights", std::span(transfer.weights));
   file.put("relative_error", transfer.relative_error);
   file.put("edge_shift", transfer.edge_shift);
 }
 
-std::optional<LightTransfer> get_light(const BlobReader& entry, std::size_t samples) {
+std::optional<LightTransfer> LightCodec::get(const BlobReader& entry) const {
   auto weights = entry.get<float>("weights");
   const std::optional<double> error = entry.number("relative_error");
   const std::optional<double> shift = entry.number("edge_shift");
@@ -142,37 +143,37 @@ std::optional<LightTransfer> get_light(const BlobReader& entry, std::size_t samp
   return transfer;
 }
 
-void put_bounced(BlobWriter& file, std::span<const RgbF> bounced) {
-  file.put("irradiance", bounced);
+void BouncedCodec::put(BlobWriter& file, const std::vector<RgbF>& bounced) const {
+  file.put("irradiance", std::span(bounced));
 }
 
-std::optional<std::vector<RgbF>> get_bounced(const BlobReader& entry, std::size_t samples) {
+std::optional<std::vector<RgbF>> BouncedCodec::get(const BlobReader& entry) const {
   auto bounced = entry.get<RgbF>("irradiance");
   if (!bounced || !are_values_of(*bounced, samples)) return {};
   return bounced;
 }
 
-void put_walked_profile(BlobWriter& file, const RadialTable& table) {
+void WalkedProfileCodec::put(BlobWriter& file, const RadialTable& table) const {
   file.put("logarithms", std::span(table.logarithms()));
   file.put("decay", table.reference().decay);
   file.put("width", table.reference().width);
 }
 
-std::optional<RadialTable> get_walked_profile(const BlobReader& entry) {
+std::optional<RadialTable> WalkedProfileCodec::get(const BlobReader& entry) const {
   auto logarithms = entry.get<double>("logarithms");
   const std::optional<double> decay = entry.number("decay"), width = entry.number("width");
   if (!logarithms || !decay || !width || !is_walked_profile(*logarithms, *decay, *width)) return {};
   return RadialTable({*decay, *width}, std::move(*logarithms));
 }
 
-void put_octree(BlobWriter& file, const Octree& octree) {
+void OctreeCodec::put(BlobWriter& file, const Octree& octree) const {
   file.put("nodes", std::span(octree.nodes));
   file.put("samples", std::span(octree.samples));
   file.put("normals", std::span(octree.normals));
   file.put("flux_unit", double(octree.flux_unit));
 }
 
-std::optional<Octree> get_octree(const BlobReader& entry, const SurfaceSamples& samples) {
+std::optional<Octree> OctreeCodec::get(const BlobReader& entry) const {
   const auto bytes = entry.bytes_of("nodes", sizeof(OctreeNode));
   if (!bytes || !has_flags(*bytes, sizeof(OctreeNode), offsetof(OctreeNode, leaf))) return {};
   auto nodes = entry.get<OctreeNode>("nodes");
@@ -186,18 +187,18 @@ std::optional<Octree> get_octree(const BlobReader& entry, const SurfaceSamples& 
   return octree;
 }
 
-void put_volume(BlobWriter& file, const VolumeExitance& volume) {
+void VolumeCodec::put(BlobWriter& file, const VolumeExitance& volume) const {
   file.put("exitance", std::span(volume.exitance));
   file.put("error", std::span(volume.error));
 }
 
-std::optional<VolumeExitance> get_volume(const BlobReader& entry, std::size_t samples) {
+std::optional<VolumeExitance> VolumeCodec::get(const BlobReader& entry) const {
   auto exitance = entry.get<RgbF>("exitance"), error = entry.get<RgbF>("error");
   if (!exitance || !error || !are_values_of(*exitance, samples) || !are_values_of(*error, samples)) return {};
   return VolumeExitance{.exitance = std::move(*exitance), .error = std::move(*error)};
 }
 
-void put_exitance(BlobWriter& file, const SurfaceCache& exitance, std::span<const std::uint32_t> meshes) {
+void SurfaceCacheCodec::put(BlobWriter& file, const SurfaceCache& exitance) const {
   std::vector<std::uint32_t> triangles;
   std::vector<SurfaceCache::Split> splits;
   for (const std::uint32_t m : meshes) {
@@ -215,8 +216,7 @@ void put_exitance(BlobWriter& file, const SurfaceCache& exitance, std::span<cons
   file.put("nodes", std::span(exitance.nodes));
 }
 
-std::optional<SurfaceCache> get_exitance(const BlobReader& entry, const World& world,
-                                         std::span<const std::uint32_t> meshes) {
+std::optional<SurfaceCache> SurfaceCacheCodec::get(const BlobReader& entry) const {
   const auto own = entry.get<float>("own_irradiance");
   const auto triangles = entry.get<std::uint32_t>("triangles");
   const auto splits = entry.get<SurfaceCache::Split>("splits");
@@ -250,25 +250,25 @@ namespace {
 constexpr std::uint64_t kAroundSets = 1 << 16;  // what HDF5 adds, generously
 }
 
-std::uint64_t most_bytes_of_samples(const SampledSurface& surface) {
+std::uint64_t SamplesCodec::most_bytes() const {
   return most_samples(surface) * sizeof(SurfaceSample) + kAroundSets;
 }
 
-std::uint64_t most_bytes_of_bounced(std::size_t samples) {
+std::uint64_t BouncedCodec::most_bytes() const {
   return samples * sizeof(RgbF) + kAroundSets;
 }
 
-std::uint64_t most_bytes_of_light(std::size_t samples) {
+std::uint64_t LightCodec::most_bytes() const {
   return samples * sizeof(float) + kAroundSets;
 }
 
-std::uint64_t most_bytes_of_volume(std::size_t samples) {
+std::uint64_t VolumeCodec::most_bytes() const {
   return samples * 2 * sizeof(RgbF) + kAroundSets;
 }
 
 // A node that is no leaf has two children or more.
-std::uint64_t most_bytes_of_octree(std::size_t samples) {
-  return samples * (2 * sizeof(OctreeNode) + sizeof(TreeSample) + sizeof(Vec3f)) + kAroundSets;
+std::uint64_t OctreeCodec::most_bytes() const {
+  return samples.samples.size() * (2 * sizeof(OctreeNode) + sizeof(TreeSample) + sizeof(Vec3f)) + kAroundSets;
 }
 
 }  // namespace opaline

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `volume`: random walks inside the body, counted on the samples' cells and interpolated between them.
+// Radiant exitance known as means over the cells of samples, interpolated between them.
 #pragma once
 
 #include "opaline/render/render.h"
+#include "opaline/volume/cell_fit.h"
 #include "render/fields/field.h"
 
 namespace opaline {
 
-class VolumeField : public Field {
+class CellField : public Field {
  public:
-  /// body: with its walks; must outlive the field, as the input
-  VolumeField(const RenderInput& input, const Body& body);
+  /// local: diffuse reflectance of channels without a mean free path, which cells do not resolve; 0 in the others. All
+  /// must outlive the field.
+  CellField(const RenderInput& input, const Body& body, const CellFit& fit, const RgbF& local);
 
-  /// The error is the walks' noise and what interpolation between cells is off by.
+  /// The error is the noise of the means and the error of the interpolation.
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
   float eta() const override { return float(body_.profile.eta); }
@@ -23,8 +25,8 @@ class VolumeField : public Field {
                  HeldView::Surface* held, LeavingLight& light) const;
 
   const Body& body_;
-  /// Reflectance of the channels without a mean free path, which cells do not resolve: diffuse reflection at the hit.
-  RgbF local_{};
+  const CellFit& fit_;
+  RgbF local_;
   bool is_noisy_;
   int samples_per_pixel_;
 };

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/hierarchical/hierarchical_method.h"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+#include "methods/hierarchical/body_cloud_error.h"
+#include "methods/hierarchical/hierarchical_state.h"
+#include "opaline/diffusion/tabulated.h"
+#include "opaline/exitance/cloud_error.h"
+#include "opaline/render/surface_caches.h"
+#include "render/fields/sample_field.h"
+#include "session/stage_codecs.h"
+
+namespace opaline {
+namespace {
+
+// Raise a stage's number when it computes other values from the same input (test_stage_versions).
+constexpr std::uint64_t kKernelVersion = 3, kExitanceVersion = 8;
+
+/// Builds the tree of the body's irradiance, or reads it from the cache.
+ResultSource update_tree(BodyStages& stages, const StageKey& key) {
+  auto& state = state_of<HierarchicalState>(stages.body);
+  return stages.store.get(state.tree, key, OctreeCodec{stages.body.surface}, [&] {
+    Octree tree = gather_flux(stages.body.surface.samples, state.irradiance);
+    stages.store.work().nodes_built += tree.nodes.size();
+    return tree;
+  });
+}
+
+/// Reads the shapes of tabulated profiles from the cache before random walks would compute them, and keeps computed ones.
+void find_walked_profiles(BodyStages& stages) {
+  if (!stages.store.has_cache()) return;
+  for (const ChannelProfile& channel : stages.body.profile.channels) {
+    const auto* profile = std::get_if<TabulatedProfile>(&channel);
+    if (profile == nullptr || profile->mean_free_path == 0) continue;
+    const double absorbed = profile->shape->absorbed(), eta = profile->shape->eta();
+    if (WalkedShape::find(absorbed, eta) != nullptr) continue;
+    const StageKey key = walked_profile_key(absorbed, eta);
+    if (auto found = stages.store.find(key, WalkedProfileCodec{}))
+      WalkedShape::hand_over(absorbed, eta, std::move(*found));
+    else
+      stages.store.keep(key, profile->shape->table(), WalkedProfileCodec{});
+  }
+}
+
+void update_kernels(BodyStages& stages) {
+  const auto& [scene, world, rays, plan, monitor] = stages.input;
+  const Body& body = stages.body;
+  const Medium& medium = scene.media[body.plan.medium];
+  const double spacing = body.surface.spacing();
+  KeyBuilder key("kernel", kKernelVersion);
+  std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
+  key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(profile_kind(medium));
+  if (profile_kind(medium) == ProfileKind::multipole) key.add(profile_thickness(medium));
+  key.add(spacing).add(world.diagonal).add(world.unit);
+  key.add(scene.settings.near_field).add(near_irradiance(scene));
+  stages.store.get(state_of<HierarchicalState>(stages.body).kernels, key.key(), [&] {
+    find_walked_profiles(stages);
+    return Kernels{body_kernel(body.profile, spacing, stages.input.world, stages.input.scene),
+                   body_kernel(body.profile, kWiderField * spacing, stages.input.world, stages.input.scene)};
+  });
+}
+
+StageKey exitance_key(const BodyStages& stages, const HierarchicalState& state) {
+  const Settings& settings = stages.input.scene.settings;
+  KeyBuilder key("exitance", kExitanceVersion);
+  key.add(state.tree.key).add(state.kernels.key).add(settings.tolerance).add(settings.instruction_set);
+  key.add(settings.evaluator == EvaluatorKind::surface_cache);
+  key.add(settings.light_samples).add(settings.seed);
+  key.add(std::string(widest_instructions()));
+  for (const std::uint32_t m : stages.body.plan.meshes) key.add(stages.mesh_keys[m].all);
+  return key.key();
+}
+
+/// Evaluates the exitance over the surface if that is cheaper than at the hits. The decision depends on the scene alone,
+/// not on what is cached. Returns true if the body uses a surface cache.
+bool update_surface_cache(BodyStages& stages, HierarchicalState& state) {
+  const std::size_t most = stages.most_cache_places;
+  if (most == 0) return false;
+  const PrecomputeInput& input = stages.input;
+  const Body& body = stages.body;
+  const SurfaceCacheCodec codec{input.world, body.plan.meshes};
+  const StageKey key = exitance_key(stages, state);
+  ResultSource source = ResultSource::reused;
+  if (state.surface_cache.key != key) {
+    state.surface_cache = {};
+    source = ResultSource::cache;
+    std::optional<SurfaceCache> found = stages.store.find(key, codec);
+    if (!found) {
+      source = ResultSource::computed;
+      found = make_body_cache(input, body, most);
+      if (!found) {
+        if (input.scene.settings.evaluator == EvaluatorKind::surface_cache)
+          stages.note(
+              fmt::format("more than {} places of the surface: evaluated at the picture's points", most));
+        return false;
+      }
+      stages.store.work().places_evaluated += found->places();
+      stages.store.keep(key, *found, codec);
+    }
+    state.surface_cache = {key, std::move(*found)};
+  }
+  if (!may_use(state.surface_cache.value, input, body, most)) return false;
+  stages.note("exitance of the surface", source, "evaluated");
+  return true;
+}
+
+}  // namespace
+
+void HierarchicalMethod::prepare(BodyStages& stages) const {
+  auto& state = state_of<HierarchicalState>(stages.body);
+  state.uses_surface_cache = false;
+  const StageKey key = stages.transmitted_key();
+  const bool may_have_bounces = bounces_of(stages.input.scene) > 0 && state.tree.key != StageKey{};
+  ResultSource source = ResultSource::reused;
+  if (key != state.direct_key || !(key == state.tree.key || may_have_bounces)) {
+    state.direct_key = {};
+    state.tree.key = {};
+    state.irradiance = entered_irradiance(stages.body, stages.lights);
+    source = update_tree(stages, key);
+    state.direct_key = key;
+  }
+  stages.note("tree", source, "built");
+  update_kernels(stages);
+}
+
+StageKey HierarchicalMethod::direct_key(const Body& body) const {
+  const HierarchicalState& state = hierarchical_state(body);
+  return KeyBuilder("hierarchical", 1).add(state.direct_key).add(state.kernels.key).key();
+}
+
+StageKey HierarchicalMethod::bounced_key(const Body& body) const {
+  return hierarchical_state(body).tree.key;
+}
+
+void HierarchicalMethod::remove_bounced(BodyStages& stages) const {
+  auto& state = state_of<HierarchicalState>(stages.body);
+  state.irradiance = entered_irradiance(stages.body, stages.lights);
+  update_tree(stages, state.direct_key);
+  bound_far_side(state);
+}
+
+void HierarchicalMethod::add_bounced(BodyStages& stages, std::span<const RgbF> bounced,
+                                     const StageKey& key) const {
+  std::vector<RgbF>& irradiance = state_of<HierarchicalState>(stages.body).irradiance;
+  irradiance = entered_irradiance(stages.body, stages.lights);
+  for (std::size_t i = 0; i < bounced.size(); ++i) irradiance[i] += bounced[i];
+  update_tree(stages, key);
+}
+
+std::unique_ptr<MethodState> HierarchicalMethod::direct_state(const BodyStages& stages) const {
+  const HierarchicalState& state = hierarchical_state(stages.body);
+  auto direct = std::make_unique<HierarchicalState>();
+  direct->kernels = state.kernels;
+  direct->cloud = state.cloud;
+  direct->tree.value =
+      gather_flux(stages.body.surface.samples, entered_irradiance(stages.body, stages.lights));
+  bound_far_side(*direct);
+  return direct;
+}
+
+bool HierarchicalMethod::finish(BodyStages& stages) const {
+  auto& state = state_of<HierarchicalState>(stages.body);
+  bound_far_side(state);
+  state.cloud = body_cloud_error(stages.body, stages.input.world, stages.input.scene);
+  state.uses_surface_cache = update_surface_cache(stages, state);
+  return state.uses_surface_cache;
+}
+
+std::span<const RgbF> HierarchicalMethod::irradiance(const Body& body) const {
+  return hierarchical_state(body).irradiance;
+}
+
+std::vector<RgbF> HierarchicalMethod::exitance_at(const Body& body, std::span<const Query> points,
+                                                  const Settings& settings) const {
+  const HierarchicalState& state = hierarchical_state(body);
+  std::vector<RgbF> result;
+  for (const Exitance& e : evaluate({state.octree(),
+                                     state.kernel(),
+                                     points,
+                                     {},
+                                     settings.evaluator,
+                                     settings.tolerance,
+                                     settings.max_solid_angle,
+                                     settings.instruction_set}))
+    result.push_back(e.exitance);
+  return result;
+}
+
+std::unique_ptr<Field> HierarchicalMethod::field(const RenderInput& input, const Body& body) const {
+  return std::make_unique<SampleField>(input, body);
+}
+
+}  // namespace opaline

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Samples, memory, time and stages of `hierarchical`.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "methods/hierarchical/hierarchical_method.h"
+#include "opaline/render/surface_caches.h"
+#include "render/light_distance.h"
+#include "render/plan_samples.h"
+
+namespace opaline {
+namespace {
+
+// Measured by bench_plan at 1 and 10 million samples: samples, weights and tree while its nodes are written; besides of a
+// light's weights; where light bounces; in needles, on a ring 1e5 times thinner than wide.
+constexpr std::size_t kBytesOfSample = 191, kBytesOfLight = 4, kBytesOfBounces = 165;
+constexpr double kBytesOfNeedle = 250;
+
+/// Warns of a body that is thinner than the spacing of its samples.
+void warn_of_thin_body(const GroupPlan& body, std::vector<std::string>& warnings) {
+  const double thickness = body.thickness;
+  if (!(thickness > 0 && thickness < body.spacing)) return;
+  warnings.push_back(
+      fmt::format("{}: it is {:.3g} mm thick in the mean and its samples are {:.3g} mm apart: they cannot "
+                  "tell its sides apart; "
+                  "take {:.2g} samples (settings.samples, settings.max_samples)",
+                  body.name, thickness, body.spacing, body.area / (thickness * thickness)));
+}
+
+void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan& body,
+                         std::vector<std::string>& warnings) {
+  for (const Light& light : scene.lights) {
+    if (emission(light) == Rgb{}) continue;
+    const std::optional<double> distance = near_light_distance(light, world, body.meshes, body.spacing);
+    if (!distance) continue;
+    warnings.push_back(fmt::format(
+        "{}: the light {} is {:.3g} mm from its surface and the samples are {:.3g} mm apart: light falls "
+        "between them; move the light away or make settings.sample_spacing smaller",
+        body.name, light.name, *distance < 1e-3 * body.spacing ? 0 : *distance, body.spacing));
+  }
+}
+
+std::string evaluation_stage(const Settings& settings) {
+  const std::string promise = fmt::format("{:.3g} % of the exact sum", 100 * settings.tolerance);
+  switch (settings.evaluator) {
+    case EvaluatorKind::automatic:
+      return "evaluation: dual tree, at the points of the picture or, where those are fewer, places of the "
+             "surface; " +
+             promise;
+    case EvaluatorKind::dual_tree:
+      return "evaluation: dual tree, " + promise;
+    case EvaluatorKind::surface_cache:
+      return "evaluation: dual tree at places of the surface, " + promise;
+    case EvaluatorKind::classic:
+      return fmt::format("evaluation: classic traversal, {} sr", settings.max_solid_angle);
+    case EvaluatorKind::brute_force:
+      return "evaluation: brute force";
+  }
+  return "";
+}
+
+}  // namespace
+
+void HierarchicalMethod::plan(const BodyPlanning& input, GroupPlan& body,
+                              std::vector<std::string>& warnings) const {
+  choose_samples(input.scene, input.fewest_samples, body, warnings);
+  warn_of_near_lights(input.scene, input.world, body, warnings);
+  warn_of_thin_body(body, warnings);
+}
+
+BodyMemory HierarchicalMethod::memory(const BodyPlanning& input, const GroupPlan& body) const {
+  BodyMemory memory{.evaluated_samples = body.samples};
+  memory.kept = body.samples * (kBytesOfSample + kBytesOfLight * input.lights.size() +
+                                (bounces_of(input.scene) > 0 ? kBytesOfBounces : 0));
+  if (input.scene.settings.evaluator == EvaluatorKind::surface_cache)
+    memory.kept += expected_cache_places(body, input.world) * kBytesOfPlace;
+  memory.kept += std::size_t(needle_fraction(input.world, body) * double(body.samples) * kBytesOfNeedle);
+  return memory;
+}
+
+double HierarchicalMethod::seconds(const Scene& scene, const GroupPlan& body,
+                                   const Lighting& lighting) const {
+  constexpr double kSample = 8e-6;       // placed, in the tree
+  constexpr double kGather = 6e-5;       // light from other bodies at a sample
+  constexpr double kGatherAlone = 1e-5;  // the same where there is one body
+  const double gather = bounces_of(scene) == 0 ? 0 : scene.shapes.size() > 1 ? kGather : kGatherAlone;
+  return double(body.samples) * (kSample + kSecondsOfShadowRay * lighting.rays + gather);
+}
+
+double HierarchicalMethod::samples_with_shadow_rays(const Plan& plan) const {
+  double samples = 0;
+  for (const GroupPlan& body : plan.groups) samples += double(body.samples);
+  return samples;
+}
+
+void HierarchicalMethod::list_stages(const Scene& scene, std::vector<std::string>& stages) const {
+  stages.push_back("octree");
+  stages.push_back(evaluation_stage(scene.settings));
+}
+
+}  // namespace opaline

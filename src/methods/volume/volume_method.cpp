@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/volume/volume_method.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "methods/volume/cell_field.h"
+#include "methods/volume/cell_warnings.h"
+#include "methods/volume/volume_state.h"
+#include "methods/volume/walk_input.h"
+#include "opaline/lights/light.h"
+#include "opaline/lights/light_tree.h"
+#include "opaline/render/surface_textures.h"
+
+namespace opaline {
+namespace {
+
+// Raise when walks compute other values from the same input (test_stage_versions).
+constexpr std::uint64_t kWalksVersion = 3;
+
+/// Keys of the sums, one for each of their sources: the samples (or their tint), the media, all meshes, the position and
+/// size of the source's light; its colour only where sources have several lights.
+std::vector<StageKey> walk_keys(const BodyStages& stages, const VolumeInput& walks, const StageKey& tint) {
+  const StageKey medium_inside = medium_key(stages.input.scene.media[stages.body.plan.medium], Method::volume,
+                                            stages.input.world, stages.body.plan.meshes);
+  KeyBuilder common("random walks", kWalksVersion);
+  common.add(embree_version()).add(std::string(widest_instructions()));
+  common.add(tint == StageKey{} ? stages.keys.samples_key : tint);
+  common.add(walks.seed).add(walks.reenter);
+  for (const HomogeneousMedium& medium : walks.media) common.add(medium);
+  if (medium_inside != StageKey{}) common.add(medium_inside);
+  for (const std::uint32_t m : walks.meshes) common.add(m);
+  for (const MeshKeys& mesh : stages.mesh_keys) common.add(mesh.shape);
+  const bool alone = walks_by_light(walks);
+  std::vector<StageKey> keys;
+  for (std::size_t l = 0; l < walks.lights.size() && (alone || l == 0); ++l) {
+    KeyBuilder key("random walks of lights", kWalksVersion);
+    key.add(common.key());
+    for (const Light& light : alone ? walks.lights.subspan(l, 1) : walks.lights) {
+      key.add(std::uint64_t(light.source.index())).add(light.name);
+      key.add_array(std::span<const double>(geometry(light)));
+      if (!alone) key.add(emission(light));
+    }
+    keys.push_back(key.key());
+  }
+  return keys;
+}
+
+std::size_t passes_of(const VolumeSums& sums) {
+  std::size_t passes = 0;
+  for (const SourceSums& source : sums.sources)
+    for (const WalkSums& channel : source.channels) passes += channel.passes;
+  return passes;
+}
+
+/// Sums of previous images or of the store; empty ones for new sources.
+VolumeSums known_sums(VolumeState& state, const WalkStore& store, std::span<const StageKey> keys) {
+  VolumeSums sums;
+  for (const StageKey& key : keys) {
+    const auto old = std::ranges::find(state.walk_keys, key);
+    std::optional<SourceSums> found;
+    if (old != state.walk_keys.end())
+      found = std::move(state.walks.sources[std::size_t(old - state.walk_keys.begin())]);
+    else if (store.find)
+      found = store.find(key);
+    sums.sources.push_back(found ? std::move(*found) : SourceSums());
+  }
+  return sums;
+}
+
+}  // namespace
+
+const VolumeState& volume_state(const Body& body) {
+  return state_of<VolumeState>(body);
+}
+
+// Sums are of whole passes: an interruption keeps those that are complete.
+void VolumeMethod::prepare(BodyStages& stages) const {
+  const PrecomputeInput& input = stages.input;
+  auto& state = state_of<VolumeState>(stages.body);
+  VolumeInput walks = walk_input(input, stages.body, stages.lights);
+  std::optional<SurfaceTextures> textures;
+  const StageKey tint = tint_key(input.scene, input.world, stages.body.plan.meshes, stages.keys.samples_key);
+  if (tint != StageKey{}) {
+    textures.emplace(input.scene, input.world);
+    walks.entering_tint = [&](std::uint32_t mesh, std::uint32_t triangle, float u, float v) {
+      return textures->tint(textures->place(mesh, triangle, u, v, {})).entering;
+    };
+  }
+  const std::vector<StageKey> keys = walk_keys(stages, walks, tint);
+  state.walks = known_sums(state, stages.walks, keys);
+  state.walk_keys = keys;
+  const std::size_t before = passes_of(state.walks);
+  const auto keep = [&](const VolumeSums& now) {
+    if (stages.walks.keep) stages.walks.keep(keys, now);
+  };
+  keep(state.walks);
+  walk_volume(walks, state.walks, keep);
+  const std::size_t passes = passes_of(state.walks);
+  stages.store.work().walk_passes += passes - before;
+  KeyBuilder key("exitance of random walks", 1);
+  key.add_array(std::span(keys)).add(std::uint64_t(passes));
+  for (const Light& light : stages.lights) key.add(emission(light));
+  stages.store.get(state.exitance, key.key(), [&] {
+    VolumeExitance exitance = exitance_of(walks, state.walks);
+    state.fit = fit_cells(stages, state.weights, exitance.exitance, exitance.error);
+    return exitance;
+  });
+  stages.note(passes > before ? "walked at random" : "random walks reused");
+}
+
+bool VolumeMethod::finish(BodyStages& stages) const {
+  if (!stages.expects_edits) state_of<VolumeState>(stages.body).weights = {};
+  return false;
+}
+
+std::vector<std::string> VolumeMethod::warnings(const Body& body, double) const {
+  return cell_warnings(body, volume_state(body).exitance.value);
+}
+
+std::vector<RgbF> VolumeMethod::exitance_at(const Body& body, std::span<const Query> points,
+                                            const Settings&) const {
+  return fit_at(*volume_state(body).fit, points);
+}
+
+std::unique_ptr<Field> VolumeMethod::field(const RenderInput& input, const Body& body) const {
+  return std::make_unique<CellField>(input, body, *volume_state(body).fit, RgbF{});
+}
+
+}  // namespace opaline

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cells, memory, time and stages of `volume_diffusion`.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <variant>
+
+#include "methods/volume_diffusion/volume_diffusion_method.h"
+#include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/volume/volume_diffusion.h"
+#include "render/plan_samples.h"
+
+namespace opaline {
+namespace {
+
+bool varies(const Scene& scene, const GroupPlan& body) {
+  return varies_inside(scene.media[body.medium], Method::volume_diffusion);
+}
+
+/// Why cells do not suit a body; empty: they do.
+std::string reason_against_cells(const Scene& scene, const World& world, const GroupPlan& body) {
+  if (!(body.smallest_mean_free_path > 0)) return "it has no mean free path: diffuse reflection";
+  const auto is_open = [&](std::uint32_t mesh) { return world.reports[mesh].open_edges > 0; };
+  if (std::ranges::any_of(body.meshes, is_open)) return "its mesh is open and encloses no volume";
+  if (!varies(scene, body) && is_too_large_for_cells(scene.settings, body))
+    return fmt::format(
+        "it takes more than {:.2g} cells of {:.3g} mean free paths, and its surface is flat on "
+        "the scale of one",
+        kMostCells, widest_cell(scene.settings));
+  return {};
+}
+
+/// Warns if closing the mesh would let cells answer for the body.
+void warn_of_open_mesh(const Scene& scene, const GroupPlan& body, std::vector<std::string>& warnings) {
+  if (body.thickness > 0 || !(body.smallest_mean_free_path > 0)) return;
+  const bool is_filled = std::ranges::all_of(body.meshes, [&](std::uint32_t mesh) {
+    const auto* file = std::get_if<MeshFile>(&scene.shapes[mesh].source);
+    return file != nullptr && file->fill_holes;
+  });
+  warnings.push_back(body.name + ": " + body.reason_against_method +
+                     "; its radial profile is used in place of volume_diffusion; close " +
+                     (is_filled ? "the holes that fill_holes leaves" : "it (fill_holes)"));
+}
+
+/// CPU seconds to trace the light transmitted at a sample from one direction.
+double seconds_of_entry(const Medium& medium, const GroupPlan& body) {
+  constexpr double kEntry = 2e-7;      // a direction from which light enters at a sample
+  constexpr double kEntryCell = 9e-8;  // a cell that this light crosses
+  constexpr double kMostCrossed = 50;  // cells far inside are larger
+  const double longest = max_component(make_diffuse_profile(medium).mean_free_path);
+  return kEntry + kEntryCell * std::min(kMostCrossed, std::min(longest, body.thickness) / body.cell);
+}
+
+}  // namespace
+
+void VolumeDiffusionMethod::plan(const BodyPlanning& input, GroupPlan& body,
+                                 std::vector<std::string>& warnings) const {
+  body.reason_against_method = reason_against_cells(input.scene, input.world, body);
+  if (!body.reason_against_method.empty()) {
+    warn_of_open_mesh(input.scene, body, warnings);
+    body.method = Method::hierarchical;
+    return method_of(body.method).plan(input, body, warnings);
+  }
+  choose_cells(input.scene, input.world, body, warnings);
+  choose_cut(input.scene.settings, input.fewest_samples, body, warnings);
+}
+
+BodyMemory VolumeDiffusionMethod::memory(const BodyPlanning& input, const GroupPlan& body) const {
+  // Measured: where a cell cuts the surface, its exitance and error, while all are fitted; a light's weights; where light
+  // bounces, weights kept for a second fit, that fit, what is gathered and what it adds.
+  constexpr std::size_t kCutSample = 640, kLight = 4, kBounces = 500;
+  constexpr double kVaryingCell = 350;  // its own medium, and the flow to each neighbour
+  const double in_wires =
+      body.thickness > 0 ? 1.2 * needle_fraction(input.world, body) * body.cell / body.thickness : 0;
+  BodyMemory memory;
+  memory.kept += std::size_t(std::max(1., in_wires) * double(body.samples)) *
+                 (kCutSample + kLight * input.lights.size() + (bounces_of(input.scene) > 0 ? kBounces : 0));
+  memory.kept += std::size_t((kBytesOfCell + (varies(input.scene, body) ? kVaryingCell : 0)) *
+                             expected_cells(body.area, body.thickness, body.cell));
+  return memory;
+}
+
+double VolumeDiffusionMethod::seconds(const Scene& scene, const GroupPlan& body,
+                                      const Lighting& lighting) const {
+  constexpr double kCutSample = 8e-6;    // cut, and its fit
+  constexpr double kCell = 4e-6;         // made and solved, three channels
+  constexpr double kVaryingCell = 1e-5;  // its own medium
+  const double solutions = bounces_of(scene) > 0 ? 2 : 1;
+  const double cell = kCell * solutions + (varies(scene, body) ? kVaryingCell : 0);
+  return expected_cells(body.area, body.thickness, body.cell) * cell +
+         double(body.samples) *
+             (kCutSample + kSecondsOfShadowRay * lighting.rays +
+              solutions * lighting.directions * seconds_of_entry(scene.media[body.medium], body));
+}
+
+std::string VolumeDiffusionMethod::body_stage(const GroupPlan& body) const {
+  return fmt::format("diffusion: about {:.2g} cells in {}, {:.3g} mm at the surface: {:.3g} mean free paths",
+                     expected_cells(body.area, body.thickness, body.cell), body.name, body.cell,
+                     body.cell / body.smallest_mean_free_path);
+}
+
+}  // namespace opaline

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/volume_diffusion/volume_diffusion_method.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "methods/volume/cell_field.h"
+#include "methods/volume/cell_warnings.h"
+#include "methods/volume_diffusion/body_cells.h"
+#include "methods/volume_diffusion/volume_diffusion_state.h"
+#include "opaline/render/surface_textures.h"
+#include "render/local_media.h"
+#include "session/stage_codecs.h"
+
+namespace opaline {
+namespace {
+
+// Raise a stage's number when it computes other values from the same input (test_stage_versions).
+constexpr std::uint64_t kCellsVersion = 5, kDiffusionVersion = 5;
+
+StageKey cells_key(const BodyStages& stages) {
+  const Body& body = stages.body;
+  const StageKey medium_inside = medium_key(stages.input.scene.media[body.plan.medium],
+                                            Method::volume_diffusion, stages.input.world, body.plan.meshes);
+  KeyBuilder key("diffusion cells", kCellsVersion);
+  key.add(stages.keys.samples_key).add(body.profile.eta).add(body.plan.cell);
+  key.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
+  if (medium_inside != StageKey{}) key.add(medium_inside);
+  for (const std::uint32_t mesh : body.plan.meshes) key.add(stages.mesh_keys[mesh].shape);
+  return key.key();
+}
+
+const VolumeDiffusion& update_cells(BodyStages& stages) {
+  auto& cells = state_of<VolumeDiffusionState>(stages.body).cells;
+  stages.store.get(cells, cells_key(stages), [&] {
+    return std::make_shared<const VolumeDiffusion>(
+        body_cells(stages.input, stages.body, stages.keys.cut_normals));
+  });
+  return *cells.value;
+}
+
+/// Diffuse reflectance of the channels without a mean free path, which cells do not resolve.
+RgbF local_reflectance(const Scene& scene, const Body& body) {
+  RgbF local;
+  if (varies_inside(scene.media[body.plan.medium], Method::volume_diffusion)) return local;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (is_local(body.profile, c)) local[c] = float(body.profile.total[c]);
+  return local;
+}
+
+}  // namespace
+
+const VolumeDiffusionState& volume_diffusion_state(const Body& body) {
+  return state_of<VolumeDiffusionState>(body);
+}
+
+void VolumeDiffusionMethod::prepare(BodyStages& stages) const {
+  auto& state = state_of<VolumeDiffusionState>(stages.body);
+  const Body& body = stages.body;
+  const StageKey key =
+      KeyBuilder("diffusion", kDiffusionVersion).add(cells_key(stages)).add(stages.transmitted_key()).key();
+  const bool has_cells = state.cells.value != nullptr && state.cells.key == cells_key(stages);
+  const ResultSource source =
+      stages.store.get(state.direct, key, VolumeCodec{body.surface.samples.size()}, [&] {
+        return update_cells(stages).exitance(stages.lights, body.transfers, body.entering,
+                                             stages.input.monitor);
+      });
+  if (source != ResultSource::reused || state.direct_fit == nullptr) {
+    state.direct.key = {};  // until the fit is complete
+    state.direct_fit =
+        fit_cells(stages, state.weights, state.direct.value.exitance, state.direct.value.error);
+    state.direct.key = key;
+    remove_bounced(stages);
+  } else if (bounces_of(stages.input.scene) == 0) {
+    remove_bounced(stages);
+  }
+  stages.note("diffusion", source, has_cells ? "solved in existing cells" : "solved");
+}
+
+StageKey VolumeDiffusionMethod::direct_key(const Body& body) const {
+  return volume_diffusion_state(body).direct.key;
+}
+
+StageKey VolumeDiffusionMethod::bounced_key(const Body& body) const {
+  return volume_diffusion_state(body).bounced.key;
+}
+
+void VolumeDiffusionMethod::remove_bounced(BodyStages& stages) const {
+  auto& state = state_of<VolumeDiffusionState>(stages.body);
+  state.bounced = {};
+  state.fit = state.direct_fit;
+}
+
+void VolumeDiffusionMethod::add_bounced(BodyStages& stages, std::span<const RgbF> bounced,
+                                        const StageKey& key) const {
+  auto& state = state_of<VolumeDiffusionState>(stages.body);
+  if (state.bounced.key == key) return;
+  remove_bounced(stages);
+  const std::size_t samples = stages.body.surface.samples.size();
+  StageResult<VolumeExitance> added;
+  stages.store.get(added, key, VolumeCodec{samples},
+                   [&] { return update_cells(stages).exitance_of_even(bounced, stages.input.monitor); });
+  std::vector<RgbF> all, errors;
+  for (std::size_t i = 0; i < samples; ++i) {
+    all.push_back(state.direct.value.exitance[i] + added.value.exitance[i]);
+    errors.push_back(state.direct.value.error[i] + added.value.error[i]);
+  }
+  state.fit = fit_cells(stages, state.weights, all, errors);
+  state.bounced = std::move(added);
+}
+
+std::unique_ptr<MethodState> VolumeDiffusionMethod::direct_state(const BodyStages& stages) const {
+  auto direct = std::make_unique<VolumeDiffusionState>();
+  direct->fit = volume_diffusion_state(stages.body).direct_fit;
+  return direct;
+}
+
+bool VolumeDiffusionMethod::finish(BodyStages& stages) const {
+  auto& state = state_of<VolumeDiffusionState>(stages.body);
+  if (!stages.expects_edits) {
+    state.cells = {};
+    state.weights = {};
+  }
+  return false;
+}
+
+std::vector<std::string> VolumeDiffusionMethod::warnings(const Body& body, double unit) const {
+  constexpr double kLeastLeftOut = 1e-4;  // of the area: above rounding
+  std::vector<std::string> warnings;
+  const double left_out =
+      body.surface.samples.empty() ? 0 : 1 - body.surface.area * unit * unit / body.plan.area;
+  if (left_out > kLeastLeftOut)
+    warnings.push_back(fmt::format(
+        "{}: {:.2g} % of its surface lies inside of it or is folded; volume_diffusion leaves that out",
+        body.plan.name, 100 * left_out));
+  for (std::string& warning : cell_warnings(body, volume_diffusion_state(body).direct.value))
+    warnings.push_back(std::move(warning));
+  return warnings;
+}
+
+std::vector<RgbF> VolumeDiffusionMethod::exitance_at(const Body& body, std::span<const Query> points,
+                                                     const Settings&) const {
+  return fit_at(*volume_diffusion_state(body).fit, points);
+}
+
+std::unique_ptr<Field> VolumeDiffusionMethod::field(const RenderInput& input, const Body& body) const {
+  return std::make_unique<CellField>(input, body, *volume_diffusion_state(body).fit,
+                                     local_reflectance(input.scene, body));
+}
+
+}  // namespace opaline

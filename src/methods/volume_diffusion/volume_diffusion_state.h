@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cells of the diffusion equation inside one body and its solutions.
+#pragma once
+
+#include <memory>
+
+#include "methods/volume/fit_cells.h"
+#include "opaline/volume/volume_diffusion.h"
+#include "opaline/volume/volume_exitance.h"
+
+namespace opaline {
+
+struct VolumeDiffusionState : MethodState {
+  static constexpr Method kMethod = Method::volume_diffusion;
+  StageResult<std::shared_ptr<const VolumeDiffusion>> cells;
+  ReusedWeights weights;
+  StageResult<VolumeExitance> direct,
+      bounced;  ///< of lights, and of other surfaces; bounced: key of zeros if none
+  std::shared_ptr<const CellFit> direct_fit, fit;  ///< of the first, and of both
+};
+
+/// in    body: prepared by Method::volume_diffusion
+const VolumeDiffusionState& volume_diffusion_state(const Body& body);
+
+}  // namespace opaline
