@@ -11,6 +11,7 @@
 #include "opaline/assets/import_asset.h"
 #include "opaline/core/input_file.h"
 #include "opaline/geometry/mesh_file.h"
+#include "opaline/image/texture_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/scene/nearest_name.h"
 #include "opaline/scene/unread_format.h"
@@ -173,6 +174,15 @@ Scene read_scene(const Document& document) {
   return scene;
 }
 
+/// Each file once.
+std::vector<std::string> texture_warnings(const Scene& scene) {
+  std::set<std::string> warnings;
+  for (const Shape& shape : scene.shapes)
+    for (const Texture* texture : textures_of(scene, shape)) warnings.insert(texture->file->warning());
+  warnings.erase("");
+  return {warnings.begin(), warnings.end()};
+}
+
 /// The lines of a text that the user has not seen would mislead.
 void forget_places(Scene& scene) {
   const auto forget = [&](auto& records) {
@@ -191,7 +201,7 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
   Scene scene = parse_scene(asset.text, path, overrides, frame);
   scene.translation = asset.summary;
-  scene.asset_warnings = asset.warnings;
+  scene.asset_warnings.insert(scene.asset_warnings.begin(), asset.warnings.begin(), asset.warnings.end());
   scene.asset_bytes = asset.bytes;
   if (!asset.not_carried.empty()) scene.translation += "; opaline import lists all";
   forget_places(scene);
@@ -225,6 +235,7 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
   }
   Scene scene = read_scene(document);
   scene.camera_frames = camera_frames;
+  scene.asset_warnings = texture_warnings(scene);
   return scene;
 }
 
