@@ -49,7 +49,9 @@ TEST(ObjAssets, EachMaterialIsAShape) {
   const ImportedAsset import = import_asset(folder.obj, "a.obj");
   EXPECT_TRUE(has(import.not_carried, "material 'red': map_Kd (the mesh has no UVs)"));
   EXPECT_TRUE(has(import.not_carried, "material 'no such': no library has it; taken as grey"));
-  EXPECT_EQ(import.not_carried.size(), 2u);
+  EXPECT_TRUE(
+      has(import.warnings, "words.mtl:3: Kd '0.8 0.1 2' of material 'red' is above 1 and is clamped"));
+  EXPECT_EQ(import.not_carried.size(), 3u);
 }
 
 // Claim: where an OBJ has vertex colours they are the reflectance of what no library colours, and multiply Kd. Fails if
@@ -96,7 +98,8 @@ TEST(ObjAssets, LinesMayEndWithCarriageReturns) {
 // line is one word.
 TEST(ObjAssets, LibrariesAreFoundByTheirNames) {
   const ObjFolder folder;
-  EXPECT_EQ(import_asset(folder.obj, "a.obj").not_carried.size(), 4u);  // two and gone.mtl, red.png, no such
+  EXPECT_EQ(import_asset(folder.obj, "a.obj").not_carried.size(),
+            5u);  // two and gone.mtl, Kd, red.png, no such
   EXPECT_TRUE(has(import_asset(folder.obj, "a.obj").not_carried, "mtllib 'gone.mtl': there is no such file"));
   put_bytes(folder.obj, "mtllib two words.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl black\nf 1 2 3\n");
   EXPECT_EQ(load_scene(folder.obj).shapes.at(0).reflectance, Rgb(0));
