@@ -10,7 +10,6 @@
 
 #include "opaline/assets/import_asset.h"
 #include "opaline/core/input_file.h"
-#include "opaline/geometry/mesh_file.h"
 #include "opaline/image/texture_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/scene/nearest_name.h"
@@ -31,19 +30,14 @@ std::string read_text(const std::string& path) {
   return file.read_all();
 }
 
-/// A mesh needs a light and a camera to be seen.
+/// An image, or a format that is not read.
 void check_is_no_other_file(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   for (const char* picture : {".png", ".exr", ".hdr", ".jpg", ".jpeg", ".tif"})
     if (extension == picture)
       throw bad_file(path, "is a picture, not a scene",
-                     "a scene file (JSON), or an asset: .glb, .gltf or .obj");
+                     "a scene file (JSON), or an asset: .glb, .gltf, .obj, .ply, .stl or .off");
   if (const std::string unread = unread_format(path); !unread.empty()) throw bad_file(path, unread);
-  if (!is_mesh_file_name(path)) return;
-  throw bad_file(path, "is a mesh, not a scene",
-                 "a scene file (JSON) with \"shapes\": [{\"file\": \"" +
-                     printable(std::filesystem::path(path).filename().string()) +
-                     "\"}], as scenes/bunny-marble.json, or an asset: .glb, .gltf or .obj");
 }
 
 /// Assets are told by their names; under another one they end here.
@@ -53,7 +47,8 @@ void check_begins_as_scene(const std::string& path, const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   if (first == std::string::npos || text[first] == '{' || text[first] == '/') return;
   throw bad_file(path, "does not begin as a scene does",
-                 "a scene file (JSON: '{'), or an asset under a name that ends in .glb, .gltf or .obj");
+                 "a scene file (JSON: '{'), or an asset under a name that ends in .glb, .gltf, .obj, .ply, "
+                 ".stl or .off");
 }
 
 /// Reads the elements of a list, and rejects a name used twice.

@@ -196,7 +196,18 @@ std::string Value::describe() const {
     case Node::Kind::object:
       break;
   }
-  return "an object {...}";
+  return describe_object();
+}
+
+/// "an object with the keys 'texture' and 'scale'"
+std::string Value::describe_object() const {
+  constexpr std::size_t kMost = 3;
+  const std::size_t count = node_->children.size();
+  if (count == 0) return "an object without keys";
+  std::string text = count == 1 ? "an object with the key " : "an object with the keys ";
+  for (std::size_t i = 0; i < std::min(count, kMost); ++i)
+    text += (i == 0 ? "'" : ", '") + printable(node_->children[i].key) + '\'';
+  return text + (count > kMost ? ", ..." : "");
 }
 
 const Node& Value::require_kind(Node::Kind kind, const std::string& expected) const {

@@ -124,5 +124,36 @@ TEST(ObjAssets, NothingToSeeIsNamed) {
   EXPECT_EQ(mesh_of(folder.obj, "").mesh.triangles.size(), 4u);  // of the five two are the same
 }
 
+// Claim: PLY, STL and OFF files are assets, too: one shape with a camera and lights, grey or of its vertex colours. Source:
+// import_asset.h. Fails if: a scene file is asked for.
+TEST(MeshAssets, AreOneShape) {
+  const ScratchFolder folder;
+  const std::string triangle = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  put_bytes(folder.file("a.off"), "OFF\n3 1 0\n" + triangle);
+  put_bytes(folder.file("b.PLY"),
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+            "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n"
+            "property list uchar int vertex_indices\nend_header\n0 0 0 255 0 0\n1 0 0 255 0 0\n0 1 0 255 0 "
+            "0\n3 0 1 2\n");
+  put_bytes(
+      folder.file("c.stl"),
+      "solid c\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+      "endsolid c\n");
+  for (const char* name : {"a.off", "b.PLY", "c.stl"}) {
+    SCOPED_TRACE(name);
+    ASSERT_TRUE(is_asset_name(folder.file(name)));
+    const Scene scene = load_scene(folder.file(name));
+    ASSERT_EQ(scene.shapes.size(), 1u);
+    EXPECT_EQ(scene.shapes[0].name, std::string(name).substr(0, 1));
+    EXPECT_EQ(scene.lights.size(), 3u);
+    const CheckedMesh mesh = make_mesh(scene.shapes[0]);
+    EXPECT_EQ(mesh.mesh.triangles.size(), 1u);
+    EXPECT_EQ(mesh.mesh.colors.empty(), name[0] != 'b');
+    EXPECT_EQ(scene.shapes[0].has_reflectance, name[0] != 'b');
+  }
+  put_bytes(folder.file("d.off"), "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n");
+  EXPECT_THROW(load_scene(folder.file("d.off")), Error);
+}
+
 }  // namespace
 }  // namespace opaline::asset_test
