@@ -189,12 +189,23 @@ void forget_places(Scene& scene) {
   forget(scene.lights);
 }
 
+/// error without a line and column of the text, which the user has not seen
+Scene parse_asset(const std::string& text, const std::string& path, std::span<const std::string> overrides,
+                  int frame) {
+  try {
+    return parse_scene(text, path, overrides, frame);
+  } catch (const Error& failure) {
+    if (failure.file != path) throw;
+    throw Error(failure.kind, path, 0, 0, failure.message, failure.expected, failure.got);
+  }
+}
+
 }  // namespace
 
 Scene load_scene(const std::string& path, std::span<const std::string> overrides, int frame) {
   if (!is_asset_name(path)) return parse_scene(read_scene_text(path), path, overrides, frame);
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
-  Scene scene = parse_scene(asset.text, path, overrides, frame);
+  Scene scene = parse_asset(asset.text, path, overrides, frame);
   scene.translation = asset.summary;
   scene.asset_warnings.insert(scene.asset_warnings.begin(), asset.warnings.begin(), asset.warnings.end());
   scene.asset_bytes = asset.bytes;

@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "asset_test.h"
+#include "support/pictures.h"
 
 namespace opaline::asset_test {
 namespace {
@@ -234,6 +235,24 @@ TEST(GltfBadInput, MissingImagesAreNamed) {
   asset.json["images"] = Json::array({{{"uri", "paint/gone.png"}}});
   EXPECT_TRUE(has(imported(asset).warnings, "names no such file: 'paint/gone.png'"))
       << imported(asset).warnings.at(0);
+}
+
+// Claim: a broken image is reported by the asset and the image, without a place in the text that the asset becomes. Source: by
+// hand. Fails if: a line and a column are named.
+TEST(GltfBadInput, BrokenImagesAreNamed) {
+  const ScratchFolder folder;
+  test::put_png(folder.file("p.png"), 64, 64, [](int x, int y) { return test::Bytes{4 * x, 4 * y, 0}; });
+  std::string png = bytes_of(folder.file("p.png"));
+  png.resize(png.size() / 2);
+  Asset asset = cube_asset();
+  const std::vector<float> uvs(48, .5f);
+  asset.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = asset.accessor("VEC2", kFloat, uvs);
+  asset.json["meshes"][0]["primitives"][0]["material"] =
+      asset.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  asset.json["textures"] = Json::array({{{"source", 0}}});
+  asset.json["images"] = Json::array({{{"uri", "data:image/png;base64," + base64(png)}}});
+  const std::string error = error_of(asset.gltf());
+  EXPECT_TRUE(error.starts_with("test.gltf: test.gltf#image/0: ")) << error;
 }
 
 }  // namespace
