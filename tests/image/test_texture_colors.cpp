@@ -9,6 +9,7 @@
 #include "opaline/core/error.h"
 #include "opaline/core/rgb_primaries.h"
 #include "opaline/core/srgb.h"
+#include "opaline/image/image.h"
 #include "opaline/image/texture_file.h"
 
 namespace opaline::test {
@@ -94,6 +95,20 @@ TEST(TextureColors, PrimariesOfTheFileAreConverted) {
           for (std::size_t c = 0; c < 3 && !is_windowed; ++c)
             EXPECT_NEAR((*even->constant())[c], wanted_left[c], 1e-3) << c;
         }
+}
+
+// Claim: whole images, such as environments, are converted by any primaries, not by those of ACEScg alone. Source: color_matrix.
+// Tolerance: halves. Fails if: only ACEScg is known.
+TEST(TextureColors, WholeImagesAreConvertedAlike) {
+  const ScratchFolder folder;
+  for (const RgbPrimaries& primaries : {kAp1Primaries, kRec2020, kXyz}) {
+    OIIO::ImageSpec spec = spec_of(3, OIIO::TypeHalf);
+    state_primaries(spec, primaries);
+    put_halves(folder.file("a.exr"), spec, {.5f, .25f, .125f}, {0, 0, 0});
+    const Image image = read_image(folder.file("a.exr"));
+    const Vec3d wanted = color_matrix(primaries, kRec709Primaries) * Vec3d{.5, .25, .125};
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(double(image.pixels[c]), wanted[c], 1e-3) << c;
+  }
 }
 
 // Claim: grey has no primaries, and white stays white. Source: color_matrix. Tolerance: halves. Fails if: a channel is taken for

@@ -188,5 +188,18 @@ TEST(SceneErrors, ObjectsAreNamedByTheirKeys) {
   expect_fragments(error_of(R"({"film": {"exposure": {}}})"), {"got an object without keys"});
 }
 
+// Claim: a text in place of a number that names infinity or a number is called so. Source: by hand. Fails if: it is the wrong type
+// alone.
+TEST(SceneErrors, TextsInPlaceOfNumbers) {
+  for (const char* text : {"-Inf", "inf", "NaN", "+infinity"}) {
+    expect_fragments(error_of("{}", {std::string("film.exposure=") + text}),
+                     {"'film.exposure' is not a finite number", text});
+    expect_fragments(error_of(std::string(R"({"film": {"exposure": ")") + text + "\"}}"),
+                     {"'film.exposure' is not a finite number"});
+  }
+  expect_fragments(error_of(R"({"film": {"exposure": "0.5"}})"),
+                   {"'film.exposure' is a number in quotes", "without quotes", "got \"0.5\""});
+}
+
 }  // namespace
 }  // namespace opaline
