@@ -59,6 +59,8 @@ SurfaceTranslation translate_materialx(const std::string& file_and_name, const A
 
 AssetScene import_gltf(const std::string& path, const std::string& mesh_path);
 AssetScene import_obj(const std::string& path, const std::string& mesh_path);
+/// PLY, STL and OFF.
+AssetScene import_mesh(const std::string& path, const std::string& mesh_path);
 
 /// Gives a camera and lights to a scene without, and an exposure that suits its lights.
 void add_defaults(AssetScene& scene);

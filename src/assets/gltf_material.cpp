@@ -154,7 +154,7 @@ class MaterialTranslator {
     } catch (const OutsideAsset&) {
       throw;
     } catch (const Error& failure) {
-      warn(name + ": " + failure.message);
+      warn(name + ": " + failure.message + (failure.got.empty() ? "" : ": " + in_quotes(failure.got)));
       return {};
     }
   }

@@ -13,13 +13,26 @@
 namespace opaline {
 namespace {
 
-enum class AssetKind { none, gltf, obj };
+enum class AssetKind { none, gltf, obj, mesh };
 
 AssetKind kind_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
   if (extension == ".glb" || extension == ".gltf") return AssetKind::gltf;
-  return extension == ".obj" ? AssetKind::obj : AssetKind::none;
+  if (extension == ".obj") return AssetKind::obj;
+  const bool is_mesh = extension == ".ply" || extension == ".stl" || extension == ".off";
+  return is_mesh ? AssetKind::mesh : AssetKind::none;
+}
+
+AssetScene import_scene(const std::string& path, const std::string& mesh_path) {
+  switch (kind_of(path)) {
+    case AssetKind::gltf:
+      return import_gltf(path, mesh_path);
+    case AssetKind::mesh:
+      return import_mesh(path, mesh_path);
+    default:
+      return import_obj(path, mesh_path);
+  }
 }
 
 std::string summary_of(const AssetScene& scene, bool own_camera, bool own_lights) {
@@ -72,8 +85,7 @@ bool is_asset_name(const std::string& path) {
 
 ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,
                            const std::string& material) {
-  AssetScene scene =
-      kind_of(path) == AssetKind::gltf ? import_gltf(path, mesh_path) : import_obj(path, mesh_path);
+  AssetScene scene = import_scene(path, mesh_path);
   const bool own_camera = !scene.camera.is_null(), own_lights = scene.center_irradiance > 0;
   check_extent(path, scene);
   if (!material.empty()) replace_materials(scene, material, {path, mesh_path});

@@ -84,7 +84,8 @@ class GltfImporter {
     const std::vector<PlacedNode> nodes = NodeWalk(gltf_).run(roots());
     for (const PlacedNode& node : nodes) add_meshes(node);
     if (scene_.shapes.empty())
-      throw bad_file(gltf_.path, "shows nothing", "a scene with a node that has a mesh of triangles");
+      throw bad_file(gltf_.path, "shows nothing", "a scene with a node that has a mesh of triangles",
+                     scene_.warnings.empty() ? "" : scene_.not_carried.back());
     enclose(scene_, [&](const auto& visit) { for_each_point(visit); });
     for (const PlacedNode& node : nodes) add_camera(gltf_, node.index, node.to_world, scene_);
     for (const PlacedNode& node : nodes) add_light(gltf_, node.index, node.to_world, light_names_, scene_);
@@ -169,8 +170,10 @@ class GltfImporter {
     const bool skinned = is_skinned(gltf_, placed.index, primitive);
     const Transform t = skinned ? Transform{} : placed.to_world;
     if (!(std::abs(dot(normalized(t.x), cross(normalized(t.y), normalized(t.z)))) > 1e-12)) {
-      if (const std::string lost = label + ": its transform flattens the mesh"; !is_told(lost))
-        scene_.not_carried.push_back(lost);
+      if (const std::string lost =
+              label + ": its transform flattens the mesh, which is left out" + zero_scale_text(placed.index);
+          !is_told(lost))
+        scene_.warn(gltf_.path, lost);
       return;
     }
     std::string part = fmt::format("{}/{}", node.mesh, p);
@@ -242,6 +245,20 @@ class GltfImporter {
       if (primitive.attributes.contains("COLOR_0"))
         scene_.translated.push_back(place + ": its vertex colours multiply the base colour");
     }
+  }
+
+  /// The node, or the nearest one above it, whose scale has a zero: "; the scale of node 'arm' is [1, 0, 1]".
+  std::string zero_scale_text(std::size_t index) const {
+    for (auto at = std::uint32_t(index); at != kNoRecord; at = gltf_.nodes[at].parent) {
+      const Transform t = gltf_.nodes[at].to_parent();
+      const Vec3d scale{length(t.x), length(t.y), length(t.z)};
+      if (scale.x * scale.y * scale.z > 0) continue;
+      const std::string& name = gltf_.nodes[at].name;
+      return fmt::format("; the scale of {} is {}",
+                         name.empty() ? record_name("nodes", at) : "node " + in_quotes(name),
+                         short_triple(scale));
+    }
+    return {};
   }
 
   bool is_told(const std::string& lost) const {

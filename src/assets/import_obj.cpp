@@ -2,7 +2,6 @@
 // Wavefront OBJ and its material libraries (MTL): a shape for the faces of each material.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -10,7 +9,9 @@
 #include "assets/asset_bytes.h"
 #include "assets/asset_file.h"
 #include "assets/asset_scene.h"
+#include "assets/mtl_library.h"
 #include "assets/mtl_texture.h"
+#include "assets/text_lines.h"
 #include "opaline/assets/obj_material.h"
 #include "opaline/core/byte_order_mark.h"
 #include "opaline/core/error.h"
@@ -21,42 +22,23 @@ namespace {
 
 constexpr Vec3d kGrey{.5, .5, .5};
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\v\f");
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\v\f") + 1 - first);
-}
-
-/// Takes the first word off a line.
-std::string_view next_word(std::string_view& line) {
-  line = trimmed(line);
-  const std::string_view word = line.substr(0, line.find_first_of(" \t\r\v\f"));
-  line.remove_prefix(word.size());
-  return word;
-}
-
-/// visit: of a line and its number, from 1
-template <class Visit>
-void for_each_line(std::string_view text, const Visit& visit) {
-  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    visit(text.substr(0, end), number);
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-}
-
 /// Three finite numbers; none: the line has fewer.
 std::optional<Vec3d> three_numbers(std::string_view line) {
   Vec3d value;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::string_view word = next_word(line);
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value[i]);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value[i]))
-      return std::nullopt;
+    const std::optional<double> number = number_of(next_word(line));
+    if (!number) return std::nullopt;
+    value[i] = *number;
   }
   return value;
+}
+
+/// "a, b and c"
+std::string in_a_row(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " and ") + words[i];
+  return text;
 }
 
 /// The text of a file.
@@ -135,12 +117,12 @@ class ObjImporter {
     double gain;  ///< times its colours
   };
 
-  /// A line of a library, the file `mtl`.
-  struct Statement {
-    const std::string& mtl;
-    std::size_t line;
-    const std::string &material, &keyword;
-    std::string_view text;  ///< behind the keyword
+  /// A surface as the scene has it.
+  struct Surface {
+    std::optional<Vec3d> color;
+    std::optional<Picture> picture;
+    std::optional<Bump> bump;
+    std::vector<std::string> unused;  ///< statements without an analogue, each once
   };
 
   /// One file, whose name may have blanks in it, or several names.
@@ -170,41 +152,76 @@ class ObjImporter {
     return file.path.string();
   }
 
+  /// A material that is defined again replaces the earlier one, as in other programs.
   void read_library(const std::string& path) {
-    std::string material;
-    for_each_line(read_asset_text(path), [&](std::string_view line, std::size_t number) {
-      const std::string keyword(next_word(line));
-      if (keyword == "newmtl") {
-        material = obj_material_name(trimmed(line));
-        colors_.try_emplace(material, kGrey);
-      } else if (keyword == "Kd" && !material.empty()) {
-        if (const auto color = three_numbers(line))
-          colors_[material] = component_min(component_max(*color, Vec3d(0)), Vec3d(1));
-        else
-          lost_[material].insert("Kd " + in_quotes(trimmed(line)));
-      } else if (keyword == "map_Kd" && !material.empty() && has_uvs_) {
-        take_picture({path, number, material, keyword, line});
-      } else if (is_bump(keyword) && !material.empty() && has_uvs_) {
-        take_bump({path, number, material, keyword, line});
-      } else if (is_lost(keyword, line)) {
-        const bool is_laid = !has_uvs_ && (keyword == "map_Kd" || is_bump(keyword));
-        lost_[material].insert(keyword + (is_laid ? " (the mesh has no UVs)" : ""));
-      }
-    });
+    const MtlLibrary library = read_mtl_library(path, read_asset_text(path));
+    for (const MtlStatement& statement : library.unassigned)
+      warn(path, statement.line,
+           "the statement " + in_quotes(statement.keyword) +
+               " stands before the first newmtl and is not used");
+    for (const MtlMaterial& material : library.materials) {
+      const auto [known, is_new] = materials_.try_emplace(material.name, material);
+      if (is_new) continue;
+      warn(path, material.line,
+           fmt::format("the material {} is defined again and replaces the one of {}:{}",
+                       in_quotes(material.name), known->second.file, known->second.line));
+      known->second = material;
+    }
+  }
+
+  /// Warns of a statement of a material.
+  void warn(const MtlMaterial& material, const MtlStatement& statement, const std::string& complaint) {
+    warn(material.file, statement.line,
+         statement.keyword + (statement.text.empty() ? "" : ' ' + in_quotes(statement.text)) +
+             " of material " + in_quotes(material.name) + ' ' + complaint);
+  }
+
+  Surface surface_of(const MtlMaterial& material) {
+    Surface surface;
+    surface.color = kGrey;
+    for (const MtlStatement& statement : material.statements) {
+      const MtlUse use = use_of(statement);
+      const bool needs_uvs = use == MtlUse::color_map || use == MtlUse::bump || use == MtlUse::normal_map;
+      if (needs_uvs && !has_uvs_)
+        add_unused(surface, statement.keyword + " (the mesh has no UVs)");
+      else if (use == MtlUse::color)
+        take_color(material, statement, surface);
+      else if (use == MtlUse::color_map)
+        take_picture(material, statement, surface);
+      else if (needs_uvs)
+        take_bump(material, statement, surface);
+      else if (use == MtlUse::without_analogue)
+        add_unused(surface, statement.keyword);
+      else if (use == MtlUse::unknown)
+        warn(material.file, statement.line,
+             "the statement " + in_quotes(statement.keyword) + " of material " + in_quotes(material.name) +
+                 " is unknown and not used" + mtl_suggestion(statement.keyword));
+    }
+    return surface;
+  }
+
+  static void add_unused(Surface& surface, const std::string& what) {
+    if (std::ranges::find(surface.unused, what) == surface.unused.end()) surface.unused.push_back(what);
+  }
+
+  void take_color(const MtlMaterial& material, const MtlStatement& statement, Surface& surface) {
+    const auto& [value, complaint] = read_mtl_color(statement.text);
+    if (value) surface.color = value;
+    if (!complaint.empty()) warn(material, statement, complaint);
   }
 
   /// A picture as a scene file has it, laid as its options say; null: there is no such file.
   /// out   file: its path
-  Json texture_of(const Statement& statement, const MtlTexture& texture, std::string& file) {
-    file = find(texture.name, statement.mtl, statement.line, statement.keyword);
-    const std::string label =
-        statement.keyword + ' ' + in_quotes(texture.name) + " of material " + in_quotes(statement.material);
+  Json texture_of(const MtlMaterial& material, const MtlStatement& statement, const MtlTexture& texture,
+                  std::string& file) {
+    file = find(texture.name, material.file, statement.line, statement.keyword);
+    const std::string label = label_of(material, statement, texture);
     if (file.empty()) {
-      warn(statement.mtl, statement.line, label + ": there is no such file");
+      warn(material.file, statement.line, label + ": there is no such file");
       return {};
     }
     for (const std::string& option : texture.not_carried)
-      warn(statement.mtl, statement.line, label + ": the option " + in_quotes(option) + " is left out");
+      warn(material.file, statement.line, label + ": the option " + in_quotes(option) + " is left out");
     Json json{{"texture", scene_name_of(file, path_, mesh_path_)}};
     const auto& [scale_u, scale_v] = texture.scale;
     const std::array<double, 2> offset{texture.offset[0], 1 - scale_v - texture.offset[1]};
@@ -213,60 +230,60 @@ class ObjImporter {
     return json;
   }
 
-  void take_picture(const Statement& statement) {
-    const MtlTexture texture = read_mtl_texture(statement.text);
-    std::string file;
-    Json json = texture_of(statement, texture, file);
-    if (json.is_null()) return;
-    pictures_[statement.material] = {std::move(json), texture.gain};
+  static std::string label_of(const MtlMaterial& material, const MtlStatement& statement,
+                              const MtlTexture& texture) {
+    return statement.keyword + ' ' + in_quotes(texture.name) + " of material " + in_quotes(material.name);
   }
 
-  static bool is_bump(const std::string& keyword) {
-    return keyword == "bump" || keyword == "map_bump" || keyword == "map_Bump" || keyword == "norm";
+  /// The file as an image.
+  /// error Error{bad_input} naming the line of the library, the material and the file
+  std::shared_ptr<const TextureFile> opened(const MtlMaterial& material, const MtlStatement& statement,
+                                            const MtlTexture& texture, const std::string& file,
+                                            bool is_color) {
+    try {
+      if (!is_color) return TextureFile::open(file, ColorSpace::linear);
+      return TextureFile::open(file, TextureFile::space_of_colors(file), TextureContent::colors);
+    } catch (const Error& failure) {
+      throw Error(failure.kind, material.file, int(statement.line), 0,
+                  label_of(material, statement, texture) + ": " + failure.file + ": " + failure.message,
+                  failure.expected, failure.got);
+    }
+  }
+
+  void take_picture(const MtlMaterial& material, const MtlStatement& statement, Surface& surface) {
+    const MtlTexture texture = read_mtl_texture(statement.text);
+    std::string file;
+    Json json = texture_of(material, statement, texture, file);
+    if (json.is_null()) return;
+    opened(material, statement, texture, file, true);
+    surface.picture = {std::move(json), texture.gain};
   }
 
   /// The height of white is what -bm says, in the OBJ's own lengths. Some programs write normal maps here, whose mean is
   /// blue; `norm` always is one.
-  void take_bump(const Statement& statement) {
+  void take_bump(const MtlMaterial& material, const MtlStatement& statement, Surface& surface) {
     const MtlTexture texture = read_mtl_texture(statement.text);
     std::string file;
-    Json json = texture_of(statement, texture, file);
+    Json json = texture_of(material, statement, texture, file);
     if (json.is_null()) return;
     if (const double height = texture.bump * texture.gain; height != 1) json["scale"] = height;
-    try {
-      const Texel mean = TextureFile::open(file, ColorSpace::linear)->mean();
-      const bool is_normal_map =
-          statement.keyword == "norm" || (mean[2] > .6 && mean[2] > mean[0] + .1 && mean[2] > mean[1] + .1);
-      bumps_[statement.material] = {is_normal_map ? "normal_map" : "bump_map", statement.keyword,
-                                    std::move(json)};
-    } catch (const Error& failure) {
-      lost_[statement.material].insert(statement.keyword + ": " + failure.message);
-    }
-  }
-
-  /// Whether a value changes what a matte surface looks like: black highlights and full opacity do not.
-  static bool is_lost(const std::string& keyword, std::string_view line) {
-    if (keyword.starts_with("map_") || keyword == "bump" || keyword == "norm" || keyword == "disp" ||
-        keyword == "refl")
-      return true;
-    const std::string_view value = trimmed(line);
-    if (keyword == "Tf") return three_numbers(line).value_or(Vec3d()) != Vec3d(1);
-    if (keyword == "Pr") return !value.starts_with('1');  // rough
-    if (keyword == "Pm" || keyword == "Ps" || keyword == "Pc")
-      return value.find_first_not_of("0.") != value.npos;  // metalness, sheen, coat
-    if (keyword == "Ks" || keyword == "Ke") return three_numbers(line).value_or(Vec3d(1)) != Vec3d();
-    if (keyword == "d") return value.find_first_not_of("1.0") != value.npos || !value.starts_with('1');
-    return keyword == "Tr" && value.find_first_not_of("0.") != value.npos;
+    const Texel mean = opened(material, statement, texture, file, false)->mean();
+    const bool is_normal_map = use_of(statement) == MtlUse::normal_map ||
+                               (mean[2] > .6 && mean[2] > mean[0] + .1 && mean[2] > mean[1] + .1);
+    surface.bump = {is_normal_map ? "normal_map" : "bump_map", statement.keyword, std::move(json)};
   }
 
   void add_shape(const std::string& material) {
     const std::string name = names_.take(material == kNoMaterial ? "" : material, "shape");
     scene_.shapes.push_back({{"name", name}, {"file", mesh_path_}, {"part", material}});
-    if (const Json reflectance = reflectance_of(material); !reflectance.is_null())
+    const auto found = materials_.find(material);
+    const Surface surface = found == materials_.end() ? Surface{} : surface_of(found->second);
+    if (const Json reflectance = reflectance_of(material, surface); !reflectance.is_null())
       scene_.shapes.back()["reflectance"] = reflectance;
-    if (const auto bump = bumps_.find(material); bump != bumps_.end()) add_bump(material, bump->second);
-    for (const std::string& keyword : lost_[material])
-      scene_.not_carried.push_back("material " + in_quotes(material) + ": " + keyword);
+    if (surface.bump) add_bump(material, *surface.bump);
+    if (!surface.unused.empty())
+      scene_.not_carried.push_back("material " + in_quotes(material) + ": " + in_a_row(surface.unused) +
+                                   (surface.unused.size() == 1 ? " is" : " are") + " not used");
   }
 
   void add_bump(const std::string& material, const Bump& bump) {
@@ -280,26 +297,25 @@ class ObjImporter {
   }
 
   /// Null: the vertices have it.
-  Json reflectance_of(const std::string& material) {
-    const auto color = colors_.find(material);
-    const Vec3d reflectance = color == colors_.end() ? kGrey : color->second;
+  Json reflectance_of(const std::string& material, const Surface& surface) {
+    const Vec3d reflectance = surface.color.value_or(kGrey);
     const std::string label = "material " + in_quotes(material);
-    if (const auto picture = pictures_.find(material); picture != pictures_.end()) {
-      Json texture = picture->second.texture;
+    if (surface.picture) {
+      Json texture = surface.picture->texture;
       const auto name = texture["texture"].get<std::string>();
       // Programs that write a picture may leave the colour black; grey stands for none.
       const bool has_color = reflectance != Vec3d() && reflectance != kGrey && reflectance != Vec3d(1);
-      const double gain = picture->second.gain;
+      const double gain = surface.picture->gain;
       if (has_color || gain != 1) texture["scale"] = triple_json((has_color ? reflectance : Vec3d(1)) * gain);
       scene_.translated.push_back(fmt::format("{}: map_Kd -> reflectance {}{}", label, name,
                                               has_color ? " times Kd " + short_triple(reflectance) : ""));
       return texture;
     }
-    if (color == colors_.end() && scene_.has_vertex_colors) {
+    if (!surface.color && scene_.has_vertex_colors) {
       scene_.translated.push_back(label + ": vertex colours -> reflectance");
       return nullptr;
     }
-    if (color != colors_.end())
+    if (surface.color)
       scene_.translated.push_back(
           fmt::format("{}: Kd -> reflectance {} (opaque)", label, short_triple(reflectance)));
     else if (material != kNoMaterial)
@@ -312,10 +328,7 @@ class ObjImporter {
   AssetScene scene_;
   UniqueNames names_;
   bool has_uvs_ = false;
-  std::map<std::string, Vec3d> colors_;                // Kd, by material
-  std::map<std::string, Picture> pictures_;            // map_Kd, by material
-  std::map<std::string, Bump> bumps_;                  // by material
-  std::map<std::string, std::set<std::string>> lost_;  // keywords without a counterpart, by material
+  std::map<std::string, MtlMaterial> materials_;  // by name
 };
 
 }  // namespace

@@ -2,14 +2,12 @@
 #include "assets/mtl_texture.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <optional>
+
+#include "assets/text_lines.h"
 
 namespace opaline {
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r\v\f";
 
 /// An option of the format and how many words follow it, at most.
 struct Option {
@@ -33,13 +31,6 @@ constexpr std::array<Option, 13> kOptions{{{"-blendu", 1, false},
                                            {"-texres", 1},
                                            {"-type", 1, false}}};
 
-std::optional<double> number_of(std::string_view word) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return {};
-  return value;
-}
-
 class StatementReader {
  public:
   explicit StatementReader(std::string_view text) : rest_(text) {}
@@ -50,7 +41,7 @@ class StatementReader {
       read(*option);
     }
     skip_blanks();
-    rest_ = rest_.substr(0, rest_.find_last_not_of(kBlanks) + 1);
+    rest_ = rest_.substr(0, rest_.find_last_not_of(kLineBlanks) + 1);
     if (rest_.size() > 1 && rest_.front() == '"' && rest_.back() == '"')
       rest_ = rest_.substr(1, rest_.size() - 2);
     texture_.name = rest_;
@@ -58,11 +49,11 @@ class StatementReader {
   }
 
  private:
-  void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size())); }
+  void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(kLineBlanks), rest_.size())); }
 
   std::string_view next_word() {
     skip_blanks();
-    return rest_.substr(0, rest_.find_first_of(kBlanks));
+    return rest_.substr(0, rest_.find_first_of(kLineBlanks));
   }
 
   std::string_view take_word() {

@@ -125,7 +125,7 @@ ImportArguments checked(ImportArguments import) {
     throw bad_file(import.asset, unread);
   if (!is_asset_name(import.asset))
     throw bad_file(import.asset, "is no asset that can be imported",
-                   "a name that ends in .glb, .gltf or .obj");
+                   "a name that ends in .glb, .gltf, .obj, .ply, .stl or .off");
   if (!import.scene.ends_with(".json"))
     throw usage_error("a scene file is written", "a name that ends in .json", "'" + import.scene + "'");
   return import;

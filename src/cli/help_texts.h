@@ -64,6 +64,7 @@ on stderr says what became of a value, or what is not carried over.
           subsurface_color and subsurface_radius, whose lengths are in the asset's unit; else opaque, of their base
           colour, metalness and coat.
   OBJ     meshes, a shape for each usemtl, with the Kd and map_Kd of its MTL. Lengths are taken for millimetres.
+  PLY, STL, OFF   one opaque shape, grey or of its vertex colours. Lengths are taken for millimetres.
 
 Files that an asset names lie in its folder, or below; others, also behind links, are refused unless --allow-outside
 is given. Where a name leads nowhere, as a path of another machine does, the file of that name beside is taken.

@@ -286,16 +286,16 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
                  {"evaluator", name_of(settings.evaluator)}});
   if (!chosen.sees_translucent) return warn_of_nothing_seen(log);
   if (!log.quiet && log.format == LogFormat::text)
-    print_row("target", fmt::format("{:.3g} %: {} predicted to be {:.2g} % off, tolerance {:.2g} %",
-                                    100 * target, counted(chosen.samples, "sample"), 100 * chosen.predicted,
-                                    100 * settings.tolerance));
+    print_row("target", fmt::format("{:.3g} %: {} predicted to be {} off, tolerance {}", 100 * target,
+                                    counted(chosen.samples, "sample"), short_percent(chosen.predicted),
+                                    short_percent(settings.tolerance)));
   if (!chosen.reached)
-    print_warning(log, fmt::format("an error of {:.3g} % cannot be reached with {}: {:.2g} % is predicted",
-                                   100 * target,
-                                   chosen.is_short_of_rays
-                                       ? grouped(std::uint64_t(kMostShadowRays)) + " shadow rays to a light"
-                                       : fmt::format("settings.max_samples of {}", settings.max_samples),
-                                   100 * chosen.predicted));
+    print_warning(log,
+                  fmt::format("an error of {:.3g} % cannot be reached with {}: {} is predicted", 100 * target,
+                              chosen.is_short_of_rays
+                                  ? grouped(std::uint64_t(kMostShadowRays)) + " shadow rays to a light"
+                                  : fmt::format("settings.max_samples of {}", settings.max_samples),
+                              short_percent(chosen.predicted)));
 }
 
 void print_again_by(const Log& log, const std::string& command) {
@@ -317,21 +317,19 @@ void print_volume_target(const Log& log, double target, const TargetError& chose
                  {"light_samples", settings.light_samples}});
   if (!chosen.sees_translucent) return warn_of_nothing_seen(log);
   if (!log.quiet && log.format == LogFormat::text)
-    print_row(
-        "target",
-        fmt::format("{:.3g} %: {}, cells of {:.3g} mean free paths predicted to be {:.2g} % off random walks",
-                    100 * target, counted(chosen.samples, "sample"), settings.cell_size,
-                    100 * chosen.predicted));
+    print_row("target",
+              fmt::format("{:.3g} %: {}, cells of {:.3g} mean free paths predicted to be {} off random walks",
+                          100 * target, counted(chosen.samples, "sample"), settings.cell_size,
+                          short_percent(chosen.predicted)));
   if (!chosen.model)
     return print_warning(log,
                          "a mesh is open, or too thin for diffusion: what that is off by is not known, and "
                          "nothing is promised");
   if (!chosen.reached)
-    print_warning(
-        log,
-        fmt::format("cannot promise less than {:.2g} % against --method volume, of which {:.2g} % "
-                    "are the diffusion model's; taking that in place of {:.3g} %",
-                    100 * std::max(chosen.promised, chosen.predicted), 100 * *chosen.model, 100 * target));
+    print_warning(log, fmt::format("cannot promise less than {} against --method volume, of which {} "
+                                   "are the diffusion model's; taking that in place of {:.3g} %",
+                                   short_percent(std::max(chosen.promised, chosen.predicted)),
+                                   short_percent(*chosen.model), 100 * target));
 }
 
 void print_budget(const Log& log, double budget, double before, const TimeBudget& chosen,
@@ -354,12 +352,13 @@ void print_budget(const Log& log, double budget, double before, const TimeBudget
                          "nothing translucent is seen: --time-budget has nothing to choose here, and the "
                          "picture takes as long as it takes");
   const std::string error =
-      chosen.predicted ? fmt::format(" predicted to be {:.2g} % off", 100 * *chosen.predicted) : "";
+      chosen.predicted ? fmt::format(" predicted to be {} off", short_percent(*chosen.predicted)) : "";
   if (!log.quiet && log.format == LogFormat::text)
-    print_row("budget",
-              fmt::format("{:.4g} s: {}{}, tolerance {:.2g} %; about {:.3g} s are planned{}", budget,
-                          counted(chosen.samples, "sample"), error, 100 * settings.tolerance, planned,
-                          chosen.at_most ? ", more samples being too many for settings.max_samples" : ""));
+    print_row(
+        "budget",
+        fmt::format("{:.4g} s: {}{}, tolerance {}; about {:.3g} s are planned{}", budget,
+                    counted(chosen.samples, "sample"), error, short_percent(settings.tolerance), planned,
+                    chosen.at_most ? ", more samples being too many for settings.max_samples" : ""));
   if (!chosen.fits)
     print_warning(
         log,

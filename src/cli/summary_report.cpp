@@ -56,19 +56,19 @@ std::string settings_error_text(const Summary& summary) {
   const KnownErrors& errors = summary.errors;
   std::string text;
   if (errors.predicted)
-    text = fmt::format("predicted {:.2g} %", 100 * *errors.predicted);
+    text = "predicted " + short_percent(*errors.predicted);
   else if (summary.estimated_error > 0)
-    text = fmt::format("estimated {:.2g} %", 100 * summary.estimated_error);
+    text = "estimated " + short_percent(summary.estimated_error);
   if (text.empty()) return text;
   if (const auto& measured = errors.measured; measured && measured->points > 0)
-    text += fmt::format(", measured {:.2g} % +- {:.1g} % at {} points", 100 * measured->error,
+    text += fmt::format(", measured {} +- {:.1g} % at {} points", short_percent(measured->error),
                         100 * measured->standard_error, measured->points);
   return "settings " + text + " (mean relative error of the diffuse light, worst channel)";
 }
 
 std::string model_error_text(double error) {
-  return fmt::format("model about {:.2g} % (expected against random walks, rms, worst body and channel)",
-                     100 * error);
+  return fmt::format("model about {} (expected against random walks, rms, worst body and channel)",
+                     short_percent(error));
 }
 
 void print_text(const Summary& summary) {
@@ -99,8 +99,8 @@ void print_text(const Summary& summary) {
   std::ranges::stable_sort(worst, std::greater(), &LightNoise::relative_error);
   if (worst.size() > kMostLines) worst.resize(kMostLines);
   for (const LightNoise& noise : worst)
-    row("noise", fmt::format("irradiance from {} on {}: {:.2g} % (standard error at a sample)", noise.light,
-                             noise.group, 100 * noise.relative_error));
+    row("noise", fmt::format("irradiance from {} on {}: {} (standard error at a sample)", noise.light,
+                             noise.group, short_percent(noise.relative_error)));
   if (summary.noise.size() > worst.size())
     row("", fmt::format("and less from or on {} more", summary.noise.size() - worst.size()));
   row("rays",

@@ -49,7 +49,7 @@ std::string stage_text(const ProgressState& state) {
   if (state.fraction >= 0) text += percent(state.fraction);
   if (state.seconds_left >= 0) text += ", " + left_text(state.seconds_left);
   if (state.noise > 0 && std::isfinite(state.noise) && !text.empty())
-    text += fmt::format(", noise {:.2g} %", 100 * state.noise);
+    text += ", noise " + short_percent(state.noise);
   if (text.empty() && state.seconds >= kSecondsBeforeElapsed) text = short_time(state.seconds) + " so far";
   if (!state.trial.empty()) text += (text.empty() ? "(" : "  (") + state.trial + ")";
   return text;

@@ -22,9 +22,13 @@ ColorMatrix inverse(const ColorMatrix& m) {
   return transposed({x * scale, y * scale, z * scale});
 }
 
-// Of luminance 1.
+// Sum of 1: the y of a primary may be 0.
 Vec3d xyz_of(const std::array<double, 2>& xy) {
-  return {xy[0] / xy[1], 1, (1 - xy[0] - xy[1]) / xy[1]};
+  return {xy[0], xy[1], 1 - xy[0] - xy[1]};
+}
+
+Vec3d white_of(const RgbPrimaries& space) {
+  return xyz_of(space.white) * (1 / space.white[1]);
 }
 
 ColorMatrix scaled_columns(const ColorMatrix& m, const Vec3d& by) {
@@ -33,13 +37,13 @@ ColorMatrix scaled_columns(const ColorMatrix& m, const Vec3d& by) {
 
 ColorMatrix to_xyz(const RgbPrimaries& space) {
   const ColorMatrix primaries = transposed({xyz_of(space.red), xyz_of(space.green), xyz_of(space.blue)});
-  return scaled_columns(primaries, inverse(primaries) * xyz_of(space.white));
+  return scaled_columns(primaries, inverse(primaries) * white_of(space));
 }
 
 }  // namespace
 
 ColorMatrix color_matrix(const RgbPrimaries& from, const RgbPrimaries& to) {
-  const Vec3d white_from = kBradford * xyz_of(from.white), white_to = kBradford * xyz_of(to.white);
+  const Vec3d white_from = kBradford * white_of(from), white_to = kBradford * white_of(to);
   const Vec3d gains{white_to.x / white_from.x, white_to.y / white_from.y, white_to.z / white_from.z};
   const ColorMatrix adapted =
       product(scaled_columns(inverse(kBradford), gains), product(kBradford, to_xyz(from)));

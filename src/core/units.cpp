@@ -30,4 +30,9 @@ std::string short_time(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
+std::string short_percent(double fraction) {
+  const double percent = 100 * fraction;
+  return percent < 99.5 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
+}
+
 }  // namespace opaline

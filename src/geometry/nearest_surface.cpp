@@ -1,48 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/geometry/nearest_surface.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
 #include "geometry/embree_handles.h"
+#include "geometry/nearest_on_triangle.h"
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 
 namespace opaline {
-namespace {
-
-/// Of a point of a triangle, the weights of its second and third corner, and its squared distance.
-struct OnTriangle {
-  double u, v, square;
-};
-
-OnTriangle at(const Vec3d& from_corner, const Vec3d& ab, const Vec3d& ac, double u, double v) {
-  const Vec3d apart = from_corner - ab * u - ac * v;
-  return {u, v, dot(apart, apart)};
-}
-
-/// The foot of the perpendicular where it lies in the triangle, else the nearest point of the three sides.
-OnTriangle nearest_on(const std::array<Vec3d, 3>& corners, const Vec3d& position) {
-  const Vec3d p = position - corners[0], ab = corners[1] - corners[0], ac = corners[2] - corners[0],
-              bc = ac - ab;
-  const double bb = dot(ab, ab), cc = dot(ac, ac), b_c = dot(ab, ac), along_b = dot(p, ab),
-               along_c = dot(p, ac), determinant = bb * cc - b_c * b_c;
-  const double u = (along_b * cc - along_c * b_c) / determinant,
-               v = (along_c * bb - along_b * b_c) / determinant;
-  if (u >= 0 && v >= 0 && u + v <= 1) return at(p, ab, ac, u, v);
-  const auto along = [](double projection, double square) {
-    return square > 0 ? std::clamp(projection / square, 0., 1.) : 0;
-  };
-  const double on_bc = along(dot(p - ab, bc), dot(bc, bc));
-  return std::min({at(p, ab, ac, along(along_b, bb), 0), at(p, ab, ac, 0, along(along_c, cc)),
-                   at(p, ab, ac, 1 - on_bc, on_bc)},
-                  [](const OnTriangle& a, const OnTriangle& b) { return a.square < b.square; });
-}
-
-}  // namespace
-
 NearestSurface::NearestSurface(const RayScene& rays, std::span<const std::uint32_t> meshes)
     : rays_(rays), is_body_(rays.meshes_.size()) {
   for (const std::uint32_t m : meshes) is_body_[m] = true;

@@ -23,11 +23,12 @@ class CachedPicture {
   /// Which of red, green, blue and alpha the picture has.
   virtual std::array<bool, 4> channels() const = 0;
   virtual TextureMemory memory() const = 0;
+  /// What is left out of the file; empty: nothing.
+  virtual std::string warning() const = 0;
 };
 
 struct TextureReader {
-  /// to_linear: of a picture in sRGB
-  std::unique_ptr<CachedPicture> (*open)(PictureSource source, bool to_linear);
+  std::unique_ptr<CachedPicture> (*open)(PictureSource source, TextureEncoding encoding);
   /// Whether it holds floats.
   bool (*is_float)(const PictureSource& source);
   /// Of the cache, bytes.

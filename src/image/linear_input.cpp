@@ -16,7 +16,7 @@ namespace {
 
 struct Registered {
   std::shared_ptr<const PictureSource> source;
-  bool to_linear;
+  TexelColors colors;
 };
 
 struct Registry {
@@ -44,9 +44,9 @@ bool all_within_range(const void* values, std::size_t count, OIIO::TypeDesc type
 }  // namespace
 
 void LinearInput::register_source(const std::string& name, std::shared_ptr<const PictureSource> source,
-                                  bool to_linear) {
+                                  const TexelColors& colors) {
   const std::lock_guard lock(registry().mutex);
-  registry().sources[name] = {std::move(source), to_linear};
+  registry().sources[name] = {std::move(source), colors};
 }
 
 void LinearInput::forget_source(const std::string& name) {
@@ -64,7 +64,7 @@ bool LinearInput::open(const std::string& name, OIIO::ImageSpec& spec) {
     const auto found = registry().sources.find(name);
     if (found == registry().sources.end()) return false;
     source_ = found->second.source;
-    to_linear_ = found->second.to_linear;
+    colors_ = found->second.colors;
   }
   if (!reopen()) return false;
   is_held_ = is_held(opened_, *layout_);
@@ -76,7 +76,7 @@ bool LinearInput::open(const std::string& name, OIIO::ImageSpec& spec) {
 void LinearInput::take_spec() {
   m_spec = layout_->spec(opened_.input->spec());
   native_ = m_spec.format;
-  if (to_linear_) m_spec.set_format(OIIO::TypeHalf);
+  if (!colors_.are_plain()) m_spec.set_format(colors_.type_for(native_));
 }
 
 bool LinearInput::close() {
@@ -161,12 +161,27 @@ bool LinearInput::check_range(const void* values, std::size_t count, OIIO::TypeD
   return false;
 }
 
-bool LinearInput::make_linear(std::size_t pixels, void* data) {
-  const auto channels = std::size_t(m_spec.nchannels);
-  for (std::size_t i = 0; i < pixels * channels; ++i)
-    if (int(i % channels) != m_spec.alpha_channel) values_[i] = OIIO::sRGB_to_linear(values_[i]);
-  return OIIO::convert_pixel_values(OIIO::TypeFloat, values_.data(), OIIO::TypeHalf, data,
-                                    int(pixels * channels));
+bool LinearInput::change_colors(std::size_t pixels, void* data) {
+  const auto channels = std::size_t(m_spec.nchannels), count = pixels * channels;
+  if (colors_.is_premultiplied || colors_.to_rec709) {
+    change_each(pixels);
+    if (!check_range(values_.data(), count, OIIO::TypeFloat)) return false;
+  } else {
+    for (std::size_t i = 0; i < count; ++i)
+      if (int(i % channels) != m_spec.alpha_channel) values_[i] = OIIO::sRGB_to_linear(values_[i]);
+  }
+  return OIIO::convert_pixel_values(OIIO::TypeFloat, values_.data(), m_spec.format, data, int(count));
+}
+
+void LinearInput::change_each(std::size_t pixels) {
+  const auto channels = std::size_t(m_spec.nchannels), of_color = channels < 3 ? std::size_t(1) : 3;
+  float* values = values_.data();
+  for (std::size_t i = 0; i < pixels; ++i, values += channels) {
+    Texel texel{1, 1, 1, channels > of_color ? double(values[of_color]) : 1};
+    for (std::size_t c = 0; c < 3; ++c) texel[c] = double(values[std::min(c, of_color - 1)]);
+    colors_.apply(texel);
+    for (std::size_t c = 0; c < of_color; ++c) values[c] = float(texel[c]);
+  }
 }
 
 bool LinearInput::read_native_scanline(int subimage, int miplevel, int y, int z, void* data) {
@@ -176,12 +191,13 @@ bool LinearInput::read_native_scanline(int subimage, int miplevel, int y, int z,
 bool LinearInput::read_native_scanlines(int subimage, int miplevel, int y_begin, int y_end, int z,
                                         void* data) {
   const std::lock_guard lock(mutex_);
+  const bool is_changed = !colors_.are_plain();
   const std::size_t row = std::size_t(m_spec.width) * std::size_t(m_spec.nchannels);
   const std::size_t pixels = std::size_t(m_spec.width) * std::size_t(y_end - y_begin);
   const auto values = pixels * std::size_t(m_spec.nchannels);
-  if (to_linear_) values_.resize(values);
-  void* const target = to_linear_ ? static_cast<void*>(values_.data()) : data;
-  const OIIO::TypeDesc type = to_linear_ ? OIIO::TypeFloat : m_spec.format;
+  if (is_changed) values_.resize(values);
+  void* const target = is_changed ? static_cast<void*>(values_.data()) : data;
+  const OIIO::TypeDesc type = is_changed ? OIIO::TypeFloat : m_spec.format;
   if (is_held_) {
     if (whole_.empty() && !decode()) return false;
     const unsigned char* const first = whole_.data() + std::size_t(y_begin - m_spec.y) * row * native_.size();
@@ -195,22 +211,23 @@ bool LinearInput::read_native_scanlines(int subimage, int miplevel, int y_begin,
     finish(target, pixels, type);
   }
   if (!check_range(target, values, type)) return false;
-  return !to_linear_ || make_linear(pixels, data);
+  return !is_changed || change_colors(pixels, data);
 }
 
 bool LinearInput::read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) {
   const std::lock_guard lock(mutex_);
+  const bool is_changed = !colors_.are_plain();
   const auto pixels = std::size_t(m_spec.tile_pixels());
-  if (to_linear_) values_.resize(pixels * std::size_t(m_spec.nchannels));
-  void* const target = to_linear_ ? static_cast<void*>(values_.data()) : data;
-  const OIIO::TypeDesc type = to_linear_ ? OIIO::TypeFloat : m_spec.format;
+  if (is_changed) values_.resize(pixels * std::size_t(m_spec.nchannels));
+  void* const target = is_changed ? static_cast<void*>(values_.data()) : data;
+  const OIIO::TypeDesc type = is_changed ? OIIO::TypeFloat : m_spec.format;
   if (!opened_.input->read_tiles(subimage, miplevel, x, x + m_spec.tile_width, y, y + m_spec.tile_height, z,
                                  z + std::max(1, m_spec.tile_depth), layout_->begin, layout_->end, type,
                                  buffer_for(target, pixels, type)))
     return complain();
   finish(target, pixels, type);
   if (!check_range(target, pixels * std::size_t(m_spec.nchannels), type)) return false;
-  return !to_linear_ || make_linear(pixels, data);
+  return !is_changed || change_colors(pixels, data);
 }
 
 }  // namespace opaline

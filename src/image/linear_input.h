@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture as the texture cache is to see it: from a file or from memory, its texels linear. Of the module
+// A picture as the texture cache is to see it: from a file or from memory, its texels linear colours. Of the module
 // (picture_reader.h).
 #pragma once
 
@@ -15,6 +15,7 @@
 
 #include "image/cached_picture.h"
 #include "image/picture_file.h"
+#include "image/texel_colors.h"
 #include "image/texel_layout.h"
 
 namespace opaline {
@@ -22,8 +23,8 @@ namespace opaline {
 /// The formats of textures.
 inline constexpr std::string_view kTextureFormats[] = {"exr", "hdr", "png", "jpeg", "tiff"};
 
-/// Decodes another input, its first part alone. sRGB becomes linear halves, whose rounding is below that of 8 bits; alpha
-/// stays as it is. Formats that are read from their beginning alone are decoded at once and held until each row was asked
+/// Decodes another input, its first part alone. Texels become linear colours, see TexelColors; of sRGB they are halves,
+/// whose rounding is below that of 8 bits. Formats that are read from their beginning alone are decoded at once and held until each row was asked
 /// for: the cache asks for rows in any order, and OpenImageIO 2.4 goes back by opening the file anew, which a picture in
 /// memory does not survive. So are pictures whose data window is not their display window: OpenImageIO 2.4 puts the
 /// texture's tiles in the wrong places if it lies within.
@@ -31,7 +32,7 @@ class LinearInput : public OIIO::ImageInput {
  public:
   /// What inputs of this name, of none of a file, read.
   static void register_source(const std::string& name, std::shared_ptr<const PictureSource> source,
-                              bool to_linear);
+                              const TexelColors& colors);
   static void forget_source(const std::string& name);
   static OIIO::ImageInput* create() { return new LinearInput; }
 
@@ -63,11 +64,13 @@ class LinearInput : public OIIO::ImageInput {
   bool complain();
   /// Returns whether the values of texels are finite and at most kLargestTexel; else sets the error.
   bool check_range(const void* values, std::size_t count, OIIO::TypeDesc type);
-  /// From values_ to what the cache gets.
-  bool make_linear(std::size_t pixels, void* data);
+  /// Changes the colours of values_ and gives them to the cache.
+  bool change_colors(std::size_t pixels, void* data);
+  void change_each(std::size_t pixels);
 
   std::shared_ptr<const PictureSource> source_;
-  bool to_linear_ = false, is_held_ = false;
+  TexelColors colors_;
+  bool is_held_ = false;
   OpenPicture opened_;
   std::optional<TexelLayout> layout_;
   OIIO::TypeDesc native_;  // of the values in the file

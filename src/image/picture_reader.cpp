@@ -12,6 +12,7 @@
 #include "image/color_channels.h"
 #include "image/exr_chunks.h"
 #include "image/picture_file.h"
+#include "image/texel_colors.h"
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
 
@@ -48,16 +49,6 @@ void linearize(Image& image, int alpha) {
     if (static_cast<int>(i % channels) != alpha) image.pixels[i] = OIIO::sRGB_to_linear(image.pixels[i]);
 }
 
-bool has_ap1_primaries(const OIIO::ImageSpec& spec) {
-  constexpr float kRounding = 1e-4f;  // of files that state four digits
-  const auto& [red, green, blue, white] = kAp1Primaries;
-  float stated[8];
-  if (!spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), stated)) return false;
-  const double wanted[8] = {red[0], red[1], green[0], green[1], blue[0], blue[1], white[0], white[1]};
-  return std::equal(stated, stated + 8, wanted,
-                    [](float a, double b) { return std::abs(double(a) - b) < double(kRounding); });
-}
-
 }  // namespace
 
 Image read_picture(const std::string& path) {
@@ -75,8 +66,8 @@ Image read_picture(const std::string& path) {
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
     throw bad_file(path, "the picture is damaged: " + complaint_of(&input));
   if (picture.format == "png") linearize(image, spec.alpha_channel);
-  if (has_ap1_primaries(spec))
-    convert_colors(image.pixels, image.channels.size(), color_channels(image.channels), from_acescg());
+  if (const auto matrix = matrix_to_rec709(spec, path))
+    convert_colors(image.pixels, image.channels.size(), color_channels(image.channels), *matrix);
   return image;
 }
 

@@ -15,10 +15,26 @@ std::string window_text(int x, int y, int width, int height) {
          std::to_string(y);
 }
 
+bool is_grey_tiff(const OIIO::ImageSpec& file) {
+  constexpr int kWhiteIsZero = 0, kBlackIsZero = 1, kNone = -1;
+  const int photometric = file.get_int_attribute("tiff:PhotometricInterpretation", kNone);
+  return photometric == kWhiteIsZero || photometric == kBlackIsZero;
+}
+
+/// Names of the channels. OpenImageIO calls two or three channels of a grey TIFF file R, G and B.
+std::vector<std::string> names_of(const OIIO::ImageSpec& file) {
+  std::vector<std::string> names = file.channelnames;
+  if (!is_grey_tiff(file) || names.size() < 2) return names;
+  for (std::size_t c = 0; c < names.size(); ++c)
+    names[c] = c == 0 ? "Y" : int(c) == file.alpha_channel ? "A" : "channel" + std::to_string(c);
+  return names;
+}
+
 }  // namespace
 
 TexelLayout::TexelLayout(const OIIO::ImageSpec& file, const std::string& path)
-    : places(channel_places(file.channelnames, path)) {
+    : places(channel_places(names_of(file), path)) {
+  if (is_grey_tiff(file) && file.nchannels > 1) ignored = file.nchannels - (places[3] >= 0 ? 2 : 1);
   const bool is_grey = places[0] == places[1] && places[0] == places[2];
   if (is_grey)
     sources = {places[0], places[3], -1, -1};

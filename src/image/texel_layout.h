@@ -22,6 +22,7 @@ struct TexelLayout {
   ChannelPlaces sources{};   ///< of a texel's channels in the file
   int begin = 0, end = 0;    ///< the channels of the file that hold them all
   bool is_windowed = false;  ///< the two windows differ
+  int ignored = 0;           ///< channels beside grey whose meaning a TIFF file does not state
 
   /// error Error{bad_input} naming the file: as channel_places; the windows have no pixel in common
   TexelLayout(const OIIO::ImageSpec& file, const std::string& path);

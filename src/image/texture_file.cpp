@@ -104,33 +104,39 @@ struct KnownTexture {
 
 TextureFile::~TextureFile() = default;
 
-void TextureFile::add_picture(int tile, const std::string& path, ColorSpace space) {
+void TextureFile::add_picture(int tile, const std::string& path, TextureEncoding encoding) {
   PictureSource source = source_of(path, tile == 0);
-  constexpr std::uint64_t kVersion = 2;  // of the texels that a file's bytes stand for
-  const std::array<std::uint64_t, 5> parts{kVersion, hash_, std::uint64_t(tile), std::uint64_t(space),
+  constexpr std::uint64_t kVersion = 3;  // of the texels that a file's bytes stand for
+  const std::array<std::uint64_t, 6> parts{kVersion,
+                                           hash_,
+                                           std::uint64_t(tile),
+                                           std::uint64_t(encoding.space),
+                                           std::uint64_t(encoding.content),
                                            content_hash(source)};
   hash_ = XXH3_64bits(parts.data(), sizeof parts);
-  std::unique_ptr<const CachedPicture> picture = reader().open(std::move(source), space == ColorSpace::srgb);
-  const std::optional<Texel> constant = picture->constant();
-  constant_ = pictures_.empty() || constant == constant_ ? constant : std::nullopt;
+  std::unique_ptr<const CachedPicture> picture = reader().open(std::move(source), encoding);
+  if (tile == 0) constant_ = picture->constant();  // a set of tiles is not the same where it has no tile
+  if (warning_.empty()) warning_ = picture->warning();
   for (std::size_t c = 0; c < 4; ++c) has_channel_[c] = has_channel_[c] && picture->channels()[c];
   pictures_[tile] = std::move(picture);
 }
 
-std::shared_ptr<const TextureFile> TextureFile::open(const std::string& path, ColorSpace space) {
+std::shared_ptr<const TextureFile> TextureFile::open(const std::string& path, ColorSpace space,
+                                                     TextureContent content) {
   require(space != ColorSpace::automatic, "a texture's colour space is decided");
   static std::mutex mutex;
-  static std::map<std::pair<std::string, ColorSpace>, KnownTexture> known;
+  static std::map<std::pair<std::string, TextureEncoding>, KnownTexture> known;
   const std::lock_guard lock(mutex);
   const Stamp stamp = stamp_of(path);
-  KnownTexture& entry = known[{path, space}];
+  const TextureEncoding encoding{space, content};
+  KnownTexture& entry = known[{path, encoding}];
   if (auto texture = entry.texture.lock(); texture && entry.stamp == stamp) return texture;
   const std::shared_ptr<TextureFile> texture(new TextureFile);
   texture->path_ = path;
   if (is_tiled(path))
-    for (const auto& [tile, file] : tile_files(path)) texture->add_picture(tile, file, space);
+    for (const auto& [tile, file] : tile_files(path)) texture->add_picture(tile, file, encoding);
   else
-    texture->add_picture(0, path, space);
+    texture->add_picture(0, path, encoding);
   entry = {stamp, texture};
   return texture;
 }

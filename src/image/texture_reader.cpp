@@ -13,10 +13,10 @@
 #include "image/exr_chunks.h"
 #include "image/linear_input.h"
 #include "image/picture_file.h"
+#include "image/texel_colors.h"
 #include "image/texel_layout.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
-#include "opaline/core/srgb.h"
 
 namespace opaline {
 namespace {
@@ -78,9 +78,9 @@ bool is_even(const PictureSource& source) {
   return true;
 }
 
-/// Calls visit(texel, how many there are) for all texels as they stand in the file, while it returns true.
+/// Calls visit(texel, how many there are) for all texels, with their colours changed, while it returns true.
 template <class Visit>
-void for_each_texel(const PictureSource& source, bool to_linear, const Visit& visit) {
+void for_each_texel(const PictureSource& source, const TexelColors& colors, const Visit& visit) {
   const OpenPicture opened = open_picture(source, kTextureFormats);
   OIIO::ImageInput& input = *opened.input;
   const OIIO::ImageSpec spec = input.spec();
@@ -92,8 +92,7 @@ void for_each_texel(const PictureSource& source, bool to_linear, const Visit& vi
   const auto value = [&](std::size_t i, std::size_t c, double otherwise) {
     if (layout.places[c] < 0) return otherwise;
     double v = double(values[i * channels + std::size_t(layout.places[c] - layout.begin)]);
-    if (is_bytes) v = std::round(v * 255) / 255;  // exactly what colours of a scene file are
-    return to_linear && c < 3 ? srgb_to_linear(v) : v;
+    return is_bytes ? std::round(v * 255) / 255 : v;  // exactly what colours of a scene file are
   };
   const int x_begin = std::max(spec.x, spec.full_x),
             x_end = std::min(spec.x + spec.width, spec.full_x + spec.full_width);
@@ -104,7 +103,8 @@ void for_each_texel(const PictureSource& source, bool to_linear, const Visit& vi
     for (int row = std::max(y, spec.full_y); row < std::min(end, spec.full_y + spec.full_height); ++row)
       for (int x = x_begin; x < x_end; ++x, ++visited) {
         const std::size_t i = std::size_t(row - y) * width + std::size_t(x - spec.x);
-        const Texel texel{value(i, 0, 0), value(i, 1, 0), value(i, 2, 0), value(i, 3, 1)};
+        Texel texel{value(i, 0, 0), value(i, 1, 0), value(i, 2, 0), value(i, 3, 1)};
+        colors.apply(texel);
         for (const double v : texel)
           if (!(std::abs(v) <= kLargestTexel)) throw bad_file(source.path, kTexelOutOfRange);
         if (!visit(texel, std::size_t(1))) return;
@@ -116,22 +116,23 @@ void for_each_texel(const PictureSource& source, bool to_linear, const Visit& vi
 
 class OiioPicture : public CachedPicture {
  public:
-  OiioPicture(PictureSource source, bool to_linear)
-      : source_(std::make_shared<const PictureSource>(std::move(source))), to_linear_(to_linear) {
+  OiioPicture(PictureSource source, TextureEncoding encoding)
+      : source_(std::make_shared<const PictureSource>(std::move(source))) {
     static std::atomic<std::uint64_t> count{0};
     check_is_whole(*source_);
     const OpenPicture opened = open_picture(*source_, kTextureFormats);
     if (opened.format == "exr") check_exr_chunks(source_->path);
     const TexelLayout layout(opened.input->spec(), source_->path);
     const OIIO::ImageSpec spec = layout.spec(opened.input->spec());
+    colors_ = TexelColors(opened.input->spec(), opened.format, layout, encoding, source_->path);
+    ignored_ = layout.ignored;
     channels_ = layout.channels;
     is_windowed_ = layout.is_windowed;
     for (std::size_t c = 0; c < 4; ++c) has_channel_[c] = layout.places[c] >= 0;
     const auto values = std::size_t(spec.image_pixels()) * std::size_t(spec.nchannels);
-    const std::size_t cached = to_linear ? 2 : spec.format.size();
-    memory_ = {values * spec.format.size(), values * cached * 4 / 3};
+    memory_ = {values * spec.format.size(), values * colors_.type_for(spec.format).size() * 4 / 3};
     name_ = "opaline " + std::to_string(count++) + ": " + source_->path;
-    LinearInput::register_source(name_, source_, to_linear);
+    LinearInput::register_source(name_, source_, colors_);
     const OIIO::ustring name(name_);
     texture_system().imagecache()->add_file(name, LinearInput::create);
     handle_ = texture_system().get_texture_handle(name);
@@ -174,7 +175,7 @@ class OiioPicture : public CachedPicture {
     if (!is_windowed_ && !is_even(*source_)) return {};
     std::optional<Texel> first;
     bool is_constant = true;
-    for_each_texel(*source_, to_linear_, [&](const Texel& texel, std::size_t) {
+    for_each_texel(*source_, colors_, [&](const Texel& texel, std::size_t) {
       if (!first) first = texel;
       is_constant = texel == *first;
       return is_constant && is_windowed_;
@@ -185,7 +186,7 @@ class OiioPicture : public CachedPicture {
   Texel mean() const override {
     Texel sum{};
     double count = 0;
-    for_each_texel(*source_, to_linear_, [&](const Texel& texel, std::size_t times) {
+    for_each_texel(*source_, colors_, [&](const Texel& texel, std::size_t times) {
       for (std::size_t c = 0; c < 4; ++c) sum[c] += texel[c] * double(times);
       count += double(times);
       return true;
@@ -196,6 +197,12 @@ class OiioPicture : public CachedPicture {
 
   std::array<bool, 4> channels() const override { return has_channel_; }
   TextureMemory memory() const override { return memory_; }
+  std::string warning() const override {
+    if (ignored_ == 0) return {};
+    return source_->path + ": the file does not state the meaning of " +
+           (ignored_ == 1 ? "a channel beside grey, which is" : "channels beside grey, which are") +
+           " not used";
+  }
 
  private:
   [[noreturn]] void fail() const {
@@ -205,7 +212,8 @@ class OiioPicture : public CachedPicture {
   }
 
   std::shared_ptr<const PictureSource> source_;
-  bool to_linear_;
+  TexelColors colors_;
+  int ignored_ = 0;   // channels of the file
   int channels_ = 0;  // of a texel
   std::array<bool, 4> has_channel_{};
   bool is_windowed_ = false;
@@ -215,8 +223,8 @@ class OiioPicture : public CachedPicture {
   OIIO::TextureOpt options_;
 };
 
-std::unique_ptr<CachedPicture> open_cached(PictureSource source, bool to_linear) {
-  return std::make_unique<OiioPicture>(std::move(source), to_linear);
+std::unique_ptr<CachedPicture> open_cached(PictureSource source, TextureEncoding encoding) {
+  return std::make_unique<OiioPicture>(std::move(source), encoding);
 }
 
 bool holds_floats(const PictureSource& source) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "opaline/core/units.h"
+
 namespace opaline {
 
 std::optional<double> expected_error(const BodyModel& model, Method method) {
@@ -28,10 +30,10 @@ std::vector<std::string> model_warnings(const Plan& plan) {
     if (!error || *error <= kLarge) continue;
     const std::optional<double>& other = group.model.expected_error_of_diffusion;
     const std::string better = group.method != Method::volume_diffusion && other && *other < kBetter * *error
-                                   ? fmt::format("--method volume_diffusion: {:.2g} %", 100 * *other)
+                                   ? "--method volume_diffusion: " + short_percent(*other)
                                    : "--method volume is the reference";
     warnings.push_back(
-        fmt::format("{}: expected model error {:.2g} %; {}", group.name, 100 * *error, better));
+        fmt::format("{}: expected model error {}; {}", group.name, short_percent(*error), better));
   }
   return warnings;
 }

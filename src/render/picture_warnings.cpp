@@ -17,7 +17,7 @@ namespace opaline {
 namespace {
 
 // In units of white, after the exposure: below 16, below 64 and at 255 of a PNG's 255 levels.
-constexpr float kAlmostBlack = 0.005f, kDark = 0.05f, kWhite = 1;
+constexpr float kAlmostBlack = 0.005f, kDark = 0.05f, kOverexposed = 1.1f;
 constexpr double kWellExposed = 0.5;  // what the brightest of a picture may be
 constexpr double kFarAway = 30;       // diagonals of all shapes
 
@@ -111,11 +111,18 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
   else if (pixels < 2)
     where = fmt::format("so far away that all of them are {:.2g} pixels wide", pixels);
   else if (degrees < camera.field_of_view / 2)
-    where = "in the view: does a lamp stand in front of them?";
+    where = "in the view: does a lamp stand in front of them, or are they thinner than a pixel?";
   const std::string look = "--set camera.look_at=" + point_text(middle, scene.mm_per_unit);
   std::string advice = look + " looks at their middle";
   if (scene.film.crop) {
     advice = "a small --resolution without a crop shows where they are";
+  } else if (distance <= radius) {
+    const double far = 1.2 * radius / std::sin(camera.field_of_view * std::numbers::pi / 360);
+    const Vec3d back = distance > 0 ? normalized(towards) : normalized(camera.look_at - camera.position);
+    advice = fmt::format("{} --set camera.position={} looks at them from outside", look,
+                         point_text(middle - back * far, scene.mm_per_unit));
+  } else if (degrees < camera.field_of_view / 2 && pixels >= 2) {
+    advice = "move the lamp or set \"visible\": false for it, or choose a higher --resolution";
   } else if (distance > radius && degrees <= 90 && pixels < 2) {
     const double near = radius / std::sin(camera.field_of_view * std::numbers::pi / 360);
     advice = fmt::format("{} --set camera.position={} shows them", look,
@@ -174,12 +181,47 @@ bool has_black_medium(const Scene& scene) {
   });
 }
 
+bool is_black(const Rgb& color, const std::optional<Texture>& texture) {
+  return color == Rgb{} || (texture && texture->scale == Vec3d{});
+}
+
+/// Why a surface stays black in any light: "the tint of medium wax is 0"; empty: it does not.
+std::string cause_of_black(const Scene& scene, const Shape& shape) {
+  if (shape.medium) {
+    const Medium& medium = scene.media[*shape.medium];
+    const auto* artist = std::get_if<ArtistMedium>(&medium.coefficients);
+    const bool is_opaque = is_partly_opaque(medium) && !is_black(medium.base_color, medium.base_texture);
+    if (!is_opaque &&
+        (is_black(medium.tint, medium.tint_texture) || (artist && artist->subsurface_color == Rgb{})))
+      return "the colour of the medium " + medium.name + " is 0";
+    return {};
+  }
+  if (is_black(shape.reflectance, shape.reflectance_texture))
+    return "the reflectance of " + shape.name + " is 0";
+  if (shape.gloss && shape.gloss->metalness == 1)
+    return shape.name + " is a metal, which shows surroundings, environments and lights alone";
+  return {};
+}
+
+/// The causes where every shape has one.
+std::string black_surfaces(const Scene& scene) {
+  std::string text;
+  for (const Shape& shape : scene.shapes) {
+    const std::string cause = cause_of_black(scene, shape);
+    if (cause.empty()) return {};
+    if (text.find(cause) == text.npos) text += (text.empty() ? "" : "; ") + cause;
+  }
+  return text;
+}
+
 std::string too_dark(const Scene& scene, const World& world, double brightest) {
   const std::vector<std::string> causes = weak_lights(scene, world);
   std::string text = "black";
   if (brightest > 0)
     text = fmt::format("almost black: the object is at most {:.2g} x white{}{}", brightest,
                        exposure_text(scene, brightest), unit_text(scene, brightest));
+  else if (const std::string black = black_surfaces(scene); !black.empty())
+    text += ": " + black;
   else if (causes.empty() && lights_that_miss(scene, world).empty() && !has_black_medium(scene))
     text += ": no light reaches what is seen; is every light behind it, inside a shape or in its shadow?";
   for (const std::string& cause : causes) text += "; " + cause;
@@ -268,7 +310,7 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
   if (brightest < double(kDark))
     return {fmt::format("the image is dark: 99 % of what is seen is {:.2g} of white or less{}{}", brightest,
                         exposure_text(scene, brightest), unit_text(scene, brightest))};
-  if (usual > double(kWhite))
+  if (usual > double(kOverexposed))
     return {fmt::format("half of the object is overexposed ({:.2g} x white){}{}", usual,
                         exposure_text(scene, usual), unit_text(scene, usual))};
   return {};

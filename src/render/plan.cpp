@@ -8,6 +8,7 @@
 #include <functional>
 #include <set>
 
+#include "geometry/coincident_shapes.h"
 #include "geometry/ray_offset.h"
 #include "image/picture_module.h"
 #include "methods/method.h"
@@ -177,6 +178,8 @@ Plan make_plan(const Scene& scene, const World& world) {
   for (const MeshReport& report : world.reports)
     for (const std::string& warning : report.warnings)
       if (said.insert(warning).second) plan.warnings.push_back(warning);
+  for (std::string& text : warnings_of_coincident_shapes(scene, world))
+    plan.warnings.push_back(std::move(text));
   warn_of_unused_colors(scene, world, plan.warnings);
   warn_of_large_scene(scene, world, plan.warnings);
   if (scene.shapes.empty())

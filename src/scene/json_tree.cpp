@@ -66,12 +66,38 @@ std::string name_byte(std::string_view text, std::size_t offset) {
   return buffer;
 }
 
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// True if the text begins with this word in upper or lower case.
+bool begins_with_word(std::string_view text, std::string_view word) {
+  for (std::size_t i = 0; i < word.size(); ++i)
+    if (i >= text.size() || (text[i] | 0x20) != word[i]) return false;
+  return true;
+}
+
+/// Names what JSON expects in place of a number as other languages write it; empty: it is none.
+std::string expected_number(std::string_view text, std::size_t offset) {
+  const std::string_view rest = text.substr(std::min(offset, text.size()));
+  const char before = offset > 0 && offset <= text.size() ? text[offset - 1] : ' ';
+  if (rest.size() > 1 && rest[0] == '.' && is_digit(rest[1]))
+    return "a digit in front of the point: 0" + std::string(rest.substr(0, 2));
+  if (before == '.') return "a digit behind the point, as in 1.0";
+  if (rest.starts_with('+')) return "a number without a plus sign";
+  const bool is_taken_for_null = before == 'n' && begins_with_word(rest, "an");
+  const bool is_number = is_taken_for_null || begins_with_word(rest, "nan") || begins_with_word(rest, "inf");
+  return is_number ? "a finite number" : "";
+}
+
 /// Names what JSON expects where other languages write something else; empty where the mistake is no usual one.
 std::string expected_for_usual_mistake(std::string_view text, std::size_t offset) {
   const std::string_view rest = text.substr(std::min(offset, text.size()));
   if (rest.starts_with("'")) return "double quotes";
   if (rest.starts_with("True") || rest.starts_with("False") || rest.starts_with("None"))
     return "true, false or null in lower case";
+  if (std::string hint = expected_number(text, offset); !hint.empty()) return hint;
+  if (rest.starts_with('#')) return "// in front of a comment";
   const std::string_view before = text.substr(0, text.find_last_not_of(" \t\r\n", offset - 1) + 1);
   const bool is_end = rest.starts_with('}') || rest.starts_with(']');
   if (is_end && offset > 0 && before.ends_with(',')) return "no comma before it";

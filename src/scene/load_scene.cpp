@@ -10,7 +10,7 @@
 
 #include "opaline/assets/import_asset.h"
 #include "opaline/core/input_file.h"
-#include "opaline/geometry/mesh_file.h"
+#include "opaline/image/texture_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/scene/nearest_name.h"
 #include "opaline/scene/unread_format.h"
@@ -30,19 +30,14 @@ std::string read_text(const std::string& path) {
   return file.read_all();
 }
 
-/// A mesh needs a light and a camera to be seen.
+/// An image, or a format that is not read.
 void check_is_no_other_file(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   for (const char* picture : {".png", ".exr", ".hdr", ".jpg", ".jpeg", ".tif"})
     if (extension == picture)
       throw bad_file(path, "is a picture, not a scene",
-                     "a scene file (JSON), or an asset: .glb, .gltf or .obj");
+                     "a scene file (JSON), or an asset: .glb, .gltf, .obj, .ply, .stl or .off");
   if (const std::string unread = unread_format(path); !unread.empty()) throw bad_file(path, unread);
-  if (!is_mesh_file_name(path)) return;
-  throw bad_file(path, "is a mesh, not a scene",
-                 "a scene file (JSON) with \"shapes\": [{\"file\": \"" +
-                     printable(std::filesystem::path(path).filename().string()) +
-                     "\"}], as scenes/bunny-marble.json, or an asset: .glb, .gltf or .obj");
 }
 
 /// Assets are told by their names; under another one they end here.
@@ -52,7 +47,8 @@ void check_begins_as_scene(const std::string& path, const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   if (first == std::string::npos || text[first] == '{' || text[first] == '/') return;
   throw bad_file(path, "does not begin as a scene does",
-                 "a scene file (JSON: '{'), or an asset under a name that ends in .glb, .gltf or .obj");
+                 "a scene file (JSON: '{'), or an asset under a name that ends in .glb, .gltf, .obj, .ply, "
+                 ".stl or .off");
 }
 
 /// Reads the elements of a list, and rejects a name used twice.
@@ -173,6 +169,15 @@ Scene read_scene(const Document& document) {
   return scene;
 }
 
+/// Each file once.
+std::vector<std::string> texture_warnings(const Scene& scene) {
+  std::set<std::string> warnings;
+  for (const Shape& shape : scene.shapes)
+    for (const Texture* texture : textures_of(scene, shape)) warnings.insert(texture->file->warning());
+  warnings.erase("");
+  return {warnings.begin(), warnings.end()};
+}
+
 /// The lines of a text that the user has not seen would mislead.
 void forget_places(Scene& scene) {
   const auto forget = [&](auto& records) {
@@ -184,14 +189,25 @@ void forget_places(Scene& scene) {
   forget(scene.lights);
 }
 
+/// error without a line and column of the text, which the user has not seen
+Scene parse_asset(const std::string& text, const std::string& path, std::span<const std::string> overrides,
+                  int frame) {
+  try {
+    return parse_scene(text, path, overrides, frame);
+  } catch (const Error& failure) {
+    if (failure.file != path) throw;
+    throw Error(failure.kind, path, 0, 0, failure.message, failure.expected, failure.got);
+  }
+}
+
 }  // namespace
 
 Scene load_scene(const std::string& path, std::span<const std::string> overrides, int frame) {
   if (!is_asset_name(path)) return parse_scene(read_scene_text(path), path, overrides, frame);
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
-  Scene scene = parse_scene(asset.text, path, overrides, frame);
+  Scene scene = parse_asset(asset.text, path, overrides, frame);
   scene.translation = asset.summary;
-  scene.asset_warnings = asset.warnings;
+  scene.asset_warnings.insert(scene.asset_warnings.begin(), asset.warnings.begin(), asset.warnings.end());
   scene.asset_bytes = asset.bytes;
   if (!asset.not_carried.empty()) scene.translation += "; opaline import lists all";
   forget_places(scene);
@@ -225,6 +241,7 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
   }
   Scene scene = read_scene(document);
   scene.camera_frames = camera_frames;
+  scene.asset_warnings = texture_warnings(scene);
   return scene;
 }
 

@@ -36,22 +36,50 @@ std::string with_leading_zero(std::string_view value) {
   return {};
 }
 
+/// The same for all numbers in a list or object; empty: nothing changes.
+std::string with_leading_zeros(std::string_view value) {
+  const auto is_digit = [&](std::size_t i) { return i < value.size() && value[i] >= '0' && value[i] <= '9'; };
+  std::string text;
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (value[i] == '"' && (i == 0 || value[i - 1] != '\\')) is_quoted = !is_quoted;
+    if (!is_quoted && value[i] == '.' && is_digit(i + 1) && (i == 0 || !is_digit(i - 1))) text += '0';
+    text += value[i];
+  }
+  return text.size() > value.size() ? text : std::string();
+}
+
+/// True for what is meant as a list or an object, whether it is one or not.
+bool is_bracketed(std::string_view value) {
+  return (value.starts_with('[') && value.ends_with(']')) || (value.starts_with('{') && value.ends_with('}'));
+}
+
+bool is_json(std::string_view value) {
+  return nlohmann::json::accept(value.begin(), value.end(), /*ignore_comments=*/true);
+}
+
+/// The next name of a path.
+struct PathName {
+  std::string_view name;
+  std::size_t end = 0;  ///< of it in the path, with its quotes
+};
+
 class Override {
  public:
   Override(Document& document, int index)
       : document_(document), index_(index), text_(document.overrides[static_cast<std::size_t>(index)]) {}
 
   void apply() {
-    const std::size_t equals = text_.find('=');
+    const std::size_t equals = end_of_path();
     if (equals == std::string_view::npos || equals == 0) fail("no value given", "path.to.key=value");
     const std::string_view path = text_.substr(0, equals);
     if (std::ranges::count(path, '.') >= max_depth)
       fail("the path is nested too deeply", "at most " + std::to_string(max_depth) + " levels");
     Node* node = &document_.root;
     for (std::size_t begin = 0; begin <= path.size();) {
-      const std::size_t end = std::min(path.find('.', begin), path.size());
-      if (end == begin) fail("an empty name in the path", "path.to.key=value");
-      node = &step(*node, path.substr(begin, end - begin), path.substr(0, begin > 0 ? begin - 1 : 0));
+      const auto [name, end] = next_name(path, begin, *node);
+      if (name.empty()) fail("an empty name in the path", "path.to.key=value");
+      node = &step(*node, name, path.substr(0, begin > 0 ? begin - 1 : 0));
       begin = end + 1;
     }
     replace(*node, text_.substr(equals + 1));
@@ -62,11 +90,45 @@ class Override {
     throw error_at(document_, 0, index_, message, expected);
   }
 
+  /// The first equals sign outside of quotes.
+  std::size_t end_of_path() const {
+    char quote = 0;
+    for (std::size_t i = 0; i < text_.size(); ++i) {
+      if (quote != 0 ? text_[i] == quote
+                     : (text_[i] == '"' || text_[i] == '\'') && (i == 0 || text_[i - 1] == '.'))
+        quote = quote != 0 ? '\0' : text_[i];
+      else if (quote == 0 && text_[i] == '=')
+        return i;
+    }
+    return text_.find('=');
+  }
+
+  /// A name with points in it is one of the node's children, or stands in quotes.
+  PathName next_name(std::string_view path, std::size_t begin, const Node& node) const {
+    const std::string_view rest = path.substr(begin);
+    if (rest.starts_with('"') || rest.starts_with('\'')) {
+      const std::size_t close = rest.find(rest[0], 1);
+      const bool is_closed = close != rest.npos && (close + 1 == rest.size() || rest[close + 1] == '.');
+      if (!is_closed) fail("a quoted name in the path does not end", "path.\"name.with.points\".key=value");
+      return {rest.substr(1, close - 1), begin + close + 1};
+    }
+    std::size_t length = std::min(rest.find('.'), rest.size());
+    for (std::size_t i = 0; i < node.children.size(); ++i) {
+      const bool is_list = node.kind == Node::Kind::array;
+      const std::string name = is_list ? element_name(node, i) : node.children[i].key;
+      const bool is_next = rest.starts_with(name) && (name.size() == rest.size() || rest[name.size()] == '.');
+      if (is_next && name.size() > length) length = name.size();
+    }
+    return {rest.substr(0, length), begin + length};
+  }
+
   /// The child of `parent` at this step of the path, created if it is a missing key.
   Node& step(Node& parent, std::string_view name, std::string_view so_far) const {
+    if (name == "texture" && is_plain_value(parent)) make_object(parent);
     if (parent.kind == Node::Kind::array) return element(parent, name, so_far);
     if (parent.kind != Node::Kind::object)
-      fail("'" + printable(so_far) + "' is a single value, there is no '" + printable(name) + "' in it");
+      fail("'" + printable(so_far) + "' is a single value, there is no '" + printable(name) + "' in it",
+           "--set " + printable(so_far) + "=VALUE");
     for (Node& child : parent.children) {
       if (!same_key(child.key, name)) continue;
       child.key = name;
@@ -77,6 +139,21 @@ class Override {
     child.key = name;
     child.override_index = index_;
     return child;
+  }
+
+  /// A colour or a number, whose place a texture may take.
+  static bool is_plain_value(const Node& node) {
+    const auto is_number = [](const Node& n) { return n.kind == Node::Kind::number; };
+    const bool is_triple = node.kind == Node::Kind::array && std::ranges::all_of(node.children, is_number);
+    return is_triple || is_number(node) || (node.kind == Node::Kind::string && node.text.starts_with('#'));
+  }
+
+  void make_object(Node& node) const {
+    Node object;
+    object.kind = Node::Kind::object;
+    object.key = std::move(node.key);
+    object.override_index = index_;
+    node = std::move(object);
   }
 
   Node& element(Node& list, std::string_view name, std::string_view so_far) const {
@@ -109,11 +186,11 @@ class Override {
 
   void replace(Node& node, std::string_view value) const {
     Node fresh;
-    const std::string zeroed = with_leading_zero(value);
-    if (nlohmann::json::accept(value.begin(), value.end(), /*ignore_comments=*/true)) {
-      fresh = parse_tree(document_, value, index_);
-    } else if (nlohmann::json::accept(zeroed)) {
+    const std::string zeroed = is_bracketed(value) ? with_leading_zeros(value) : with_leading_zero(value);
+    if (is_json(zeroed)) {
       fresh = parse_tree(document_, zeroed, index_);
+    } else if (is_json(value) || is_bracketed(value)) {
+      fresh = parse_tree(document_, value, index_);
     } else {
       fresh.kind = Node::Kind::string;
       fresh.text = value;

@@ -54,7 +54,9 @@ Texture read_texture(const Value& value, TexturePart part) {
   const Value file = reader.need("texture");
   try {
     const std::string path = file.file_path();
-    texture.file = TextureFile::open(path, space_of(reader, path, part));
+    texture.file =
+        TextureFile::open(path, space_of(reader, path, part),
+                          part == TexturePart::color ? TextureContent::colors : TextureContent::data);
   } catch (const Error& failure) {
     throw told_at(file.place(), failure);
   }

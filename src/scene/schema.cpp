@@ -195,7 +195,8 @@ std::vector<KeyInfo> texture_rows() {
       row("texture", "texture", file, "", kFiniteNumber, "",
           "EXR, HDR, PNG, JPEG or TIFF, relative to the scene file's folder; `<UDIM>` in its name stands for "
           "1001 + "
-          "column + 10 row; `asset.glb#image/0` is an asset's image"),
+          "column + 10 row; `asset.glb#image/0` is an asset's image; colours are converted from the "
+          "chromaticities of an EXR to Rec.709 and divided by premultiplied alpha"),
       row("texture", "color_space", choice, "", kFiniteNumber, "`\"automatic\"`",
           "what its numbers are: `\"srgb\"` or `\"linear\"`; automatic: linear in files of floats, sRGB in "
           "others, of "

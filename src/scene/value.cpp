@@ -2,6 +2,8 @@
 #include "opaline/scene/value.h"
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -38,6 +40,20 @@ int hex_digit(char c) {
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
   if (c >= 'A' && c <= 'F') return c - 'A' + 10;
   return -1;
+}
+
+/// True for words of other languages for infinity and what is not a number.
+bool names_no_finite_number(std::string_view text) {
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  std::string word(text);
+  for (char& c : word) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return word == "inf" || word == "infinity" || word == "nan";
+}
+
+bool is_number_text(std::string_view text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
 }
 
 /// "#rrggbb" as linear values, or nothing.
@@ -196,10 +212,25 @@ std::string Value::describe() const {
     case Node::Kind::object:
       break;
   }
-  return "an object {...}";
+  return describe_object();
+}
+
+/// "an object with the keys 'texture' and 'scale'"
+std::string Value::describe_object() const {
+  constexpr std::size_t kMost = 3;
+  const std::size_t count = node_->children.size();
+  if (count == 0) return "an object without keys";
+  std::string text = count == 1 ? "an object with the key " : "an object with the keys ";
+  for (std::size_t i = 0; i < std::min(count, kMost); ++i)
+    text += (i == 0 ? "'" : ", '") + printable(node_->children[i].key) + '\'';
+  return text + (count > kMost ? ", ..." : "");
 }
 
 const Node& Value::require_kind(Node::Kind kind, const std::string& expected) const {
+  if (kind == Node::Kind::number && node_->kind == Node::Kind::string) {
+    if (names_no_finite_number(node_->text)) fail("is not a finite number", expected);
+    if (is_number_text(node_->text)) fail("is a number in quotes", expected + " without quotes");
+  }
   if (node_->kind != kind) fail("has the wrong type", expected);
   return *node_;
 }

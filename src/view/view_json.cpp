@@ -197,8 +197,8 @@ std::string told_text(bool good, const std::string& text) {
 std::string told_choice(double target, const TargetError& chosen) {
   if (!chosen.sees_translucent)
     return told_text(false, "nothing translucent is seen: there is no error to choose for");
-  return told_text(chosen.reached, fmt::format("{:.3g} %: {} samples are predicted to be {:.2g} % off{}",
-                                               100 * target, chosen.samples, 100 * chosen.predicted,
+  return told_text(chosen.reached, fmt::format("{:.3g} %: {} samples are predicted to be {} off{}",
+                                               100 * target, chosen.samples, short_percent(chosen.predicted),
                                                chosen.reached ? "" : ", the least that can be had"));
 }
 

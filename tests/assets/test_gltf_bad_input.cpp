@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "asset_test.h"
+#include "support/pictures.h"
 
 namespace opaline::asset_test {
 namespace {
@@ -200,6 +201,58 @@ TEST(GltfBadInput, ImagesAndAnimationsAreNotRead) {
   EXPECT_EQ(error_of(asset.gltf()), "");
   const std::vector<std::string> lines = imported(asset).not_carried;
   EXPECT_TRUE(has(lines, "animations (1)"));
+}
+
+// Claim: a node whose scale has a zero shows nothing, and a warning names it; a scene of such nodes alone is refused with that
+// reason. Source: by hand. Fails if: the mesh is missing without a word.
+TEST(GltfBadInput, ScalesOfZeroAreReported) {
+  Asset asset = cube_asset();
+  asset.root(asset.node({{"name", "flat"}, {"mesh", 0}, {"scale", {1, 0, 1}}}));
+  const ImportedAsset import = imported(asset);
+  EXPECT_TRUE(has(import.warnings,
+                  "node 'flat': its transform flattens the mesh, which is left out; the scale of "
+                  "node 'flat' is [1, 0, 1]"));
+  Asset alone = cube_mesh();
+  alone.node({{"name", "inner"}, {"mesh", 0}});
+  alone.root(alone.node({{"name", "outer"}, {"scale", {0, 0, 0}}, {"children", {0}}}));
+  const std::string error = error_of(alone.gltf());
+  EXPECT_NE(error.find("shows nothing"), std::string::npos) << error;
+  EXPECT_NE(
+      error.find(
+          "node 'inner': its transform flattens the mesh, which is left out; the scale of node 'outer' is 0"),
+      std::string::npos)
+      << error;
+}
+
+// Claim: an image file that is not there is named. Source: by hand. Fails if: only the record is.
+TEST(GltfBadInput, MissingImagesAreNamed) {
+  Asset asset = cube_asset();
+  const std::vector<float> uvs(48, .5f);
+  asset.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = asset.accessor("VEC2", kFloat, uvs);
+  asset.json["meshes"][0]["primitives"][0]["material"] =
+      asset.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  asset.json["textures"] = Json::array({{{"source", 0}}});
+  asset.json["images"] = Json::array({{{"uri", "paint/gone.png"}}});
+  EXPECT_TRUE(has(imported(asset).warnings, "names no such file: 'paint/gone.png'"))
+      << imported(asset).warnings.at(0);
+}
+
+// Claim: a broken image is reported by the asset and the image, without a place in the text that the asset becomes. Source: by
+// hand. Fails if: a line and a column are named.
+TEST(GltfBadInput, BrokenImagesAreNamed) {
+  const ScratchFolder folder;
+  test::put_png(folder.file("p.png"), 64, 64, [](int x, int y) { return test::Bytes{4 * x, 4 * y, 0}; });
+  std::string png = bytes_of(folder.file("p.png"));
+  png.resize(png.size() / 2);
+  Asset asset = cube_asset();
+  const std::vector<float> uvs(48, .5f);
+  asset.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = asset.accessor("VEC2", kFloat, uvs);
+  asset.json["meshes"][0]["primitives"][0]["material"] =
+      asset.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  asset.json["textures"] = Json::array({{{"source", 0}}});
+  asset.json["images"] = Json::array({{{"uri", "data:image/png;base64," + base64(png)}}});
+  const std::string error = error_of(asset.gltf());
+  EXPECT_TRUE(error.starts_with("test.gltf: test.gltf#image/0: ")) << error;
 }
 
 }  // namespace

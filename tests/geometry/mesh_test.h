@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <functional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -60,6 +63,24 @@ inline std::string obj(const Soup& soup) {
   return text.str();
 }
 
+/// Faces and, at their corners, the normals of a function.
+inline std::string obj_with_normals(const Soup& soup, const std::function<Vec3d(const Vec3d&)>& normal) {
+  std::string text = obj({soup.positions, {}});
+  for (const Vec3d& p : soup.positions) {
+    const Vec3d n = normal(p);
+    text += "vn " + std::to_string(n.x) + ' ' + std::to_string(n.y) + ' ' + std::to_string(n.z) + '\n';
+  }
+  for (const auto& triangle : soup.triangles) {
+    text += 'f';
+    for (const std::uint32_t v : triangle) {
+      const std::string number = std::to_string(v + 1);
+      text += ' ' + number + "//" + number;
+    }
+    text += '\n';
+  }
+  return text;
+}
+
 inline Shape file_shape(const std::string& path, bool fill_holes = false) {
   Shape shape;
   shape.name = "test";
@@ -100,6 +121,16 @@ inline double signed_volume(const Mesh& mesh) {
   for (const auto& [a, b, c] : mesh.triangles)
     sum += dot(mesh.positions[a], cross(mesh.positions[b], mesh.positions[c]));
   return sum / 6;
+}
+
+/// The triangles as a set, each starting at its lowest vertex: equal for equal meshes.
+inline std::set<std::array<std::uint32_t, 3>> triangle_set(const Mesh& mesh) {
+  std::set<std::array<std::uint32_t, 3>> set;
+  for (auto triangle : mesh.triangles) {
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+    set.insert(triangle);
+  }
+  return set;
 }
 
 inline bool warns(const MeshReport& report, const std::string& words) {

@@ -120,5 +120,27 @@ TEST(VertexColors, GoAlongWhenAMeshIsMended) {
   EXPECT_EQ(filled.colors[3][0], RgbF(1));
 }
 
+// Claim: colours in whole numbers of two or four bytes count to 255 where none is larger; two bytes count to 65535 otherwise, and
+// four are refused, naming the property. Source: what programs write under `property int red`. Tolerance: rounding. Fails if: they
+// are divided by the largest number of their type, which is black.
+TEST(VertexColors, WideTypesMayHoldBytes) {
+  for (const std::string type : {"int", "uint", "short", "ushort"}) {
+    const std::string properties =
+        "property " + type + " red\nproperty " + type + " green\nproperty " + type + " blue\n";
+    const CheckedMesh mesh =
+        load("a.ply", ply(properties, "", "0 0 0 1 1 1\n1 0 0 51 102 255\n0 1 0 0 0 0\n3 0 1 2\n"));
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(color_of(mesh)[c], decoded(.2, .4, 1)[c], 1e-6) << type << c;
+  }
+  const std::string error =
+      load_error("a.ply", ply("property int red\nproperty int green\nproperty int blue\n", "",
+                              "0 0 0 1 1 1\n1 0 0 51 70000 255\n0 1 0 0 0 0\n3 0 1 2\n"));
+  EXPECT_NE(error.find(
+                "the PLY property 'green' is no colour (expected whole numbers from 0 to 255, or floats from "
+                "0 to 1, got 70000 of a type of 4 bytes)"),
+            std::string::npos)
+      << error;
+}
+
 }  // namespace
 }  // namespace opaline::mesh_test

@@ -354,6 +354,19 @@ TEST(TextureFile, PutsTilesSideBySide) {
   EXPECT_NE(message_of(folder.file("none.<UDIM>.png")).find("has no tiles"), std::string::npos);
 }
 
+// Claim: tiles of one colour are no constant: where there is no tile the set has no colour. Tolerance: none. Fails if: the
+// texture of such a set is replaced by its colour, which fills missing tiles.
+TEST(TextureFile, TilesOfOneColourAreNoConstant) {
+  const ScratchFolder folder;
+  for (const char* name : {"one.1001.png", "two.1001.png", "two.1012.png"})
+    put_png(folder.file(name), 8, 8, Bytes{200, 100, 50});
+  for (const char* name : {"one.<UDIM>.png", "two.<UDIM>.png"}) {
+    const auto texture = TextureFile::open(folder.file(name), ColorSpace::srgb);
+    EXPECT_FALSE(texture->constant()) << name;
+    EXPECT_FALSE(texture->has_tile(1, 0)) << name;
+  }
+}
+
 // Claim: what cannot be read is an error that names the file, when it is opened. Fails if a damaged file waits until it is
 // looked up, or is shown as grey.
 TEST(TextureFile, RefusesBrokenFiles) {

@@ -171,5 +171,32 @@ TEST(PictureWarnings, TooDarkOrTooBrightForTheExposure) {
   EXPECT_EQ(sun[0].find("mm_per_unit"), std::string::npos) << sun[0];
 }
 
+// Claim: an image that is black for its surfaces says which: a tint or reflectance of 0, or a metal with nothing to show. Source:
+// picture_warnings.h. Fails if: the lights are blamed.
+TEST(PictureWarnings, BlackSurfaces) {
+  Scene scene = lit_ball();
+  scene.media[0].tint = Rgb(0);
+  expect_warning(scene, {"the picture is black: the colour of the medium", "is 0"});
+  scene = lit_ball();
+  scene.shapes[0].medium.reset();
+  scene.shapes[0].reflectance = Rgb(0);
+  expect_warning(scene, {"the picture is black: the reflectance of", "is 0"});
+  scene.shapes[0].reflectance = Rgb(1);
+  scene.shapes[0].gloss = Gloss{.metalness = 1, .roughness = 0};
+  expect_warning(scene, {"the picture is black: ", "is a metal"});
+}
+
+// Claim: advice for shapes around the camera leads to an image that shows them. Source: the warning itself. Fails if: it is to
+// look where the camera looks already.
+TEST(PictureWarnings, AdviceAroundTheCamera) {
+  Scene scene = lit_ball();
+  scene.shapes.push_back(scene.shapes[0]);
+  scene.shapes[0].source = SphereShape{{0, 0, 80}, 5};
+  scene.shapes[1].source = SphereShape{{0, 0, -80}, 5};
+  scene.camera.position = {};
+  scene.camera.look_at = {100, 0, 0};
+  expect_warning(scene, {"nothing is in view", "around the camera", "--set camera.position="});
+}
+
 }  // namespace
 }  // namespace opaline::test

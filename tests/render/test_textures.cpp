@@ -119,8 +119,8 @@ TEST(Textures, LieAsUvsSay) {
 }
 
 // Claim: a set of tiles lies side by side on a quad whose UVs span two of them; where they reach a tile that is not there,
-// that is an error at the texture's line, naming the tile. Fails if tiles are taken for one picture, or a missing one is
-// black.
+// that is an error at the texture's line, naming the tile. Fails if tiles are taken for one picture, a missing one is black, or
+// tiles of one colour fill it.
 TEST(Textures, OfTilesNeedThemAll) {
   const ScratchFolder folder;
   put_png(folder.file("p.1001.png"), 4, 4, Bytes{255, 0, 0});
@@ -138,13 +138,15 @@ TEST(Textures, OfTilesNeedThemAll) {
   EXPECT_GT(channel(image, 12, 8, "G"), .5);
   EXPECT_EQ(channel(image, 12, 8, "R"), 0);
   std::filesystem::remove(folder.file("p.1002.png"));
-  put_png(folder.file("p.1003.png"), 4, 4, Bytes{0, 255, 0});
-  try {
-    picture_of(folder, text);
-    FAIL();
-  } catch (const Error& failure) {
-    EXPECT_EQ(failure.line, 1) << failure.what();
-    EXPECT_NE(std::string(failure.what()).find("1002"), std::string::npos) << failure.what();
+  for (const Bytes& color : {Bytes{0, 255, 0}, Bytes{255, 0, 0}}) {  // the second is that of all tiles
+    put_png(folder.file("p.1003.png"), 4, 4, color);
+    try {
+      picture_of(folder, text);
+      FAIL();
+    } catch (const Error& failure) {
+      EXPECT_EQ(failure.line, 1) << failure.what();
+      EXPECT_NE(std::string(failure.what()).find("1002"), std::string::npos) << failure.what();
+    }
   }
 }
 

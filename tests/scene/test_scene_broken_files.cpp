@@ -123,7 +123,8 @@ TEST_F(SceneFiles, AreRefusedByName) {
   expect_load_error(folder_.string(), "is a folder");
   expect_load_error(write("empty.json", ""), "empty");
   expect_load_error(write("cut.json", "{\"film\":"), "cut.json:1:9: broken JSON");
-  expect_load_error(write("mesh.txt", "v 0 0 0\n"), "under a name that ends in .glb, .gltf or .obj");
+  expect_load_error(write("mesh.txt", "v 0 0 0\n"),
+                    "under a name that ends in .glb, .gltf, .obj, .ply, .stl or .off");
   const std::string large = write("large.json", "{}");
   fs::resize_file(large, (std::uintmax_t{64} << 20) + 1);
   expect_load_error(large, "64 MiB");

@@ -85,7 +85,7 @@ TEST(SceneErrors, Media) {
       {with_medium(artist + "@1.2}"), {"'media.m.subsurface_color'", "[0, 1]", "got 1.2"}},
       {with_medium(artist + "@-0.1}"), {"'media.m.subsurface_color'", "got -0.1"}},
       {with_medium(artist + "[0, @1.2, 0]}"), {"'media.m.subsurface_color.1'", "got 1.2"}},
-      {with_medium(artist + "-@.1}"), {"invalid number", "expected digit after '-'"}},
+      {with_medium(artist + "-@.1}"), {"invalid number", "a digit in front of the point: 0.1"}},
       {with_medium(artist + "@\"#12345g\"}"), {"#rrggbb", "#12345g"}},
       {with_medium(artist + "1, \"subsurface_scatter_anisotropy\": @1}"), {"_anisotropy'", "(-1, 1)"}},
       {with_medium(R"({"preset": "cream", "scatter_anisotropy": @0.96})"),
@@ -165,6 +165,40 @@ TEST(SceneErrors, Lights) {
            R"({"type": "quad", "corner": [0, 0, 0], "radiance": 1, "u": [1, 1, 0], "v": @[-1, -1, 0]})"),
        {"spans no area"}},
   });
+}
+
+// Claim: numbers as other languages write them are named with what JSON has in their place. Source: RFC 8259. Fails if: the parser's
+// own words are all that is printed.
+TEST(SceneErrors, NumbersOfOtherLanguages) {
+  expect_errors({{R"({"film": {"exposure": @.5}})", {"broken JSON", "a digit in front of the point: 0.5"}},
+                 {R"({"film": {"exposure": -@.5}})", {"a digit in front of the point: 0.5"}},
+                 {R"({"film": {"exposure": 1.@}})", {"a digit behind the point, as in 1.0"}},
+                 {R"({"film": {"exposure": @+5}})", {"a number without a plus sign"}},
+                 {R"({"film": {"exposure": @NaN}})", {"a finite number"}},
+                 {R"({"film": {"exposure": -@Inf}})", {"a finite number"}},
+                 {R"({"film": {"exposure": @Infinity}})", {"a finite number"}},
+                 {"{@# note\n}", {"// in front of a comment"}}});
+}
+
+// Claim: an object in place of another value is named by its keys. Source: by hand. Fails if: "{...}" stands for them.
+TEST(SceneErrors, ObjectsAreNamedByTheirKeys) {
+  expect_fragments(error_of(R"({"film": {"exposure": {"value": 3, "unit": 1}}})"),
+                   {"'film.exposure' has the wrong type", "got an object with the keys 'value', 'unit'"});
+  expect_fragments(error_of(R"({"film": {"exposure": {"a": 3}}})"), {"got an object with the key 'a'"});
+  expect_fragments(error_of(R"({"film": {"exposure": {}}})"), {"got an object without keys"});
+}
+
+// Claim: a text in place of a number that names infinity or a number is called so. Source: by hand. Fails if: it is the wrong type
+// alone.
+TEST(SceneErrors, TextsInPlaceOfNumbers) {
+  for (const char* text : {"-Inf", "inf", "NaN", "+infinity"}) {
+    expect_fragments(error_of("{}", {std::string("film.exposure=") + text}),
+                     {"'film.exposure' is not a finite number", text});
+    expect_fragments(error_of(std::string(R"({"film": {"exposure": ")") + text + "\"}}"),
+                     {"'film.exposure' is not a finite number"});
+  }
+  expect_fragments(error_of(R"({"film": {"exposure": "0.5"}})"),
+                   {"'film.exposure' is a number in quotes", "without quotes", "got \"0.5\""});
 }
 
 }  // namespace

@@ -138,5 +138,42 @@ TEST(SceneOverrides, Errors) {
   }
 }
 
+// Claim: an element whose name has points in it is reached by its name, in quotes or not, and so is a new medium in quotes.
+// Source: load_scene.h. Fails if: the path is cut at every point.
+TEST(SceneOverrides, NamesMayHavePoints) {
+  const std::string scene = R"({
+    "media": {"wax.001": {"preset": "marble"}, "wax": {"preset": "skin1"}},
+    "shapes": [{"name": "Cube.001", "sphere": {"radius": 1}, "medium": "wax.001"}]})";
+  EXPECT_EQ(parse(scene, {"media.wax.001.eta=1.4"}).media[0].eta, 1.4);
+  EXPECT_EQ(parse(scene, {"media.\"wax.001\".eta=1.4"}).media[0].eta, 1.4);
+  EXPECT_EQ(parse(scene, {"media.'wax.001'.eta=1.4"}).media[0].eta, 1.4);
+  EXPECT_EQ(parse(scene, {"media.wax.eta=1.4"}).media[1].eta, 1.4);
+  EXPECT_EQ(parse(scene, {"shapes.Cube.001.medium=wax"}).shapes[0].medium, 1u);
+  EXPECT_EQ(parse(scene, {"media.'a=b.c'.preset=cream"}).media[2].name, "a=b.c");
+  expect_fragments(error_of(scene, {"media.'wax.eta=1"}),
+                   {"a quoted name in the path does not end", "path.\"name.with.points\".key=value"});
+}
+
+// Claim: numbers of a list may begin with a point; a list that is no JSON is an error at its place, not a text. Source:
+// load_scene.h. Fails if: it is called the wrong type.
+TEST(SceneOverrides, ListsAreNoTexts) {
+  EXPECT_EQ(parse(base, {"shapes.1.reflectance=[1,.5, -.0]"}).shapes[1].reflectance, Rgb(1, .5, 0));
+  EXPECT_EQ(parse(base, {"media.new={\"preset\": \"cream\", \"eta\": 1.25}"}).media.size(), 3u);
+  expect_fragments(error_of(base, {"shapes.1.reflectance=[1,,2]"}), {"broken JSON"});
+  expect_fragments(error_of(base, {"shapes.1.reflectance=[1,nan,2]"}), {"broken JSON", "a finite number"});
+}
+
+// Claim: a texture takes the place of a colour by its own key. Source: load_scene.h. Fails if: the colour is a single value.
+TEST(SceneOverrides, TexturesTakeThePlaceOfColors) {
+  for (const char* color : {"0.5", "[0.5, 0.4, 0.3]", "\"#808080\""}) {
+    const std::string scene =
+        R"({"shapes": [{"name": "a", "file": "a.obj", "reflectance": )" + std::string(color) + "}]}";
+    expect_fragments(error_of(scene, {"shapes.a.reflectance.texture=gone.png"}), {"gone.png: "});
+    EXPECT_EQ(
+        std::string(error_of(scene, {"shapes.a.reflectance.texture=gone.png"}).what()).find("single value"),
+        std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace opaline

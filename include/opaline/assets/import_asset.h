@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From an asset as other programs write it (GLB, glTF 2.0, OBJ with MTL) to the text of a scene file.
+// From an asset as other programs write it (GLB, glTF 2.0, OBJ with MTL, PLY, STL, OFF) to the text of a scene file.
 #pragma once
 
 #include <string>

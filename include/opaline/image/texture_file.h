@@ -30,6 +30,17 @@ struct TextureMemory {
 using Texel =
     std::array<double, 4>;  ///< red, green, blue, alpha; a grey picture has three alike; no alpha: 1
 
+/// Use of a texture's texels. Colours become linear Rec.709: by the primaries that the file states, and without alpha
+/// multiplied in. Data are the file's numbers.
+enum class TextureContent { data, colors };
+
+struct TextureEncoding {
+  ColorSpace space = ColorSpace::linear;  ///< not automatic
+  TextureContent content = TextureContent::data;
+
+  friend auto operator<=>(const TextureEncoding&, const TextureEncoding&) = default;
+};
+
 class CachedPicture;
 
 /// A picture, repeated, or several side by side: "<UDIM>" in a file's name stands for 1001 + column + 10 x row, rows
@@ -41,8 +52,9 @@ class TextureFile {
   /// out   the same object while the file has not changed and somebody holds it; the picture is the display window, 0
   ///       beside the data window
   /// error Error{bad_input} naming the file: missing, no regular file, damaged, no picture, no colours or several layers
-  ///       of them
-  static std::shared_ptr<const TextureFile> open(const std::string& path, ColorSpace space);
+  ///       of them, primaries that span no colour space
+  static std::shared_ptr<const TextureFile> open(const std::string& path, ColorSpace space,
+                                                 TextureContent content = TextureContent::data);
   /// The space of colours in a file that does not declare another: linear if it holds floats, else sRGB.
   /// error as open
   static ColorSpace space_of_colors(const std::string& path);
@@ -60,6 +72,8 @@ class TextureFile {
   Texel mean() const;
 
   const std::string& path() const { return path_; }
+  /// What is left out of the first file that has it; empty: nothing.
+  const std::string& warning() const { return warning_; }
   /// True if all its images have this channel of at(): 0 red to 3 alpha. A grey image has the first three.
   bool has_channel(std::size_t channel) const { return has_channel_[channel]; }
   TextureMemory memory() const;
@@ -74,9 +88,9 @@ class TextureFile {
   TextureFile() = default;
   /// The picture at a place, which is set to be within it; null: none.
   const CachedPicture* picture_at(TexturePlace& place) const;
-  void add_picture(int tile, const std::string& path, ColorSpace space);
+  void add_picture(int tile, const std::string& path, TextureEncoding encoding);
 
-  std::string path_;
+  std::string path_, warning_;
   std::map<int, std::unique_ptr<const CachedPicture>> pictures_;  // by tile; a plain one is 0
   std::optional<Texel> constant_;
   std::array<bool, 4> has_channel_{true, true, true, true};

@@ -71,6 +71,7 @@ class Value {
  protected:
   std::string name() const;      ///< for messages
   std::string describe() const;  ///< what the value is, for messages
+  std::string describe_object() const;
   std::string path_of(std::string_view child) const;
   const Node& require_kind(Node::Kind kind, const std::string& expected) const;
   Vec3d triple(const Range& range) const;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "geometry/doubled_polygons.h"
+
 namespace opaline {
 namespace {
 
@@ -40,6 +42,7 @@ Vec3f usable_normal(const Vec3d& normal) {
 
 std::vector<Recut> cut_polygons(const std::string& path, SourceMesh& mesh, const std::vector<Fan>& fans) {
   PolygonCuts result = cut_concave_polygons(mesh.positions, mesh.triangles, fans);
+  cut_doubles_alike(mesh.positions, mesh.triangles, fans, result.cuts);
   recut(result.cuts, mesh.triangles);
   if (result.crossing > 0)
     mesh.warnings.push_back(path + ": " +

@@ -59,7 +59,7 @@ class PolygonFan {
   std::size_t corners_ = 0;
 };
 
-/// Cuts concave polygons, see cut_concave_polygons; the mesh gets the new triangles, and a warning of those that cross
+/// Cuts concave polygons, see cut_concave_polygons, and polygons that are given twice alike; the mesh gets the new triangles, and a warning of those that cross
 /// themselves. The result is for what else the file gives to corners.
 std::vector<Recut> cut_polygons(const std::string& path, SourceMesh& mesh, const std::vector<Fan>& fans);
 

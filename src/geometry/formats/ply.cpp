@@ -124,12 +124,14 @@ constexpr std::array<std::string_view, 12> kept_names{"x", "y", "z", "nx", "ny",
                                                       "u", "v", "s", "t",  "texture_u", "texture_v"};
 constexpr std::size_t kFirstUv = 6;
 
-/// What stands for 1: of whole numbers the largest of their type.
-double one_of(PlyScalar type) {
-  if (is_floating(type)) return 1;
+/// Largest value of a whole type.
+double largest_of(PlyScalar type) {
   const bool is_signed = std::size_t(type) % 2 == 0;
   return std::ldexp(1.0, 8 * int(byte_size(type)) - is_signed) - 1;
 }
+
+/// Bytes are the usual scale, whatever type holds them.
+constexpr double kOfBytes = 255;
 
 /// The red, green and blue of an element.
 class PlyColors {
@@ -149,13 +151,27 @@ class PlyColors {
   bool take(const PlyProperty& p, PlyValues& values) {
     const auto channel = std::ranges::find(channels_, &p);
     if (channel == channels_.end()) return false;
-    color_[std::size_t(channel - channels_.begin())] = float(values.next(p.type) / one_of(p.type));
+    const double value = values.next(p.type);
+    if (value > largest_) largest_ = value, largest_property_ = &p;
+    color_[std::size_t(channel - channels_.begin())] = float(value);
     return true;
   }
 
   bool are_there() const { return channels_[0] != nullptr; }
   void set(std::size_t index) { colors_.set(index, color_); }
-  std::vector<RgbF> linear(std::size_t elements) const { return colors_.linear(elements); }
+  /// Whole numbers count to 255 or, where one is larger, to the largest number of their type.
+  /// error Error{bad_input} naming the property: whole numbers of 4 bytes above 255
+  std::vector<RgbF> linear(std::size_t elements, const std::string& path) {
+    const PlyScalar type = channels_[0]->type;
+    if (is_floating(type)) return colors_.linear(elements);
+    if (largest_ > kOfBytes && byte_size(type) > 2)
+      throw bad_file(path, "the PLY property '" + largest_property_->name + "' is no colour",
+                     "whole numbers from 0 to 255, or floats from 0 to 1",
+                     std::to_string(std::int64_t(largest_)) + " of a type of 4 bytes");
+    colors_.divide_by(byte_size(type) == 1 || largest_ > kOfBytes ? float(largest_of(type))
+                                                                  : float(kOfBytes));
+    return colors_.linear(elements);
+  }
 
  private:
   static constexpr std::array<std::array<std::string_view, 3>, 3> kNames{
@@ -163,6 +179,8 @@ class PlyColors {
 
   std::array<const PlyProperty*, 3> channels_{};  // null: there are none
   RgbF color_;
+  double largest_ = 0;
+  const PlyProperty* largest_property_ = nullptr;
   FileColors colors_{ColorCoding::linear};
 };
 
@@ -224,9 +242,9 @@ class PlyReader {
 
   void give_colors() {
     if (vertex_colors_->are_there())
-      give_vertex_colors(mesh_, vertex_colors_->linear(mesh_.positions.size()));
+      give_vertex_colors(mesh_, vertex_colors_->linear(mesh_.positions.size(), path_));
     else if (face_colors_->are_there())
-      for (const RgbF& color : face_colors_->linear(mesh_.triangles.size()))
+      for (const RgbF& color : face_colors_->linear(mesh_.triangles.size(), path_))
         mesh_.colors.push_back({color, color, color});
   }
 

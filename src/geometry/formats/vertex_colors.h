@@ -23,6 +23,11 @@ class FileColors {
     colors_.resize(index, kNone);
     colors_.push_back(color);
   }
+  /// From the file's scale to one that ends at 1.
+  void divide_by(float one) {
+    for (RgbF& color : colors_)
+      if (color != kNone) color = color / one;
+  }
   /// Linear, from 0 to 1, one an element. Whole numbers of which one exceeds 1 count to 255 and are sRGB.
   std::vector<RgbF> linear(std::size_t elements) const;
 

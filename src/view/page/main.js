@@ -290,7 +290,7 @@ const takes = {
     report = message;
     one("error").dataset.revision = message.revision;
     one("error").textContent = [[message.error, "settings"], [plan.model_error, "model"]].filter(([error]) => error > 0)
-      .map(([error, of]) => `${of} error about ${(100 * error).toPrecision(2)} %`).join(", ");
+      .map(([error, of]) => `${of} error about ${Number((100 * error).toPrecision(2))} %`).join(", ");
     showPlan();
   },
   work: ({stage, done, total}) => {
@@ -312,7 +312,7 @@ const takes = {
   },
   trade: (message) => trade.show(message),
   reference: (message) => {
-    const percent = (x) => `${(100 * x).toPrecision(2)} %`, each = message.method === "direct" ? "samples a pixel" : "walks a sample";
+    const percent = (x) => `${Number((100 * x).toPrecision(2))} %`, each = message.method === "direct" ? "samples a pixel" : "walks a sample";
     one("compared").dataset.revision = message.revision;
     one("compared").textContent = `${message.method}: ${message.samples} ${each}, noise ${message.noise ? percent(message.noise) : "not known yet"}; ` +
       `the final picture differs by ${percent(message.difference)} (rms of the translucent pixels' diffuse light, this noise taken out)`;

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "assets/mtl_library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+#include "assets/asset_scene.h"
+#include "assets/text_lines.h"
+#include "opaline/assets/obj_material.h"
+#include "opaline/scene/nearest_name.h"
+
+namespace opaline {
+namespace {
+
+// Wavefront's "MTL material format", version 4.2, and Exocortex's extension for physically based materials.
+constexpr std::array<std::string_view, 45> kKeywords{
+    "newmtl", "Ka",      "Kd",       "Ks",      "Ke",       "Km",       "Tf",       "Tr",        "d",
+    "Ns",     "Ni",      "illum",    "Pr",      "Pm",       "Ps",       "Pc",       "Pcr",       "aniso",
+    "anisor", "norm",    "bump",     "disp",    "decal",    "refl",     "map_Ka",   "map_Kd",    "map_Ks",
+    "map_Ke", "map_Ns",  "map_Ni",   "map_Tf",  "map_Tr",   "map_d",    "map_Pr",   "map_Pm",    "map_Ps",
+    "map_Pc", "map_Pcr", "map_bump", "map_aat", "map_disp", "map_refl", "map_norm", "map_decal", "sharpness"};
+
+std::string in_lower_case(std::string_view word) {
+  std::string text(word);
+  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+bool is_known(const std::string& keyword) {
+  return std::ranges::any_of(kKeywords,
+                             [&](std::string_view known) { return in_lower_case(known) == keyword; });
+}
+
+/// True if the text is this number, whatever else stands behind it.
+bool begins_with(std::string_view text, double number) {
+  return number_of(next_word(text)) == number;
+}
+
+bool is_everywhere(std::string_view text, double number) {
+  const MtlColor color = read_mtl_color(text);
+  return color.value && color.complaint.empty() && *color.value == Vec3d(number);
+}
+
+/// True for values that leave a matte surface as it is: black highlights, full opacity.
+bool has_no_effect(const std::string& keyword, std::string_view text) {
+  for (const char* other : {"ka", "ns", "ni", "illum", "sharpness", "pcr", "anisor", "map_ka", "map_aat"})
+    if (keyword == other) return true;
+  for (const char* color : {"ks", "ke"})
+    if (keyword == color) return is_everywhere(text, 0);
+  for (const char* number : {"pm", "ps", "pc", "tr", "aniso", "km"})
+    if (keyword == number) return begins_with(text, 0);
+  if (keyword == "tf") return is_everywhere(text, 1);
+  return (keyword == "d" || keyword == "pr") && begins_with(text, 1);
+}
+
+std::string rounded(const Vec3d& value) {
+  return fmt::format("[{:.3g}, {:.3g}, {:.3g}]", value.x, value.y, value.z);
+}
+
+bool may_count_to_255(const Vec3d& value) {
+  bool is_whole = max_component(value) <= 255;
+  for (std::size_t c = 0; c < 3; ++c)
+    is_whole = is_whole && value[c] == std::floor(value[c]) && value[c] >= 0;
+  return is_whole;
+}
+
+}  // namespace
+
+MtlLibrary read_mtl_library(const std::string& file, std::string_view text) {
+  MtlLibrary library;
+  for_each_line(text, [&](std::string_view line, std::size_t number) {
+    const std::string keyword(next_word(line));
+    if (keyword.empty() || keyword[0] == '#') return;
+    const std::string rest(trimmed(line));
+    if (in_lower_case(keyword) == "newmtl")
+      library.materials.push_back({obj_material_name(rest), file, number, {}});
+    else if (library.materials.empty())
+      library.unassigned.push_back({number, keyword, rest});
+    else
+      library.materials.back().statements.push_back({number, keyword, rest});
+  });
+  return library;
+}
+
+MtlUse use_of(const MtlStatement& statement) {
+  const std::string keyword = in_lower_case(statement.keyword);
+  if (keyword == "kd") return MtlUse::color;
+  if (keyword == "map_kd") return MtlUse::color_map;
+  if (keyword == "bump" || keyword == "map_bump") return MtlUse::bump;
+  if (keyword == "norm" || keyword == "map_norm") return MtlUse::normal_map;
+  if (!is_known(keyword)) return MtlUse::unknown;
+  return has_no_effect(keyword, statement.text) ? MtlUse::no_effect : MtlUse::without_analogue;
+}
+
+std::string mtl_suggestion(const std::string& keyword) {
+  return did_you_mean(keyword, kKeywords);
+}
+
+MtlColor read_mtl_color(std::string_view text) {
+  std::vector<double> numbers;
+  for (std::string_view word = next_word(text); !word.empty() && word[0] != '#'; word = next_word(text)) {
+    const std::optional<double> number = number_of(word);
+    if (!number) return {{}, "is not a colour of one or three numbers from 0 to 1 and is not used"};
+    numbers.push_back(*number);
+  }
+  if (numbers.size() != 1 && numbers.size() != 3)
+    return {{},
+            fmt::format("has {} numbers where a colour has one or three, and is not used", numbers.size())};
+  const Vec3d given = numbers.size() == 1 ? Vec3d(numbers[0]) : Vec3d(numbers[0], numbers[1], numbers[2]);
+  const Vec3d value = component_min(component_max(given, Vec3d(0)), Vec3d(1));
+  if (value == given) return {value, {}};
+  if (max_component(given) <= 1) return {value, "is below 0 and is clamped to " + rounded(value)};
+  std::string complaint = "is above 1 and is clamped to " + rounded(value);
+  if (may_count_to_255(given) && max_component(given) > 2)
+    complaint += "; the scale seems to end at 255: for a scale of 0 to 1, write " + rounded(given / 255.);
+  return {value, complaint};
+}
+
+}  // namespace opaline

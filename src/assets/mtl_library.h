@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Materials of MTL files as lists of statements, and what each statement is about.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "opaline/core/vec3.h"
+
+namespace opaline {
+
+/// A line of a material library.
+struct MtlStatement {
+  std::size_t line = 0;
+  std::string keyword;  ///< as the file has it
+  std::string text;     ///< behind the keyword, without blanks around it
+};
+
+struct MtlMaterial {
+  std::string name, file;
+  std::size_t line = 0;  ///< of its newmtl
+  std::vector<MtlStatement> statements;
+};
+
+struct MtlLibrary {
+  std::vector<MtlMaterial> materials;    ///< in the order of the file, each newmtl by itself
+  std::vector<MtlStatement> unassigned;  ///< before the first newmtl
+};
+
+/// in    text: with line feeds
+MtlLibrary read_mtl_library(const std::string& file, std::string_view text);
+
+/// Use of a statement for a matte surface.
+enum class MtlUse {
+  color,             ///< Kd
+  color_map,         ///< map_Kd
+  bump,              ///< bump, map_bump
+  normal_map,        ///< norm
+  no_effect,         ///< changes nothing: a value that is usual, or one that only other statements need
+  without_analogue,  ///< would change the surface
+  unknown
+};
+
+/// Upper and lower case are the same, as programs differ in them.
+MtlUse use_of(const MtlStatement& statement);
+
+/// " (did you mean 'map_Kd'?)", or nothing.
+std::string mtl_suggestion(const std::string& keyword);
+
+/// A colour between 0 and 1. One number stands for all three.
+/// from  Wavefront, MTL material format 4.2: "the g and b are optional; if only r is specified, g and b equal r"
+struct MtlColor {
+  std::optional<Vec3d> value;  ///< none: the text is no colour
+  std::string complaint;       ///< about the text, a verb phrase; empty: none
+};
+MtlColor read_mtl_color(std::string_view text);
+
+}  // namespace opaline

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "image/texel_colors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "opaline/core/error.h"
+#include "opaline/core/srgb.h"
+
+namespace opaline {
+namespace {
+
+bool are_same(const RgbPrimaries& a, const RgbPrimaries& b) {
+  constexpr double kRounding = 1e-4;  // of files that state four digits
+  for (const auto& [x, y] : {std::pair(a.red, b.red), std::pair(a.green, b.green), std::pair(a.blue, b.blue),
+                             std::pair(a.white, b.white)})
+    if (!(std::abs(x[0] - y[0]) < kRounding && std::abs(x[1] - y[1]) < kRounding)) return false;
+  return true;
+}
+
+std::string text_of(const RgbPrimaries& p) {
+  std::ostringstream text;
+  const char* before = "";
+  for (const auto& [name, xy] : {std::pair("red", p.red), std::pair("green", p.green),
+                                 std::pair("blue", p.blue), std::pair("white", p.white)}) {
+    text << before << name << ' ' << xy[0] << ' ' << xy[1];
+    before = ", ";
+  }
+  return text.str();
+}
+
+bool is_finite_matrix(const ColorMatrix& matrix) {
+  constexpr double kMost = 1e3;  // weights of a space whose primaries lie nearly on a line
+  return std::ranges::all_of(
+      matrix, [](const Vec3d& row) { return max_component(component_max(row, -row)) < kMost; });
+}
+
+}  // namespace
+
+std::optional<ColorMatrix> matrix_to_rec709(const OIIO::ImageSpec& file, const std::string& path) {
+  float stated[8];
+  if (!file.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), stated)) return {};
+  const auto pair = [&](std::size_t i) {
+    return std::array<double, 2>{double(stated[i]), double(stated[i + 1])};
+  };
+  const RgbPrimaries primaries{pair(0), pair(2), pair(4), pair(6)};
+  if (are_same(primaries, kRec709Primaries)) return {};
+  if (are_same(primaries, kAp1Primaries)) return from_acescg();
+  const ColorMatrix matrix = color_matrix(primaries, kRec709Primaries);
+  if (!is_finite_matrix(matrix))
+    throw bad_file(path, "states chromaticities that span no colour space",
+                   "red, green and blue that do not lie on a line, and a white between them",
+                   text_of(primaries));
+  return matrix;
+}
+
+TexelColors::TexelColors(const OIIO::ImageSpec& file, std::string_view format, const TexelLayout& layout,
+                         TextureEncoding encoding, const std::string& path)
+    : is_srgb(encoding.space == ColorSpace::srgb) {
+  if (encoding.content == TextureContent::data) return;
+  is_premultiplied = (format == "exr" || format == "tiff") && layout.places[3] >= 0 &&
+                     file.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+  const auto& [red, green, blue, alpha] = layout.places;
+  if (std::min({red, green, blue}) >= 0 && red != green) to_rec709 = matrix_to_rec709(file, path);
+}
+
+OIIO::TypeDesc TexelColors::type_for(OIIO::TypeDesc native) const {
+  if (are_plain()) return native;
+  return native.is_floating_point() && !is_srgb ? OIIO::TypeFloat : OIIO::TypeHalf;
+}
+
+void TexelColors::apply(Texel& texel) const {
+  auto& [red, green, blue, alpha] = texel;
+  if (is_premultiplied && alpha > 0)
+    for (std::size_t c = 0; c < 3; ++c) texel[c] /= alpha;
+  if (is_srgb)
+    for (std::size_t c = 0; c < 3; ++c) texel[c] = srgb_to_linear(texel[c]);
+  if (!to_rec709) return;
+  const bool is_above_zero = std::min({red, green, blue}) >= 0,
+             is_below_one = std::max({red, green, blue}) <= 1;
+  const Vec3d color = *to_rec709 * Vec3d{red, green, blue};
+  for (std::size_t c = 0; c < 3; ++c) {
+    texel[c] = color[c];
+    if (is_above_zero) texel[c] = std::max(texel[c], 0.0);
+    if (is_above_zero && is_below_one) texel[c] = std::min(texel[c], 1.0);
+  }
+}
+
+}  // namespace opaline

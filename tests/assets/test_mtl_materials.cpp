@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Statements of MTL files: read as other programs read them, or reported by file and line.
+#include "asset_test.h"
+#include "support/pictures.h"
+
+namespace opaline::asset_test {
+namespace {
+
+/// An OBJ file of one triangle of the material `red` beside its library.
+struct MtlFolder : ScratchFolder {
+  explicit MtlFolder(const std::string& library) {
+    put_bytes(file("a.obj"),
+              "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\nf 1/1 2/2 3/3\n");
+    put_bytes(file("a.mtl"), library);
+  }
+
+  ImportedAsset import() const { return import_asset(file("a.obj"), "a.obj"); }
+  Rgb color() const { return load_scene(file("a.obj")).shapes.at(0).reflectance; }
+};
+
+/// The warnings of a library, each on a line, without the folder.
+std::string warnings_of(const std::string& library) {
+  const MtlFolder folder(library);
+  std::string text;
+  for (const std::string& warning : folder.import().warnings)
+    text += warning.substr(folder.path.string().size() + 1) + '\n';
+  return text;
+}
+
+// Claim: Kd of one number is grey, as the format has it, and keywords in other cases are read. Source: Wavefront, MTL material
+// format 4.2. Tolerance: none. Fails if: such a material is the default grey.
+TEST(MtlMaterials, ColorsAreReadAsTheFormatHasThem) {
+  for (const auto& [library, color] :
+       {std::pair("newmtl red\nKd 0.8\n", Rgb(.8)),
+        std::pair("newmtl red\nkd 0.8 0.1 0.2\n", Rgb(.8, .1, .2)),
+        std::pair("NEWMTL red\nKD .8 +0.1 2e-1 # note\n", Rgb(.8, .1, .2)),
+        std::pair("newmtl red\nKd 0.1 0.1 0.1\nKd 0.8 0.1 0.2\n", Rgb(.8, .1, .2))}) {
+    EXPECT_EQ(MtlFolder(library).color(), color) << library;
+    EXPECT_EQ(warnings_of(library), "") << library;
+  }
+}
+
+// Claim: colours that the format does not allow are reported by file, line, value and material, with what is taken instead.
+// Source: by hand. Tolerance: none. Fails if: they are clamped, or replaced by grey, in silence.
+TEST(MtlMaterials, ColorsOutOfRangeAreReported) {
+  const auto check = [](const std::string& value, const Rgb& color, const std::string& complaint) {
+    const std::string library = "newmtl red\nKd " + value + '\n';
+    EXPECT_EQ(MtlFolder(library).color(), color) << value;
+    EXPECT_EQ(warnings_of(library), "a.mtl:2: Kd '" + value + "' of material 'red' " + complaint + '\n');
+  };
+  check("204 25 25", Rgb(1),
+        "is above 1 and is clamped to [1, 1, 1]; the scale seems to end at 255: for a scale of 0 to 1, write "
+        "[0.8, 0.098, 0.098]");
+  check("1.5 0.2 0.2", {1, .2, .2}, "is above 1 and is clamped to [1, 0.2, 0.2]");
+  check("-1", Rgb(0), "is below 0 and is clamped to [0, 0, 0]");
+  check("0.3 0.2", Rgb(.5), "has 2 numbers where a colour has one or three, and is not used");
+  check("red", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is not used");
+  check("nan 0 0", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is not used");
+  check("spectral a.rfl", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is not used");
+}
+
+// Claim: of materials with one name the last is taken, as in Blender, and the warning names both. Source: by hand. Tolerance:
+// none. Fails if: statements of both are mixed, or nothing is reported.
+TEST(MtlMaterials, LastDefinitionReplacesEarlierOnes) {
+  const std::string library =
+      "newmtl red\nKd 0.9 0.1 0.1\nmap_Kd p.png\nnewmtl blue\nKd 0 0 1\nnewmtl red\nKd 0.3 0.2 0.1\n";
+  const MtlFolder folder(library);
+  EXPECT_EQ(folder.color(), Rgb(.3, .2, .1));
+  const ImportedAsset import = folder.import();
+  ASSERT_EQ(import.warnings.size(), 1u);
+  const std::string file = folder.file("a.mtl");
+  EXPECT_EQ(import.warnings[0],
+            file + ":6: the material 'red' is defined again and replaces the one of " + file + ":1");
+}
+
+// Claim: an unknown statement is reported by file, line and material, with the one it resembles; one before the first newmtl,
+// too. Source: by hand. Tolerance: none. Fails if: a statement vanishes.
+TEST(MtlMaterials, UnknownStatementsAreReported) {
+  EXPECT_EQ(
+      warnings_of("Kd 1 0 0\nnewmtl red\nKd 0.2 0.2 0.2\nmap_Kdd p.png\nxyzzy 3\n"),
+      "a.mtl:1: the statement 'Kd' stands before the first newmtl and is not used\n"
+      "a.mtl:4: the statement 'map_Kdd' of material 'red' is unknown and not used (did you mean 'map_Kd'?)\n"
+      "a.mtl:5: the statement 'xyzzy' of material 'red' is unknown and not used\n");
+  EXPECT_EQ(warnings_of("newmtl red\nmap_kd p.png\n"),
+            "a.mtl:2: map_kd 'p.png' of material 'red': there is no such file\n");
+}
+
+// Claim: what a matte surface has no analogue for is reported once per material, in the order of the file; values without
+// effect are not. Source: the formats' defaults. Tolerance: none. Fails if: a statement is left out of the list.
+TEST(MtlMaterials, StatementsWithoutAnalogueAreReportedTogether) {
+  const MtlFolder folder(
+      "newmtl red\nKd 0.2 0.2 0.2\nKa 1 1 1\nNs 10\nNi 1.45\nillum 2\nKs 0.5 0.5 0.5\nKe 0 0 0\nPr 0.3\nPm "
+      "1\n"
+      "Ps 0.2\nPc 0\nTf 0.5 0.5 0.5\naniso 0.5\nanisor 0.1\nmap_Pr p.png\nd 0.5\nTr 0\nKm 0\nKs 0.4 0.5 "
+      "0.5\n");
+  const ImportedAsset import = folder.import();
+  ASSERT_EQ(import.not_carried.size(), 1u);
+  EXPECT_EQ(import.not_carried[0], "material 'red': Ks, Pr, Pm, Ps, Tf, aniso, map_Pr and d are not used");
+  EXPECT_TRUE(MtlFolder("newmtl red\nKd 0.2\nPr 1\nPm 0.0\nTf 1 1 1\nd 1.0\nKs 0\naniso 0\n")
+                  .import()
+                  .not_carried.empty());
+}
+
+// Claim: a broken texture is reported by the library's line, the material and the image file. Source: by hand. Tolerance: none.
+// Fails if: a place in the text that the asset becomes is named.
+TEST(MtlMaterials, BrokenTexturesAreNamed) {
+  for (const std::string statement : {"map_Kd", "bump", "norm"}) {
+    const MtlFolder folder("newmtl red\nKd 0.2\n" + statement + " p.png\n");
+    test::put_png(folder.file("p.png"), 64, 64, [](int x, int y) { return test::Bytes{4 * x, 4 * y, 0}; });
+    std::string bytes = bytes_of(folder.file("p.png"));
+    bytes.resize(bytes.size() / 2);
+    put_bytes(folder.file("p.png"), bytes);
+    try {
+      load_scene(folder.file("a.obj"));
+      ADD_FAILURE() << statement;
+    } catch (const Error& failure) {
+      EXPECT_EQ(failure.file, folder.file("a.mtl"));
+      EXPECT_EQ(failure.line, 3);
+      EXPECT_EQ(failure.column, 0);
+      EXPECT_EQ(
+          failure.message.find(statement + " 'p.png' of material 'red': " + folder.file("p.png") + ": "), 0u)
+          << failure.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace opaline::asset_test
