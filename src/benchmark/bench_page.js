@@ -33,7 +33,7 @@ const tradeChart = (scene, state, pick, group) => {
       ...series.map(({name, points}, s) => {
         const [pointStyle, pointRotation = 0] = marks[s % marks.length], ink = seriesColour(s);
         return {label: name, data: points, borderColor: ink + "99", borderWidth: 1.5, pointStyle, pointRotation,
-          pointRadius: ({raw}) => raw?.row === state.row ? 9 : 6, pointHoverRadius: 9, pointBorderColor: ink, pointBorderWidth: 1.5,
+          pointRadius: ({raw}) => raw?.row === state.row ? 8 : 6, pointHoverRadius: 9, pointBorderColor: ink, pointBorderWidth: 1.5,
           pointBackgroundColor: ({raw}) => raw?.below_noise ? colour("paper") : ink};
       }),
       {label: "Pareto front", data: points.filter((point) => point.on_front).sort((a, b) => a.x - b.x), borderColor: colour("front"),

@@ -2,7 +2,8 @@
 #include "benchmark/page.h"
 
 #include <filesystem>
-#include <utility>
+#include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "core/log.h"
 #include "opaline/core/atomic_file.h"
@@ -10,34 +11,14 @@
 #include "opaline/core/input_file.h"
 
 namespace opaline {
-namespace {
-
-/// JSON for a script element, which no "</script>" or "<!--" in a name can end.
-std::string data_text(const Json& data) {
-  std::string text;
-  for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace))
-    text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return text;
-}
-
-}  // namespace
 
 std::string page_of(const Json& data) {
-  const std::pair<std::string, std::string> parts[] = {{"{{library_hash}}", kPageFiles.library_hash},
-                                                       {"{{script_hash}}", kPageFiles.script_hash},
-                                                       {"{{style}}", kPageFiles.style},
-                                                       {"{{data}}", data_text(data)},
-                                                       {"{{library}}", kPageFiles.library},
-                                                       {"{{script}}", kPageFiles.script}};
-  std::string page = kPageFiles.frame;
-  std::size_t at = 0;  // behind what is filled in already
-  for (const auto& [mark, text] : parts) {
-    at = page.find(mark, at);
-    require(at != std::string::npos, "the frame of the page lacks a mark");
-    page.replace(at, mark.size(), text);
-    at += text.size();
-  }
-  return page;
+  std::string text;  // "<" escaped, so that no "</script>" or "<!--" in a name ends the script element
+  for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace))
+    text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  constexpr std::string_view mark = "{{data}}";
+  std::string page = kPage;
+  return page.replace(page.find(mark), mark.size(), text);
 }
 
 void check_page_file(const std::string& path) {

@@ -7,11 +7,8 @@
 
 namespace opaline {
 
-/// The text of page.html and of what it includes; hashes are the base64 of a script element's SHA-256.
-struct PageFiles {
-  const char *frame, *style, *library, *library_hash, *script, *script_hash;
-};
-extern const PageFiles kPageFiles;
+/// page.html with its style, scripts and library; the data takes the place of "{{data}}".
+extern const char* const kPage;
 
 /// A page that needs no network.
 /// in    data: what bench_page.js or profile_page.js reads, with "command" and "notes"

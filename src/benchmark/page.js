@@ -47,7 +47,7 @@ const show = (title, heading, intro, ...sections) => {
 Object.assign(Chart.defaults.font, {size: 13, family: getComputedStyle(document.body).fontFamily});
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 const seriesColour = (index) => colour(`c${index % 10}`);
-const dashes = [[], [], [9, 4], [2, 4], [12, 4, 2, 4], [5, 3], [12, 3, 2, 3, 2, 3], [1, 3], [16, 3], [7, 2, 2, 2]];
+const dashes = [[], [], [9, 4], [2, 4], [12, 4, 2, 4], [5, 3], [12, 3, 2, 3, 2, 3], [3, 2], [16, 3], [7, 2, 2, 2]];
 
 // Points are {x, y} and, where known, {error}: one standard error, {text} for the tooltip, {row} of the data.
 const curve = (label, index, data) =>
@@ -101,9 +101,11 @@ const errorBars = {id: "errorBars", beforeDatasetDraw: ({ctx, chartArea: area, s
   ctx.restore();
 }};
 
-const listed = (chart) => Chart.defaults.plugins.legend.labels.generateLabels(chart)
-  .map((item) => ({...item, fontColor: colour("ink"), lineDash: chart.data.datasets[item.datasetIndex].borderDash?.map((length) => length / 2)}))
-  .filter((item) => item.text);
+const listed = (chart) => Chart.defaults.plugins.legend.labels.generateLabels(chart).filter(({text}) => text).map((item) => {
+  const {borderDash, pointBackgroundColor: fill, pointBorderColor} = chart.data.datasets[item.datasetIndex];
+  return {...item, fontColor: colour("ink"), lineDash: borderDash?.map((length) => length / 2),
+    fillStyle: typeof fill === "function" ? pointBorderColor : item.fillStyle};
+});
 
 const drawn = [];  // every chart's function that draws it, called again for the other colour scheme
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => drawn.forEach((draw) => draw()));
@@ -114,7 +116,10 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => draw
 const chart = (title, describe, {pick, group = []} = {}) => {
   const canvas = el("canvas", {tabindex: 0, role: "img", "aria-label": title}), status = el("p", {role: "status", class: "unseen"});
   const isWide = describe().legend;
-  const text = (point, label) => point.text ?? `${label}: ${figure(point.y)} at ${figure(point.x)}`;
+  const text = (point, label) => {
+    const {x, y} = describe(), digits = (value) => Number(value.toPrecision(3));
+    return point.text ?? `${label}\n${x.title}: ${digits(point.x)}\n${y.title}: ${digits(point.y)}${point.error ? ` ± ${digits(point.error)}` : ""}`;
+  };
   let now = null;
   const toggle = (event, item) => {
     for (const one of group.map((get) => get())) {
@@ -133,9 +138,9 @@ const chart = (title, describe, {pick, group = []} = {}) => {
         interaction: {mode: "nearest", intersect: true},
         onClick: (event, [hit]) => { if (hit) pick?.(datasets[hit.datasetIndex].data[hit.index].row); },
         plugins: {
-          legend: {display: Boolean(legend), position: innerWidth > 800 ? legend : "bottom", onClick: toggle,
-            labels: {usePointStyle: true, boxHeight: 10, padding: 12, generateLabels: listed}},
-          tooltip: {displayColors: false, callbacks: {title: () => "", label: ({raw, dataset}) => text(raw, dataset.label).split("\n")}},
+          legend: {display: Boolean(legend), position: innerWidth > 1000 ? legend : "bottom", onClick: toggle,
+            labels: {usePointStyle: true, boxHeight: 10, padding: 12, font: {size: 12}, generateLabels: listed}},
+          tooltip: {displayColors: false, yAlign: "bottom", caretPadding: 8, callbacks: {title: () => "", label: ({raw, dataset}) => text(raw, dataset.label).split("\n")}},
         },
       },
     });

@@ -58,7 +58,7 @@ TEST(Page, TextStaysText) {
   EXPECT_EQ(data.at("scenes")[0].at("reference_picture"), report.subjects[0].picture);
   EXPECT_EQ(shown.find("http"), shown.find("http-equiv"));
   EXPECT_EQ(shown.find("http", shown.find("http-equiv") + 1), std::string::npos);
-  for (const char* mark : {"{{style}}", "{{data}}", "{{library}}", "{{library_hash}}", "{{script_hash}}"})
+  for (const char* mark : {"{{data}}", "@page_script", "@chart_library", "@page_css"})
     EXPECT_EQ(page.find(mark), std::string::npos) << mark;
 }
 
