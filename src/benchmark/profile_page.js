@@ -38,8 +38,8 @@ const answerOf = () => {
   };
   return el("p", {class: "answer"}, `Random walks return these fractions of the diffuse light that enters a ${report.shape} of ${report.medium}: `,
     ...report.channels.flatMap((channel, i) => [i ? ", " : "", bold(walkedTotal(channel, "diffuse", "back").share)]),
-    ". The nearest total is that of the ", ...nearest((channel, model) => Math.abs(totalError(channel, model, "back"))),
-    ", the nearest shape that of the ", ...nearest((channel, model) => totalOf(channel, model, "back").shape_difference), ".");
+    ". Nearest total: ", ...nearest((channel, model) => Math.abs(totalError(channel, model, "back"))),
+    "; nearest shape: ", ...nearest((channel, model) => totalOf(channel, model, "back").shape_difference), ".");
 };
 
 // Rings whose relative error is at most a half.
