@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether --target-error keeps its promise: predicted and measured errors of scene x profile x target, as a
-// table, a CSV and a page. usage: bench_target_error FOLDER [SCENE...]; without scenes those that the
+// table and a CSV. usage: bench_target_error FOLDER [SCENE...]; without scenes those that the
 // prediction was not tuned on. The truth has 400k samples of another seed, a tolerance of .05 % and four
 // times the shadow rays.
 #include <fmt/format.h>
@@ -17,8 +17,8 @@
 #include "opaline/quality/target_error.h"
 #include "opaline/scene/load_scene.h"
 #include "quality/probe.h"
-#include "target_error_page.h"
 #include "target_error_scenes.h"
+#include "target_error_table.h"
 
 namespace {
 
@@ -103,7 +103,6 @@ int main(int argc, char** argv) try {
     }
   fmt::print("{}\n", verdict_of(rows));
   write_file(folder + "/target_error.csv", to_csv(calibration_table(rows)));
-  write_file(folder + "/target_error.html", calibration_page(rows));
   return 0;
 } catch (const std::exception& error) {
   fmt::print(stderr, "bench_target_error: {}\n", error.what());

@@ -11,13 +11,13 @@
 #include <span>
 
 #include "benchmark/bench_folder.h"
+#include "benchmark/bench_page.h"
 #include "benchmark/bench_pictures.h"
 #include "benchmark/bench_report.h"
 #include "benchmark/bench_runs.h"
 #include "benchmark/bench_scene.h"
 #include "benchmark/csv.h"
 #include "benchmark/machine.h"
-#include "benchmark/page.h"
 #include "benchmark/regression.h"
 #include "benchmark/results_json.h"
 #include "opaline/core/atomic_file.h"
@@ -114,9 +114,6 @@ void write_report(const BenchArguments& arguments, const BenchFolder& folder, co
   write_file(folder.file("results.csv"), csv);
   write_file(folder.file("budget.csv"), to_csv(budget_table(report)));
   write_file(folder.file("results.json"), to_json(report));
-  const std::vector<std::string> charts = to_charts(report);
-  for (std::size_t i = 0; i < charts.size(); ++i)
-    if (!charts[i].empty()) write_file(folder.file(fmt::format("trade-{}.svg", i + 1)), charts[i]);
   write_file(folder.file("index.html"), to_page(report));
   write_line(stderr, "bench: wrote " + folder.file("index.html"));
 }

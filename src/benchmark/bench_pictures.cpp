@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "benchmark/page.h"
+#include "benchmark/bench_page.h"
 #include "opaline/image/error_picture.h"
 #include "opaline/image/image.h"
 

@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A benchmark as a page to read in a browser.
+// A report as one HTML file, which its scripts draw in a browser from JSON; Chart.js is part of the file.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <vector>
-
-#include "benchmark/bench_row.h"
 
 namespace opaline {
 
-/// Names of the pictures beside a row's EXR: as shown, and where it is off.
-std::string shown_picture(const std::string& exr);
-std::string error_picture_of(const std::string& exr);
+/// page.html with its style, scripts and library; the data takes the place of "{{data}}".
+extern const char* const kPage;
 
-/// Says before the work what cannot be written after it.
-/// error Error{bad_input}: a file is there that is no page of opaline's; Error{run_failed}
+/// A page that needs no network.
+/// in    data: what bench_page.js or profile_page.js reads, with "command" and "notes"
+std::string page_of(const nlohmann::ordered_json& data);
+
+/// Reports before the work that the page cannot be written after it.
+/// error Error{bad_input}: the file exists and is not a page of opaline; Error{run_failed}
 void check_page_file(const std::string& path);
-
-/// HTML for the folder of the report: it needs the pictures there, and no network. Every number of a measured
-/// row carries its place in the CSV: data-row (from 0) and data-column; its title is the CSV's text.
-std::string to_page(const BenchReport& report);
-
-/// The charts of the page as SVG files of their own, one a scene of the report; empty where nothing has an
-/// error.
-std::vector<std::string> to_charts(const BenchReport& report);
 
 }  // namespace opaline

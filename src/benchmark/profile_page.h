@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The report of `opaline profile` as a page, drawings and tables.
+// The report of `opaline profile` as a page and tables.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "benchmark/csv.h"
@@ -12,8 +13,9 @@ namespace opaline {
 /// HTML that needs no network, nor any other file but for its links to the tables.
 std::string to_page(const ProfileReport& report);
 
-/// R_d(r) of one channel as an SVG file of its own.
-std::string profile_svg(const ProfileReport& report, const ProfiledChannel& channel);
+/// The rows of the three tables below, "models" with their sources, and "channels": the medium, the curve of "fresnel", and
+/// "classical" and "grosjean" around a point source.
+nlohmann::ordered_json profile_page_data(const ProfileReport& report);
 
 /// Shares of the entered flux: a row a channel, way of entry or model, and face.
 CsvTable totals_table(const ProfileReport& report);

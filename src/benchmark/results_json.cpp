@@ -3,32 +3,19 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 
-#include "benchmark/csv.h"
+#include "core/log.h"
 #include "opaline/core/error.h"
 
 namespace opaline {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kSchemaName = "opaline bench";
 
-/// Numbers where the column has a unit, null where the cell is empty.
 Json cell_json(const std::string& cell, const std::string& unit) {
   if (unit.empty()) return cell;
-  return cell.empty() ? Json() : Json::parse(cell);
-}
-
-Json rows_json(const CsvTable& table) {
-  Json rows = Json::array();
-  for (const std::vector<std::string>& cells : table.rows) {
-    Json row = Json::object();
-    for (std::size_t c = 0; c < cells.size(); ++c) row[table.names[c]] = cell_json(cells[c], table.units[c]);
-    rows.push_back(std::move(row));
-  }
-  return rows;
+  const Json number = Json::parse(cell, nullptr, /*allow_exceptions=*/false);
+  return number.is_number() ? number : Json();
 }
 
 Json subject_json(const BenchSubject& subject) {
@@ -66,7 +53,17 @@ WatchedRung rung_from(const Json& row, const Json& subject) {
 
 }  // namespace
 
-std::string to_json(const BenchReport& report) {
+Json rows_json(const CsvTable& table) {
+  Json rows = Json::array();
+  for (const std::vector<std::string>& cells : table.rows) {
+    Json row = Json::object();
+    for (std::size_t c = 0; c < cells.size(); ++c) row[table.names[c]] = cell_json(cells[c], table.units[c]);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Json results_json(const BenchReport& report) {
   const CsvTable table = bench_table(report);
   Json json{{"schema", kSchemaName}, {"version", kBenchSchema}, {"notes", Json::array()}};
   for (const auto& [key, value] : report.notes) json["notes"].push_back(Json::array({key, value}));
@@ -76,7 +73,11 @@ std::string to_json(const BenchReport& report) {
   for (std::size_t c = 0; c < table.names.size(); ++c) json["units"][table.names[c]] = table.units[c];
   json["rows"] = rows_json(table);
   json["budget"] = rows_json(budget_table(report));
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json;
+}
+
+std::string to_json(const BenchReport& report) {
+  return results_json(report).dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 std::vector<WatchedRung> watched_rungs(const BenchReport& report) {

@@ -2,12 +2,13 @@
 // A benchmark as JSON, and what a later one compares of it.
 #pragma once
 
-#include <optional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "benchmark/bench_row.h"
+#include "benchmark/csv.h"
 
 namespace opaline {
 
@@ -15,6 +16,10 @@ namespace opaline {
 ///  "scenes": [{"scene", "key", ...}], "units": {column: unit}, "rows": [{column: value}],
 ///  "budget": [{column: value}]}: the columns and values of the CSVs; null: not measured.
 std::string to_json(const BenchReport& report);
+nlohmann::ordered_json results_json(const BenchReport& report);
+
+/// Rows of a table as objects: numbers where the column has a unit, null where such a cell is empty or not finite.
+nlohmann::ordered_json rows_json(const CsvTable& table);
 
 /// A rung as far as its cost and error are watched.
 struct WatchedRung {

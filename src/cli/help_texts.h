@@ -184,8 +184,8 @@ stand all radial profiles that scenes can use.
 Shares are of the light that entered; what the face reflects before is in none. "shape" is the largest difference,
 over all distances, of the shares (each of its own total) that leave within that distance, against diffuse light.
 
--o writes index.html (open it in a browser; no network is needed), profile-R.svg and so on, and every figure as
-totals.csv, profile.csv (by distance) and angles.csv (albedo by angle of entry, radiance by angle of exit).
+-o writes index.html (open it in a browser; no network is needed) and every figure as totals.csv, profile.csv (by
+distance) and angles.csv (albedo by angle of entry, radiance by angle of exit).
 
 A medium is given by a preset, by sigma_a and sigma_s_prime, or by sigma_a, sigma_s and g, in 1/mm; one number or
 [r, g, b]. Where nothing absorbs in a half space some walks would take forever: what is still inside after 16 million

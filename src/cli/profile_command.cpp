@@ -90,9 +90,6 @@ void write_report(const std::string& folder, const ProfileReport& report) {
   write_file(folder + "/totals.csv", to_csv(totals_table(report)));
   write_file(folder + "/profile.csv", to_csv(rings_table(report)));
   write_file(folder + "/angles.csv", to_csv(angles_table(report)));
-  for (const ProfiledChannel& channel : report.channels)
-    if (channel.medium.sigma_s > 0)
-      write_file(folder + "/profile-" + channel.name + ".svg", profile_svg(report, channel));
   write_file(folder + "/index.html", to_page(report));
 }
 

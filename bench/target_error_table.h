@@ -31,7 +31,4 @@ std::string verdict_of(std::span<const CalibrationRow> rows);
 
 CsvTable calibration_table(std::span<const CalibrationRow> rows);
 
-/// A page that needs nothing else: measured over target for each pair, and the table.
-std::string calibration_page(std::span<const CalibrationRow> rows);
-
 }  // namespace opaline
