@@ -149,7 +149,7 @@ std::string evaluation_stage(const Settings& settings) {
     case EvaluatorKind::surface_cache:
       return "evaluation: dual tree at places of the surface, " + promise;
     case EvaluatorKind::classic:
-      return fmt::format("evaluation: classic traversal, {} sr", settings.max_solid_angle);
+      return fmt::format("evaluation: classic traversal, {} sr", settings.laboratory.max_solid_angle);
     case EvaluatorKind::brute_force:
       return "evaluation: brute force";
   }
@@ -325,7 +325,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
   for (GroupPlan& group : plan.groups) group.model = planned_model(scene, group);
-  plan.warnings.insert(plan.warnings.end(), scene.asset_warnings.begin(), scene.asset_warnings.end());
+  plan.warnings.insert(plan.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   std::set<std::string> said;  // by the first of several shapes from one file
   for (const MeshReport& report : world.reports)
     for (const std::string& warning : report.warnings)

@@ -195,14 +195,14 @@ NearIrradiance near_irradiance(const Scene& scene) {
     const LightExtent shape = extent(light);
     return !is_delta(light) && !shape.center && !shape.towards;
   };
-  const NearIrradiance wanted = scene.settings.near_irradiance;
+  const NearIrradiance wanted = scene.settings.laboratory.near_irradiance;
   const bool is_soft = !scene.lights.empty() && std::ranges::all_of(scene.lights, is_all_around);
   return wanted == NearIrradiance::mixed && is_soft ? NearIrradiance::samples : wanted;
 }
 
 SplitKernel group_kernel(const DiffuseProfile& profile, double spacing, const World& world,
                          const Scene& scene) {
-  return make_split_kernel(profile, spacing, world.diagonal, scene.settings.near_field,
+  return make_split_kernel(profile, spacing, world.diagonal, scene.settings.laboratory.near_field,
                            near_irradiance(scene));
 }
 
@@ -249,8 +249,8 @@ CloudError cloud_error(const Body& group, const World& world, const Scene& scene
   const Settings& settings = scene.settings;
   const LightShares shares = light_shares(group, world, scene);
   CloudError error = tell_cloud_error({group.octree, group.kernel, group.wider_kernel, settings.evaluator,
-                                       settings.tolerance, settings.max_solid_angle, settings.instruction_set,
-                                       shares.from_points});
+                                       settings.tolerance, settings.laboratory.max_solid_angle,
+                                       settings.laboratory.instruction_set, shares.from_points});
   error.light_shift = shares.shifted;
   return error;
 }
@@ -266,8 +266,8 @@ std::vector<RgbF> radiant_exitance(const Body& group, const World& world, std::s
                                                    {},
                                                    settings.evaluator,
                                                    settings.tolerance,
-                                                   settings.max_solid_angle,
-                                                   settings.instruction_set});
+                                                   settings.laboratory.max_solid_angle,
+                                                   settings.laboratory.instruction_set});
   std::vector<RgbF> result(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) result[i] = exitance[i].exitance;
   return result;

@@ -97,7 +97,7 @@ std::optional<SurfaceCache> make_group_cache(const PrecomputeInput& input, const
        .octree = group.octree,
        .kernel = group.kernel,
        .tolerance = settings.tolerance,
-       .instruction_set = settings.instruction_set,
+       .instruction_set = settings.laboratory.instruction_set,
        .cloud = group.cloud,
        .most_places = most_places,
        .add_own_light = own_light ? std::bind_front(&OwnLight::add, &*own_light) : AddOwnLight(),

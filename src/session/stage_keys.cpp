@@ -82,7 +82,10 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
                       std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
   KeyBuilder key("surfaces in their light", 4);
-  key.add(settings.seed).add(settings.tolerance).add(settings.evaluator).add(settings.max_solid_angle);
+  key.add(settings.seed)
+      .add(settings.tolerance)
+      .add(settings.evaluator)
+      .add(settings.laboratory.max_solid_angle);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];
@@ -225,7 +228,7 @@ StageKey walked_profile_key(double absorbed, double eta) {
 StageKey exitance_key(const StageKey& tree, const StageKey& kernel, std::span<const MeshKeys> meshes,
                       const GroupPlan& group, const Settings& settings) {
   KeyBuilder key("exitance", kExitanceVersion);
-  key.add(tree).add(kernel).add(settings.tolerance).add(settings.instruction_set);
+  key.add(tree).add(kernel).add(settings.tolerance).add(settings.laboratory.instruction_set);
   key.add(settings.evaluator == EvaluatorKind::surface_cache);
   key.add(settings.light_samples).add(settings.seed);
   key.add(std::string(widest_instructions()));

@@ -238,26 +238,27 @@ void Session::State::find_walked_profiles(const Body& body) {
   for (const ChannelProfile& channel : body.profile.channels) {
     const auto* profile = std::get_if<TabulatedProfile>(&channel);
     if (profile == nullptr || profile->mean_free_path == 0) continue;
-    const double absorbed = profile->shape->absorbed(), eta = profile->shape->eta();
-    if (WalkedShape::find(absorbed, eta) != nullptr) continue;
+    const double absorbed = profile->absorbed, eta = profile->eta;
+    if (has_walked_table(absorbed, eta)) continue;
     const StageKey key = walked_profile_key(absorbed, eta);
     if (std::optional<RadialTable> found = cache_->find_walked_profile(key)) {
-      WalkedShape::hand_over(absorbed, eta, std::move(*found));
+      take_walked_table(absorbed, eta, std::move(*found));
       ++work_.found;
     } else {
-      cache_->keep_walked_profile(key, profile->shape->table());
+      cache_->keep_walked_profile(key, profile->shape->get().table);
     }
   }
 }
 
 void Session::State::update_kernel(Body& body, BodyKeys& known) {
   const Medium& medium = scene_.media[body.plan.medium];
-  KeyBuilder key("kernel", 3);
+  KeyBuilder key("kernel", 4);
   std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
   key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(profile_kind(medium));
   if (profile_kind(medium) == ProfileKind::multipole) key.add(profile_thickness(medium));
+  if (profile_kind(medium) == ProfileKind::normalized_diffusion) key.add(profile_fit(medium));
   key.add(body.surface.spacing()).add(world_->diagonal).add(world_->unit);
-  key.add(scene_.settings.near_field).add(near_irradiance(scene_));
+  key.add(scene_.settings.laboratory.near_field).add(near_irradiance(scene_));
   if (key.key() == known.kernel_key) return;
   known.kernel_key = {};
   find_walked_profiles(body);

@@ -24,7 +24,7 @@ double place_rays(int side, double fill = 0) {
   scene.film.resolution = {side, side};
   scene.settings.evaluator = EvaluatorKind::dual_tree;
   const auto rays_of = [&](NearIrradiance near) {
-    scene.settings.near_irradiance = near;
+    scene.settings.laboratory.near_irradiance = near;
     const Prepared prepared(scene);
     const std::uint64_t before = prepared.rays.statistics().rays;
     prepared.picture();

@@ -99,7 +99,7 @@ std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> li
 
 /// irradiance: one a sample.
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);
-/// Settings::near_irradiance, but the samples' where all light comes from all around: rays at each point are as noisy as
+/// Laboratory::near_irradiance, but the samples' where all light comes from all around: rays at each point are as noisy as
 /// those at the samples, and there are no sharp shadows to find (bunny-marble under `environment`, 256 x 256: mean
 /// difference from 2048 rays a point .9 % in .06 s of shading, traced .7 % in 1.2 s).
 NearIrradiance near_irradiance(const Scene& scene);

@@ -12,38 +12,20 @@ namespace opaline {
 
 using NameList = std::span<const std::string_view>;
 
-/// Which radial diffuse reflectance profile R_d(r) stands for the medium; in the order of ChannelProfile
-/// (diffuse_profile.h).
+/// Radial diffuse reflectance profile R_d(r) of a medium; in the order of ChannelProfile (diffuse_profile.h).
 enum class ProfileKind {
   dipole,
-  normalized_diffusion,  ///< the fit for diffuse entry
+  normalized_diffusion,  ///< its length by NormalizedDiffusionFit
   better_dipole,
-  normalized_diffusion_searchlight,
-  normalized_diffusion_dmfp,   ///< by the diffuse mean free path
-  normalized_diffusion_refit,  ///< fitted anew, to walks behind a boundary
-  tabulated,                   ///< random walks through the medium itself
-  multipole,                   ///< a plate of the medium's thickness
-  directional_dipole,          ///< knows from where light comes; method `direct` only
+  tabulated,          ///< random walks through the medium itself
+  multipole,          ///< a plate of the medium's thickness
+  directional_dipole  ///< depends on the direction of entry; method `direct` only
 };
-inline constexpr std::array<std::string_view, 9> kProfileNames{"dipole",
-                                                               "normalized_diffusion",
-                                                               "better_dipole",
-                                                               "normalized_diffusion_searchlight",
-                                                               "normalized_diffusion_dmfp",
-                                                               "normalized_diffusion_refit",
-                                                               "tabulated",
-                                                               "multipole",
-                                                               "directional_dipole"};
-inline constexpr std::array<std::string_view, 9> kProfileSources{
-    "Jensen et al. 2001",
-    "Christensen & Burley 2015, for diffuse entry",
-    "d'Eon 2012",
-    "Christensen & Burley 2015, for a beam",
-    "Christensen & Burley 2015, by diffuse mean free path",
-    "its form, fitted to walks behind a boundary",
-    "random walks of the medium",
-    "Donner & Jensen 2005",
-    "Frisvad et al. 2014"};
+inline constexpr std::array<std::string_view, 6> kProfileNames{
+    "dipole", "normalized_diffusion", "better_dipole", "tabulated", "multipole", "directional_dipole"};
+inline constexpr std::array<std::string_view, 6> kProfileSources{
+    "Jensen et al. 2001",         "Christensen & Burley 2015", "d'Eon 2012",
+    "random walks of the medium", "Donner & Jensen 2005",      "Frisvad et al. 2014"};
 /// What a medium says: the choice is left open, or one of the profiles.
 inline constexpr std::array<std::string_view, kProfileNames.size() + 1> kProfileChoices = [] {
   std::array<std::string_view, kProfileNames.size() + 1> choices{"auto"};
@@ -53,6 +35,19 @@ inline constexpr std::array<std::string_view, kProfileNames.size() + 1> kProfile
 /// The words for its values, in their order.
 constexpr NameList names_of(ProfileKind) {
   return kProfileNames;
+}
+
+/// Fit of the length d of normalized diffusion.
+enum class NormalizedDiffusionFit {
+  diffuse_entry,  ///< Christensen & Burley 2015, diffuse entry without a boundary
+  searchlight,    ///< Christensen & Burley 2015, a beam along the normal without a boundary
+  dmfp,           ///< Christensen & Burley 2015, by the diffuse mean free path
+  refit           ///< random walks behind a boundary in diffuse light
+};
+inline constexpr std::array<std::string_view, 4> kFitNames{"diffuse_entry", "searchlight", "dmfp", "refit"};
+/// The words for its values, in their order.
+constexpr NameList names_of(NormalizedDiffusionFit) {
+  return kFitNames;
 }
 
 enum class NormalMode {

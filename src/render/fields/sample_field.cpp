@@ -46,8 +46,8 @@ void put(const std::vector<T>& values, std::span<const std::uint32_t> places, st
 
 RgbF crease_deviation(const RenderInput& input, const Body& group) {
   const Vec3f eye(into_world(input.world, input.scene.camera.position));
-  const std::array<float, 3> error =
-      crease_error({group.octree, group.kernel, group.profile, eye, input.scene.settings.instruction_set});
+  const std::array<float, 3> error = crease_error(
+      {group.octree, group.kernel, group.profile, eye, input.scene.settings.laboratory.instruction_set});
   return RgbF{error[0], error[1], error[2]} * std::sqrt(float(std::numbers::pi) / 2);
 }
 
@@ -145,7 +145,8 @@ std::vector<Exitance> SampleField::summed(const SurfaceHits& hits, std::span<con
   for (const SurfacePoint& point : hits.points) queries.push_back({point.position, point.normal});
   const Settings& settings = input_.scene.settings;
   return evaluate({group_.octree, group_.kernel, queries, irradiance, settings.evaluator, settings.tolerance,
-                   settings.max_solid_angle, settings.instruction_set, group_.cloud, nullptr, packets});
+                   settings.laboratory.max_solid_angle, settings.laboratory.instruction_set, group_.cloud,
+                   nullptr, packets});
 }
 
 std::vector<Exitance> SampleField::looked_up(const SurfaceHits& hits,
