@@ -15,7 +15,6 @@
 #include <system_error>
 
 #include "cli/command_options.h"
-#include "cli/completion.h"
 #include "cli/frames.h"
 #include "cli/help_texts.h"
 #include "cli/metadata.h"

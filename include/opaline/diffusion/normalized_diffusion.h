@@ -36,9 +36,8 @@ double diffuse_reflectance_profile(const NormalizedDiffusion& profile, double r)
 double diffuse_reflectance_within(const NormalizedDiffusion& profile, double r);
 /// A.
 double total_diffuse_reflectance(const NormalizedDiffusion& profile);
-/// Distance as that of ChannelProfile; Golubev's closed form.
+/// Samples as those of ChannelProfile: Golubev's closed form, and a sum of two gamma distributions.
 double sample_diffusion_distance(const NormalizedDiffusion& profile, double beyond);
-/// Radius as that of ChannelProfile; a sum of two gamma distributions.
 double sample_chord_sphere_radius(const NormalizedDiffusion& profile, double u, double v);
 /// 1/(3d), 1/mm.
 double slowest_decay(const NormalizedDiffusion& profile);

@@ -48,9 +48,8 @@ double diffuse_reflectance_profile(const TableProfile& profile, double r);
 double diffuse_reflectance_within(const TableProfile& profile, double r);
 /// Total of diffuse light: half_space_albedo.
 double total_diffuse_reflectance(const TableProfile& profile);
-/// Distance as that of ChannelProfile, by the table.
+/// Samples as those of ChannelProfile: by the table, and by bisection.
 double sample_diffusion_distance(const TableProfile& profile, double beyond);
-/// Radius as that of ChannelProfile, by bisection.
 double sample_chord_sphere_radius(const TableProfile& profile, double u, double v);
 /// Decay, 1/mm.
 double slowest_decay(const TableProfile& profile);
