@@ -55,10 +55,10 @@ double l1_difference(const SlabWalks& walked, double total, double s) {
 int main(int argc, char** argv) {
   const double collisions = argc > 1 ? std::strtod(argv[1], nullptr) : 2e7;
   std::string table, differences;
-  for (const double eta : NormalizedDiffusionRefit::kEta) {
+  for (const double eta : kRefitEtas) {
     std::string row, left;
-    for (std::size_t i = 0; i < NormalizedDiffusionRefit::kAbsorptions; ++i) {
-      const double root = double(i) / double(NormalizedDiffusionRefit::kAbsorptions - 1);
+    for (std::size_t i = 0; i < kRefitAbsorptions; ++i) {
+      const double root = double(i) / double(kRefitAbsorptions - 1);
       const double absorbed = std::min(std::pow(root, 4), kMostAbsorbed);
       const SlabWalks walked = walk(absorbed, eta, collisions);
       const double total = half_space_albedo(absorbed, eta);

@@ -93,7 +93,7 @@ void print_directional(const std::string& preset, const HomogeneousMedium& mediu
   const double length = medium.reduced_mean_free_path();
   const auto profile =
       make_profile({length, medium.sigma_a * length, medium.eta}, std::type_identity<DirectionalDipole>());
-  const double published = profile.mean->published_total() / profile.total;
+  const double published = published_total(profile) / profile.total;
   for (const double cosine : {1., .5, .15}) {
     const SlabWalks walked = walk(medium, collisions, 3, {false, cosine});
     const double truth = walked.back.total.value, total = total_directional_reflectance(profile, cosine);
@@ -110,14 +110,35 @@ void print_directional(const std::string& preset, const HomogeneousMedium& mediu
   }
 }
 
+/// Every kind of profile, and normalized diffusion by each fit.
+struct Model {
+  ProfileKind kind;
+  NormalizedDiffusionFit fit;
+  std::string name;
+};
+
+std::vector<Model> all_models() {
+  std::vector<Model> models;
+  for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind) {
+    const std::string name = fmt::format("`{}`", kProfileNames[kind]);
+    if (ProfileKind(kind) != ProfileKind::normalized_diffusion)
+      models.push_back({ProfileKind(kind), {}, name});
+    else
+      for (std::size_t fit = 0; fit < kFitNames.size(); ++fit)
+        models.push_back(
+            {ProfileKind(kind), NormalizedDiffusionFit(fit), fmt::format("{}, `{}`", name, kFitNames[fit])});
+  }
+  return models;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const double collisions = argc > 1 ? std::strtod(argv[1], nullptr) : 4e7;
   std::vector<std::string> presets(argv + std::min(argc, 2), argv + argc);
   if (presets.empty()) presets = {"marble", "wholemilk", "skin1"};
-  constexpr std::size_t kKinds = kProfileNames.size();
-  std::vector<std::vector<Difference>> rows(kKinds + 1, std::vector<Difference>(presets.size()));
+  const std::vector<Model> models = all_models();
+  std::vector<std::vector<Difference>> rows(models.size() + 1, std::vector<Difference>(presets.size()));
   for (std::size_t p = 0; p < presets.size(); ++p) {
     const Medium medium = parse_medium("{\"preset\": \"" + presets[p] + "\"}", "bench");
     const auto& coefficients = std::get<PhysicalMedium>(medium.coefficients);
@@ -125,11 +146,14 @@ int main(int argc, char** argv) {
       const HomogeneousMedium walked{coefficients.sigma_a[c], coefficients.sigma_s_prime[c], 0, medium.eta};
       const SlabWalks truth = walk(walked, collisions, 1), other = walk(walked, collisions, 2);
       const double length = walked.reduced_mean_free_path();
-      for (std::size_t kind = 0; kind < kKinds; ++kind)
-        rows[kind][p].add(
-            difference(truth, ProfileKind(kind), {length, walked.sigma_a * length, medium.eta}));
-      rows[kKinds][p].add(difference(truth, other.back.total.value,
-                                     [&](std::size_t i) { return other.back.rings[i].within.value; }));
+      for (std::size_t m = 0; m < models.size(); ++m)
+        rows[m][p].add(difference(truth, models[m].kind,
+                                  {.mean_free_path = length,
+                                   .absorbed = walked.sigma_a * length,
+                                   .eta = medium.eta,
+                                   .fit = models[m].fit}));
+      rows[models.size()][p].add(difference(truth, other.back.total.value,
+                                            [&](std::size_t i) { return other.back.rings[i].within.value; }));
     }
   }
   fmt::print("| total, shape (L1) |");
@@ -137,8 +161,8 @@ int main(int argc, char** argv) {
   fmt::print(" CPU to make |\n|---|");
   for (std::size_t p = 0; p <= presets.size(); ++p) fmt::print("---|");
   fmt::print("\n");
-  for (std::size_t row = 0; row <= kKinds; ++row) {
-    fmt::print("| {} |", row < kKinds ? '`' + std::string(kProfileNames[row]) + '`' : "walks, another run");
+  for (std::size_t row = 0; row <= models.size(); ++row) {
+    fmt::print("| {} |", row < models.size() ? models[row].name : "walks, another run");
     double seconds = 0;
     for (const Difference& d : rows[row]) {
       fmt::print(" {:.1f} %, {:.1f} % |", 100 * d.total, 100 * d.shape);

@@ -12,10 +12,10 @@ root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 # shellcheck disable=SC2034
 build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev libopenexr-dev libpng-dev
   libopenimageio-dev openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhdf5-dev libxxhash-dev
-  libpugixml-dev libboost-dev libmurmurhash-dev libjs-chart.js)
+  libpugixml-dev libboost-dev libmurmurhash-dev libjs-chart.js help2man)
 # The pages of the view and of reports are tested in a browser, 98 MB to fetch and 300 MB on the disk.
 # shellcheck disable=SC2034
-test_packages=(libgtest-dev parallel clang-format chromium-headless-shell)
+test_packages=(libgtest-dev parallel clang-format chromium-headless-shell python3-jsonschema)
 # Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. python3-venv: for Mitsuba
 # and Blender, which needs the others.
 # shellcheck disable=SC2034

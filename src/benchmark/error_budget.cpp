@@ -53,7 +53,7 @@ std::vector<BudgetPart> error_budget(std::size_t planned_samples, const Settings
        {"settings.evaluator=" + tree},
        {"settings.evaluator=brute_force"}},
       {"near field", fmt::format("near_field=false, both with {} times the samples", factor), dense,
-       dense + Overrides{"settings.near_field=false"}},
+       dense + Overrides{"settings.laboratory.near_field=false"}},
       {"interpolation",
        fmt::format("each point by the tree in place of the surface cache, both with {} shadow rays", even),
        even_light + Overrides{"settings.evaluator=surface_cache"},

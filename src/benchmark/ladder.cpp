@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "opaline/scene/enumerations.h"
+#include "opaline/scene/schema.h"
 
 namespace opaline {
 namespace {
@@ -52,7 +52,7 @@ std::vector<std::string> overrides_of(const Rung& rung, std::span<const std::str
     for (const std::string& medium : media)
       overrides.push_back("media." + medium + '.' + rung.knob + '=' + rung.value);
   else if (!rung.knob.empty())
-    overrides.push_back("settings." + rung.knob + '=' + rung.value);
+    overrides.push_back(settings_path(rung.knob) + '=' + rung.value);
   return overrides;
 }
 

@@ -179,7 +179,8 @@ std::string hint(const CLI::App& command) {
 
 std::vector<std::string_view> commands_of(const CLI::App& app) {
   std::vector<std::string_view> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+  for (const CLI::App* command :
+       app.get_subcommands([](const CLI::App* c) { return !c->get_group().empty(); }))
     names.push_back(command->get_name());
   return names;
 }
@@ -311,6 +312,8 @@ void add_commands(CLI::App& app, Parsed& parsed) {
       parsed.profile, options);
   add_cache_commands(command("cache", "look after a folder of stage results (--cache)"), parsed.cache,
                      options);
+  command("schema", "print a JSON Schema of scene files, for editors");
+  command("completion", "print a script of completion for bash").group("");
 }
 
 RenderArguments checked(RenderArguments render, const Options& options) {
@@ -383,9 +386,12 @@ Command parse_arguments(int argc, const char* const* argv) {
   }
   const std::vector<CLI::App*> called = app.get_subcommands();
   if (called.empty()) throw no_command(app);
+  const std::string name = called.front()->get_name();
+  if (name == "schema") return ShowText{json_schema()};
+  if (name == "completion") return ShowText{bash_completion(app)};
   parsed.program = argv[0];
   for (int i = 1; i < argc; ++i) parsed.words += ' ' + shell_quoted(argv[i]);
-  return command_of(called.front()->get_name(), std::move(parsed));
+  return command_of(name, std::move(parsed));
 }
 
 bool asks_for_json(int argc, const char* const* argv) {

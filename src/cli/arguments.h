@@ -109,7 +109,7 @@ struct CacheArguments {
   Log log;
 };
 
-/// --help or --version: text to print, and done.
+/// Text to print, as of --help.
 struct ShowText {
   std::string text;
 };

@@ -75,7 +75,7 @@ void add_common_options(CLI::App& app, std::string& scene, Options& options) {
       ->required()
       ->type_name("FILE");
   add_repeatable(app, "--set", options.sets,
-                 "change any value of the scene, e.g. media.marble.eta=1.4; repeatable")
+                 "change any value of the scene, e.g. media.marble.specular_ior=1.4; repeatable")
       ->type_name("KEY=VALUE");
   add_allow_outside(app);
   app.add_option("--log", options.log, "text, or json: one object a line on stdout")

@@ -47,4 +47,7 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options);
 void add_profile_options(CLI::App& app, ProfileArguments& profile, Options& options);
 void add_cache_commands(CLI::App& app, CacheArguments& cache, Options& options);
 
+/// Completion script for bash: commands, the options of each, and the values of options that are choices.
+std::string bash_completion(const CLI::App& app);
+
 }  // namespace opaline

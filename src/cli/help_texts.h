@@ -13,7 +13,7 @@ inline constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o draft.png --method lambert --resolution 256x256
   opaline render bunny.json -o bunny.exr --target-error 1% --verify
   opaline render bunny.json -o bunny.exr --time-budget 2s
-  opaline render bunny.json -o warm.exr --set media.marble.eta=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
+  opaline render bunny.json -o warm.exr --set media.marble.specular_ior=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
   opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
   opaline render bunny.json -o bunny.exr --log json --threads 4
   opaline compare bunny.exr reference.exr --fail-above 1%
@@ -104,7 +104,7 @@ the page's edits.
 
 Examples:
   opaline view bunny.json
-  opaline view bunny.json --set media.marble.eta=1.4 --resolution 1024x1024
+  opaline view bunny.json --set media.marble.specular_ior=1.4 --resolution 1024x1024
   opaline view turn.json --frames 1-24
   opaline view bunny.json --port 8080 --token my-own-long-secret
 
@@ -194,7 +194,7 @@ collisions is told as unfinished.
 Examples:
   opaline profile skin1 -o skin
   opaline profile marble --thickness 2mm --g .8 -o plate
-  opaline profile '{"sigma_a": [0.002, 0.004, 0.007], "sigma_s": 22, "g": 0.9, "eta": 1.33}' --walks 1000000
+  opaline profile '{"sigma_a": [0.002, 0.004, 0.007], "sigma_s": 22, "g": 0.9, "specular_ior": 1.33}' --walks 1000000
 
 Exit codes: 0 done, 2 bad input, 3 the folder cannot be written, 130 interrupted (the old report stays).)";
 

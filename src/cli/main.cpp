@@ -29,16 +29,14 @@ int run(const opaline::Command& command) {
 }
 
 opaline::Log log_of(const opaline::Command& command) {
-  if (const auto* render = std::get_if<opaline::RenderArguments>(&command)) return render->log;
-  if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) return info->log;
-  if (const auto* compare = std::get_if<opaline::CompareArguments>(&command)) return compare->log;
-  if (const auto* bench = std::get_if<opaline::BenchArguments>(&command)) return bench->log;
-  if (const auto* profile = std::get_if<opaline::ProfileArguments>(&command)) return profile->log;
-  if (const auto* cache = std::get_if<opaline::CacheArguments>(&command)) return cache->log;
-  if (const auto* view = std::get_if<opaline::ViewArguments>(&command)) return view->log;
-  if (const auto* precompute = std::get_if<opaline::PrecomputeArguments>(&command)) return precompute->log;
-  if (const auto* import = std::get_if<opaline::ImportArguments>(&command)) return import->log;
-  return {};
+  return std::visit(
+      [](const auto& arguments) {
+        if constexpr (requires { arguments.log; })
+          return arguments.log;
+        else
+          return opaline::Log{};
+      },
+      command);
 }
 
 /// A log, of which nobody wanted to know: the program was started without standard output, and what it makes is in files or

@@ -65,7 +65,7 @@ ProfileRequest request_of(const ProfileArguments& arguments) {
   request.name = is_object(arguments.medium) ? "the medium" : arguments.medium;
   request.coefficients = *coefficients;
   request.eta = arguments.eta.value_or(medium.eta);
-  const Range& range = key_info("medium", "eta").range;
+  const Range& range = key_info("medium", "specular_ior").range;
   check_value(request.eta >= range.low && request.eta <= range.high, "--eta", "a number from .1 to 10",
               request.eta);
   request.g = arguments.g.value_or(anisotropy_of(arguments.medium));

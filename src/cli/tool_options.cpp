@@ -89,7 +89,7 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
 void add_profile_options(CLI::App& app, ProfileArguments& profile, Options& options) {
   app.add_option("MEDIUM", profile.medium,
                  "a preset such as marble, or coefficients as a scene gives them: '{\"sigma_a\": 0.01, "
-                 "\"sigma_s\": 20, \"g\": 0.9, \"eta\": 1.33}'")
+                 "\"sigma_s\": 20, \"g\": 0.9, \"specular_ior\": 1.33}'")
       ->required();
   app.add_option("--thickness", profile.thickness, "a slab, e.g. 2mm, 500um or .5cm; default: a half space")
       ->transform(millimetres_of())

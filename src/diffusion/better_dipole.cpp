@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "diffusion/find_radius.h"
 #include "opaline/transport/fresnel.h"
 
 namespace opaline {
@@ -35,18 +36,7 @@ double density(const BetterDipole& p, double r) {
   return decayed * (p.from_flux * (flux(1, real) + flux(p.height, high) * ratio) + p.from_fluence * fluence);
 }
 
-// The r > 0 at which a falling function of it, 1 at 0, is `share`; in mean free paths.
-template <class Falling>
-double find_radius(const Falling& falling, double share) {
-  if (share >= 1) return 0;
-  double low = -40, high = 1;  // log2
-  while (falling(std::exp2(high)) > share && high < 400) high *= 2;
-  for (int i = 0; i < 64; ++i) {
-    const double middle = 0.5 * (low + high);
-    (falling(std::exp2(middle)) > share ? low : high) = middle;
-  }
-  return std::exp2(0.5 * (low + high));
-}
+constexpr double kLeast = -40;  // log2 of a radius, mean free paths
 
 }  // namespace
 
@@ -81,14 +71,14 @@ double total_diffuse_reflectance(const BetterDipole& p) {
 
 double sample_diffusion_distance(const BetterDipole& p, double beyond) {
   const double all = beyond_radius(p, 0);
-  return p.mean_free_path * find_radius([&](double r) { return beyond_radius(p, r) / all; }, beyond);
+  return p.mean_free_path * find_radius([&](double r) { return beyond_radius(p, r) / all; }, beyond, kLeast);
 }
 
 // By parts: what lies beyond R is the profile beyond R and pi R^2 R_d(R).
 double sample_chord_sphere_radius(const BetterDipole& p, double u, double) {
   const double all = beyond_radius(p, 0);
   const auto beyond = [&](double r) { return (beyond_radius(p, r) + r * r / 2 * density(p, r)) / all; };
-  return p.mean_free_path * find_radius(beyond, 1 - u);
+  return p.mean_free_path * find_radius(beyond, 1 - u, kLeast);
 }
 
 double slowest_decay(const BetterDipole& p) {

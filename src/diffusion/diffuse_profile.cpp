@@ -143,6 +143,7 @@ DiffuseProfile make_diffuse_profile(const Medium& medium, double unit) {
                    medium.coefficients);
     reduced.mean_free_path /= unit;
     reduced.thickness = profile_thickness(medium) / unit;
+    reduced.fit = profile_fit(medium);
     profile.channels[c] = make_channel_profile(kind, reduced);
     profile.mean_free_path[c] = reduced.mean_free_path;
     if (reduced.mean_free_path > 0)

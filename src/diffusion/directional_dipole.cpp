@@ -5,9 +5,9 @@
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
-#include <mutex>
+#include <memory>
 #include <numbers>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "opaline/transport/fresnel.h"
@@ -115,42 +115,23 @@ double plane_integral(const F& f, double decay, double width) {
   return sum + last / (1 + decay * r) + pi * kFirst * kFirst * f(kFirst);
 }
 
+ProfileShape mean_shape(const DirectionalKernel& kernel) {
+  const std::vector<WayInside> ways = diffuse_ways(kernel.eta);
+  const RadialReference reference{kernel.decay, kernel.image / 2};
+  std::vector<double> logarithms;
+  for (std::size_t i = 0; i < RadialTable::kKnots; ++i) {
+    const double r = RadialTable::knot(i), over = ring_mean(kernel, ways, r) / reference(r);
+    // Where the exponential underflows the ratio stays.
+    logarithms.push_back(over > 0 ? std::log(over) : logarithms.empty() ? 0 : logarithms.back());
+  }
+  return {RadialTable(reference, std::move(logarithms)),
+          plane_integral([&](double r) { return ring_mean(kernel, ways, r); }, kernel.decay, kernel.image)};
+}
+
 }  // namespace
 
-struct DirectionalMean::State {
-  DirectionalKernel kernel;
-  std::once_flag once;
-  double total = 0;
-  std::optional<RadialTable> table;
-};
-
-DirectionalMean::DirectionalMean(const DirectionalKernel& kernel) : state_(new State{kernel, {}, 0, {}}) {}
-DirectionalMean::~DirectionalMean() = default;
-
-const DirectionalMean::State& DirectionalMean::state() const {
-  State& s = *state_;
-  std::call_once(s.once, [&s] {
-    const std::vector<WayInside> ways = diffuse_ways(s.kernel.eta);
-    const RadialReference reference{s.kernel.decay, s.kernel.image / 2};
-    std::vector<double> logarithms;
-    for (std::size_t i = 0; i < RadialTable::kKnots; ++i) {
-      const double r = RadialTable::knot(i), over = ring_mean(s.kernel, ways, r) / reference(r);
-      // Where the exponential underflows the ratio stays.
-      logarithms.push_back(over > 0 ? std::log(over) : logarithms.empty() ? 0 : logarithms.back());
-    }
-    s.table.emplace(reference, std::move(logarithms));
-    s.total = plane_integral([&](double r) { return ring_mean(s.kernel, ways, r); }, s.kernel.decay,
-                             s.kernel.image);
-  });
-  return s;
-}
-
-double DirectionalMean::published_total() const {
-  return state().total;
-}
-
-const RadialTable& DirectionalMean::table() const {
-  return *state().table;
+double published_total(const DirectionalDipole& p) {
+  return p.shape->get().integral;
 }
 
 double directional_reflectance(const DirectionalDipole& p, const DirectedPlace& entry,
@@ -158,13 +139,13 @@ double directional_reflectance(const DirectionalDipole& p, const DirectedPlace& 
   const double l = p.mean_free_path;
   if (l == 0) return 0;
   const Vec3d w = way_inside(towards_light, entry.normal, p.kernel.eta);
-  return p.total / p.mean->published_total() / (l * l) *
+  return p.total / published_total(p) / (l * l) *
          exitance(p.kernel, (exit.position - entry.position) * (1 / l), entry.normal, w, exit.normal);
 }
 
 double total_directional_reflectance(const DirectionalDipole& p, double cosine) {
   const std::vector<WayInside> ways{{way_at(cosine, p.kernel.eta).direction, 1}};
-  return p.total / p.mean->published_total() *
+  return p.total / published_total(p) *
          plane_integral([&](double r) { return ring_mean(p.kernel, ways, r); }, p.kernel.decay,
                         p.kernel.image);
 }
@@ -178,35 +159,10 @@ DirectionalDipole make_profile(const ReducedMedium& medium, std::type_identity<D
   kernel.image = 2 * (1 + 3 * C2) / (1 - 2 * C1) * kernel.extrapolation;
   kernel.from_fluence = (1 - 2 * C1) / 4;
   kernel.from_flux = (1 - 3 * C2) / 2;
-  return {medium.mean_free_path, half_space_albedo(medium.absorbed, medium.eta), kernel,
-          std::make_shared<const DirectionalMean>(kernel)};
-}
-
-double diffuse_reflectance_profile(const DirectionalDipole& p, double r) {
-  const double l = p.mean_free_path;
-  if (l == 0) return 0;
-  return r > 0 ? p.total * p.mean->table().density(r / l) / (l * l) : INFINITY;
-}
-
-double diffuse_reflectance_within(const DirectionalDipole& p, double r) {
-  if (r <= 0) return 0;
-  return p.mean_free_path == 0 ? p.total : p.total * p.mean->table().within(r / p.mean_free_path);
-}
-
-double total_diffuse_reflectance(const DirectionalDipole& p) {
-  return p.total;
-}
-
-double sample_diffusion_distance(const DirectionalDipole& p, double beyond) {
-  return p.mean_free_path == 0 ? 0 : p.mean_free_path * p.mean->table().radius_beyond(beyond);
-}
-
-double sample_chord_sphere_radius(const DirectionalDipole& p, double u, double) {
-  return p.mean_free_path == 0 ? 0 : p.mean_free_path * p.mean->table().chord_radius_beyond(1 - u);
-}
-
-double slowest_decay(const DirectionalDipole& p) {
-  return p.mean_free_path > 0 ? p.kernel.decay / p.mean_free_path : 0;
+  return {{medium.mean_free_path, half_space_albedo(medium.absorbed, medium.eta), kernel.decay,
+           std::make_shared<const LazyShape>(
+               [kernel] { return std::make_shared<const ProfileShape>(mean_shape(kernel)); })},
+          kernel};
 }
 
 }  // namespace opaline

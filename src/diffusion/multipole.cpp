@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "diffusion/find_radius.h"
 #include "opaline/transport/fresnel.h"
 
 namespace opaline {
@@ -160,18 +161,7 @@ double beyond(const Multipole& p, double face, double r) {
                   }));
 }
 
-// The r > 0 at which a falling function of it, 1 at 0, is `share`; in mean free paths.
-template <class Falling>
-double find_radius(const Falling& falling, double share) {
-  if (share >= 1) return 0;
-  double low = -60, high = 1;  // log2
-  while (falling(std::exp2(high)) > share && high < 400) high *= 2;
-  for (int i = 0; i < 64; ++i) {
-    const double middle = .5 * (low + high);
-    (falling(std::exp2(middle)) > share ? low : high) = middle;
-  }
-  return std::exp2(.5 * (low + high));
-}
+constexpr double kLeast = -60;  // log2 of a radius, mean free paths
 
 constexpr int kPerOctave = 16;
 constexpr double kTrusted = 1e-9;  // shares beyond, where they are what the images leave of the total
@@ -258,14 +248,14 @@ double total_diffuse_reflectance(const Multipole& p) {
 double sample_diffusion_distance(const Multipole& p, double share) {
   if (p.shares != nullptr) return p.mean_free_path * distance_beyond(*p.shares, share);
   const double all = total(p, 0);
-  return p.mean_free_path * find_radius([&](double r) { return beyond(p, 0, r) / all; }, share);
+  return p.mean_free_path * find_radius([&](double r) { return beyond(p, 0, r) / all; }, share, kLeast);
 }
 
 // By parts: what lies beyond R is the profile beyond R and pi R^2 R_d(R).
 double sample_chord_sphere_radius(const Multipole& p, double u, double) {
   const double all = total(p, 0);
   const auto falling = [&](double r) { return (beyond(p, 0, r) + pi * r * r * density(p, 0, r)) / all; };
-  return p.mean_free_path * find_radius(falling, 1 - u);
+  return p.mean_free_path * find_radius(falling, 1 - u, kLeast);
 }
 
 double slowest_decay(const Multipole& p) {

@@ -11,7 +11,7 @@ namespace opaline {
 namespace {
 
 // Mean free paths over d, by eta and by the fourth root of 1 - alpha': printed by bench_normalized_diffusion.
-constexpr double kRefit[NormalizedDiffusionRefit::kEta.size()][NormalizedDiffusionRefit::kAbsorptions] = {
+constexpr double kRefit[kRefitEtas.size()][kRefitAbsorptions] = {
     {0.775, 0.794, 0.873, 1.036, 1.253, 1.565, 1.893, 2.366, 2.972, 3.685, 4.515},    // eta 0.75
     {0.860, 0.880, 0.943, 1.107, 1.322, 1.618, 1.975, 2.407, 2.954, 3.589, 4.376},    // eta 1
     {0.568, 0.594, 0.678, 0.829, 1.074, 1.366, 1.758, 2.358, 3.151, 4.292, 5.812},    // eta 1.15
@@ -23,13 +23,12 @@ constexpr double kRefit[NormalizedDiffusionRefit::kEta.size()][NormalizedDiffusi
 
 // Between the table's places by straight lines of its logarithm, over that of eta.
 double refitted_rate(double absorbed, double eta) {
-  using Refit = NormalizedDiffusionRefit;
-  const double place = std::sqrt(std::sqrt(absorbed)) * double(Refit::kAbsorptions - 1);
-  const std::size_t column = std::min(std::size_t(place), Refit::kAbsorptions - 2);
-  eta = std::clamp(eta, Refit::kEta.front(), Refit::kEta.back());
+  const double place = std::sqrt(std::sqrt(absorbed)) * double(kRefitAbsorptions - 1);
+  const std::size_t column = std::min(std::size_t(place), kRefitAbsorptions - 2);
+  eta = std::clamp(eta, kRefitEtas.front(), kRefitEtas.back());
   std::size_t row = 0;
-  while (row + 2 < Refit::kEta.size() && eta > Refit::kEta[row + 1]) ++row;
-  const double t = std::log(eta / Refit::kEta[row]) / std::log(Refit::kEta[row + 1] / Refit::kEta[row]);
+  while (row + 2 < kRefitEtas.size() && eta > kRefitEtas[row + 1]) ++row;
+  const double t = std::log(eta / kRefitEtas[row]) / std::log(kRefitEtas[row + 1] / kRefitEtas[row]);
   const auto at = [&](std::size_t i) {
     return std::lerp(std::log(kRefit[i][column]), std::log(kRefit[i][column + 1]), place - double(column));
   };
@@ -80,29 +79,21 @@ double slowest_decay(const NormalizedDiffusion& profile) {
 }
 
 NormalizedDiffusion make_profile(const ReducedMedium& medium, std::type_identity<NormalizedDiffusion>) {
-  return make_normalized_diffusion(medium.mean_free_path, half_space_albedo(medium.absorbed, medium.eta));
-}
-
-NormalizedDiffusionSearchlight make_profile(const ReducedMedium& medium,
-                                            std::type_identity<NormalizedDiffusionSearchlight>) {
-  const double total = half_space_albedo(medium.absorbed, medium.eta);
-  const double s = 1.85 - total + 7 * std::pow(std::abs(total - 0.8), 3);
-  return {{total, medium.mean_free_path / s}};
-}
-
-NormalizedDiffusionDmfp make_profile(const ReducedMedium& medium,
-                                     std::type_identity<NormalizedDiffusionDmfp>) {
-  constexpr double kLeastAbsorbed = 1e-8;
-  const double total = half_space_albedo(medium.absorbed, medium.eta);
-  const double absorbed = std::max(medium.absorbed, kLeastAbsorbed);
-  const double diffuse_mean_free_path = medium.mean_free_path * std::sqrt((1 + absorbed) / (3 * absorbed));
-  return {{total, diffuse_mean_free_path / (3.5 + 100 * std::pow(total - 0.33, 4))}};
-}
-
-NormalizedDiffusionRefit make_profile(const ReducedMedium& medium,
-                                      std::type_identity<NormalizedDiffusionRefit>) {
-  return {{half_space_albedo(medium.absorbed, medium.eta),
-           medium.mean_free_path / refitted_rate(medium.absorbed, medium.eta)}};
+  const double total = half_space_albedo(medium.absorbed, medium.eta), l = medium.mean_free_path;
+  switch (medium.fit) {
+    case NormalizedDiffusionFit::diffuse_entry:
+      break;
+    case NormalizedDiffusionFit::searchlight:
+      return {total, l / (1.85 - total + 7 * std::pow(std::abs(total - 0.8), 3))};
+    case NormalizedDiffusionFit::dmfp: {
+      const double absorbed = std::max(medium.absorbed, 1e-8);
+      return {total,
+              l * std::sqrt((1 + absorbed) / (3 * absorbed)) / (3.5 + 100 * std::pow(total - 0.33, 4))};
+    }
+    case NormalizedDiffusionFit::refit:
+      return {total, l / refitted_rate(medium.absorbed, medium.eta)};
+  }
+  return make_normalized_diffusion(l, total);
 }
 
 }  // namespace opaline

@@ -1,43 +1,225 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// From rings of random walks to a smooth table.
 #include "opaline/diffusion/tabulated.h"
 
-#include <cmath>
+#include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "opaline/transport/fresnel.h"
 #include "opaline/transport/half_space.h"
+#include "opaline/transport/laboratory.h"
 #include "opaline/transport/point_source.h"
 
 namespace opaline {
+namespace {
+
+constexpr std::size_t kKnots = RadialTable::kKnots;
+
+// Light that walks for longer leaves far away, where the table is the exact decay.
+constexpr std::uint64_t kMostCollisions = 1 << 16;
+constexpr double kMostWalks = 400000;
+// Of darker media the shape changes little (all but 2 % of the light was scattered once), and few walks come back.
+constexpr double kMostAbsorbed = .97;
+constexpr std::size_t kPilotWalks = 1024;
+
+SlabWalks walk(double absorbed, double eta) {
+  const HomogeneousMedium medium{absorbed, 1 - absorbed, 0, std::clamp(eta, .1, 10.)};
+  LaboratorySettings settings;
+  settings.seed = 7001;
+  settings.most_collisions = kMostCollisions;
+  settings.cosine_bins = 1;
+  settings.walks = kPilotWalks;
+  const double each = walk_slab(medium, {}, kDiffuseEntry, settings).collisions + 3;  // 3: entry and exit
+  settings.seed = 7002;
+  settings.walks = std::size_t(std::clamp(kWalkedCollisions / each, 1., kMostWalks));
+  for (std::size_t i = 0; i < kKnots; ++i) settings.radii.push_back(RadialTable::knot(i));
+  return walk_slab(medium, {}, kDiffuseEntry, settings);
+}
+
+RadialReference reference_of(double absorbed, double eta) {
+  // The width is half the distance between the dipole's source, one mean free path deep, and its image: 1 + 2 A / 3.
+  const double inside = std::min(.99, average_reflectance_inside(eta));
+  return {decay_constant(absorbed), 1 + 2. / 3 * (1 + inside) / (1 - inside)};
+}
+
+/// The reference's share of each ring: before the first knot, between knots, and beyond the last one.
+std::vector<double> reference_shares(const RadialReference& reference) {
+  const auto ring = [&](double r) { return 2 * std::numbers::pi * r * reference(r); };
+  using Rule = boost::math::quadrature::gauss<double, 10>;
+  const auto share = [&](double low, double high) {
+    return Rule::integrate([&](double u) { return std::exp(u) * ring(std::exp(u)); }, std::log(low),
+                           std::log(high));
+  };
+  std::vector<double> shares{RadialTable::kFirst * ring(RadialTable::kFirst)};
+  for (std::size_t i = 1; i < kKnots; ++i)
+    shares.push_back(share(RadialTable::knot(i - 1), RadialTable::knot(i)));
+  const double last = RadialTable::knot(kKnots - 1);
+  shares.push_back(last * ring(last) / (1 + reference.decay * last));
+  return shares;
+}
+
+/// f at the knots, so that the reference times e^f has the walked shares: the least of the Poisson deviance of the
+/// rings and of penalties on first and second differences of f. Convex; by Newton's method.
+class SmoothFit {
+ public:
+  SmoothFit(std::vector<double> reference, std::vector<double> walked, double variance)
+      : reference_(std::move(reference)), walked_(std::move(walked)), variance_(variance) {}
+
+  std::vector<double> solve() {
+    double model = 0, data = 0;
+    for (std::size_t i = 0; i <= kKnots; ++i) {
+      model += reference_[i];
+      data += walked_[i];
+    }
+    std::vector<double> f(kKnots, std::log(data / model));
+    for (int round = 0; round < 60; ++round) {
+      const std::vector<double> step = newton_step(f);
+      double largest = 0;
+      for (const double s : step) largest = std::max(largest, std::abs(s));
+      const double scale = std::min(1.0, kLongestStep / std::max(largest, 1e-300));
+      for (std::size_t i = 0; i < kKnots; ++i) f[i] += scale * step[i];
+      if (largest < 1e-10) break;
+    }
+    return f;
+  }
+
+ private:
+  // Expected sizes, as standard deviations, of f's first and second differences from knot to knot. Chosen by the walks'
+  // own noise (Tabulated.IsTheLongerWalk).
+  static constexpr double kSlope = .12, kBend = .03, kLongestStep = 2;
+  static constexpr std::size_t kBand = 2;
+  using Row = std::array<double, kBand + 1>;  // of the symmetric matrix: diagonal, and to its right
+
+  std::vector<double> newton_step(const std::vector<double>& f) const {
+    std::vector<Row> matrix(kKnots, Row{});
+    std::vector<double> right(kKnots, 0.0);
+    const auto add = [&](std::size_t first, const std::vector<double>& row, double weight, double residual) {
+      for (std::size_t a = 0; a < row.size(); ++a) {
+        right[first + a] -= row[a] * residual;
+        for (std::size_t b = a; b < row.size(); ++b) matrix[first + a][b - a] += weight * row[a] * row[b];
+      }
+    };
+    const auto add_ring = [&](std::size_t first, const std::vector<double>& row, std::size_t i) {
+      double log_ratio = 0;
+      for (std::size_t a = 0; a < row.size(); ++a) log_ratio += row[a] * f[first + a];
+      const double model = reference_[i] * std::exp(log_ratio);
+      add(first, row, model / variance_, (model - walked_[i]) / variance_);
+    };
+    add_ring(0, {1}, 0);
+    for (std::size_t i = 1; i < kKnots; ++i) add_ring(i - 1, {.5, .5}, i);
+    add_ring(kKnots - 1, {1}, kKnots);
+    for (std::size_t i = 1; i < kKnots; ++i)
+      add(i - 1, {-1, 1}, 1 / (kSlope * kSlope), (f[i] - f[i - 1]) / (kSlope * kSlope));
+    for (std::size_t i = 2; i < kKnots; ++i)
+      add(i - 2, {1, -2, 1}, 1 / (kBend * kBend), (f[i] - 2 * f[i - 1] + f[i - 2]) / (kBend * kBend));
+    return solve_banded(matrix, right);
+  }
+
+  static std::vector<double> solve_banded(std::vector<Row> m, std::vector<double> b) {
+    const std::size_t n = b.size();
+    for (std::size_t k = 0; k < n; ++k)
+      for (std::size_t i = 1; i <= kBand && k + i < n; ++i) {
+        const double factor = m[k][i] / m[k][0];
+        for (std::size_t j = i; j <= kBand; ++j) m[k + i][j - i] -= factor * m[k][j];
+        b[k + i] -= factor * b[k];
+      }
+    for (std::size_t k = n; k-- > 0;) {
+      for (std::size_t i = 1; i <= kBand && k + i < n; ++i) b[k] -= m[k][i] * b[k + i];
+      b[k] /= m[k][0];
+    }
+    return b;
+  }
+
+  std::vector<double> reference_, walked_;
+  double variance_;  ///< a ring's share has this times the share as its variance
+};
+
+RadialTable walked_table(double absorbed, double eta) {
+  const RadialReference reference = reference_of(absorbed, eta);
+  absorbed = std::min(absorbed, kMostAbsorbed);
+  const SlabWalks walked = walk(absorbed, eta);
+  const double total = half_space_albedo(absorbed, eta);
+  std::vector<double> shares;
+  double variance = 0, sum = 0;
+  for (const WalkedRing& ring : walked.back.rings) {
+    shares.push_back(std::max(0.0, ring.share.value / total));
+    sum += shares.back();
+    variance += ring.share.error / total * (ring.share.error / total);
+  }
+  shares.push_back(
+      std::max(0.0, 1 - sum));  // the rest beyond the last knot, walks that were cut off included
+  return {reference,
+          SmoothFit(reference_shares(reference), std::move(shares), std::max(1e-12, variance / sum)).solve()};
+}
+
+using SharedShape = std::shared_ptr<const ProfileShape>;
+
+struct KnownShape {
+  double absorbed, eta;
+  SharedShape shape;
+};
+
+/// The last shapes of this process.
+class KnownShapes {
+ public:
+  SharedShape find(double absorbed, double eta) {
+    const std::lock_guard lock(mutex_);
+    for (const KnownShape& known : shapes_)
+      if (known.absorbed == absorbed && known.eta == eta) return known.shape;
+    return nullptr;
+  }
+  void add(double absorbed, double eta, SharedShape shape) {
+    const std::lock_guard lock(mutex_);
+    shapes_.push_back({absorbed, eta, std::move(shape)});
+    if (shapes_.size() > kWalkedShapesKept) shapes_.pop_front();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::deque<KnownShape> shapes_;
+};
+
+KnownShapes& known_shapes() {
+  static KnownShapes shapes;
+  return shapes;
+}
+
+SharedShape shape_of(double absorbed, double eta) {
+  if (SharedShape known = known_shapes().find(absorbed, eta)) return known;
+  SharedShape shape;
+  // A thread that waits for its walks must not take up work that waits for this table.
+  tbb::this_task_arena::isolate(
+      [&] { shape = std::make_shared<const ProfileShape>(ProfileShape{walked_table(absorbed, eta)}); });
+  known_shapes().add(absorbed, eta, shape);
+  return shape;
+}
+
+}  // namespace
+
+bool has_walked_table(double absorbed, double eta) {
+  return known_shapes().find(absorbed, eta) != nullptr;
+}
+
+void take_walked_table(double absorbed, double eta, RadialTable table) {
+  if (has_walked_table(absorbed, eta)) return;
+  known_shapes().add(absorbed, eta, std::make_shared<const ProfileShape>(ProfileShape{std::move(table)}));
+}
 
 TabulatedProfile make_profile(const ReducedMedium& medium, std::type_identity<TabulatedProfile>) {
-  return {medium.mean_free_path, half_space_albedo(medium.absorbed, medium.eta),
-          decay_constant(medium.absorbed), std::make_shared<const WalkedShape>(medium.absorbed, medium.eta)};
-}
-
-double diffuse_reflectance_profile(const TabulatedProfile& p, double r) {
-  const double l = p.mean_free_path;
-  if (l == 0) return 0;
-  return r > 0 ? p.total * p.shape->table().density(r / l) / (l * l) : INFINITY;
-}
-
-double diffuse_reflectance_within(const TabulatedProfile& p, double r) {
-  if (r <= 0) return 0;
-  return p.mean_free_path == 0 ? p.total : p.total * p.shape->table().within(r / p.mean_free_path);
-}
-
-double total_diffuse_reflectance(const TabulatedProfile& p) {
-  return p.total;
-}
-
-double sample_diffusion_distance(const TabulatedProfile& p, double beyond) {
-  return p.mean_free_path == 0 ? 0 : p.mean_free_path * p.shape->table().radius_beyond(beyond);
-}
-
-double sample_chord_sphere_radius(const TabulatedProfile& p, double u, double) {
-  return p.mean_free_path == 0 ? 0 : p.mean_free_path * p.shape->table().chord_radius_beyond(1 - u);
-}
-
-double slowest_decay(const TabulatedProfile& p) {
-  return p.mean_free_path > 0 ? p.decay / p.mean_free_path : 0;
+  const double absorbed = medium.absorbed, eta = medium.eta;
+  return {{medium.mean_free_path, half_space_albedo(absorbed, eta), decay_constant(absorbed),
+           std::make_shared<const LazyShape>([=] { return shape_of(absorbed, eta); })},
+          absorbed,
+          eta};
 }
 
 }  // namespace opaline

@@ -91,7 +91,6 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
                         .shared = !shape.group.empty(),
                         .meshes = {},
                         .medium = *shape.medium,
-                        .reason_against_method = {},
                         .smallest_mean_free_path = smallest_mean_free_path(profile),
                         .reason = {}});
       it = groups.end() - 1;

@@ -19,7 +19,7 @@
 namespace opaline {
 namespace {
 
-constexpr ProfileKind kOfBodies = ProfileKind::normalized_diffusion_refit;
+constexpr ProfileKind kOfBodies = ProfileKind::normalized_diffusion;
 constexpr ProfileKind kOfThickPlates = ProfileKind::dipole;
 // Of a square plate a sixth as thick as wide.
 constexpr double kFlatAlignment = .58;
@@ -106,7 +106,8 @@ BodyModel choose_model(const Medium& medium, const BodyShape& shape) {
   const std::string size = fmt::format("{} mm = {} mean free paths ({})", two_digits(thickness),
                                        two_digits(mean_free_paths), extremes.channels);
   if (is_flat && thickness < kCrossed * extremes.diffuse_mean_free_path) {
-    model.profile = {ProfileKind::multipole, thickness};
+    model.profile.kind = ProfileKind::multipole;
+    model.profile.thickness = thickness;
     model.reason = "flat, thickness " + size;
   } else if (is_flat) {
     model.profile.kind = kOfThickPlates;
@@ -141,7 +142,7 @@ BodyModel planned_model(const Scene& scene, const GroupPlan& group) {
   } else if (model.profile != medium.chosen) {
     model.reason = "as in the reference frame";
   }
-  model.profile = {profile_kind(medium), profile_thickness(medium)};
+  model.profile = {profile_kind(medium), profile_thickness(medium), profile_fit(medium)};
   return model;
 }
 

@@ -89,7 +89,7 @@ class DirectRenderer {
     std::vector<EntrySampler> samplers;
     for (const GroupPlan& group : input.plan.groups)
       samplers.emplace_back(group, make_diffuse_profile(input.scene.media[group.medium], input.world.unit),
-                            input.rays, input.world.diagonal, input.scene.settings.entry_strategy);
+                            input.rays, input.world.diagonal, input.scene.settings.laboratory.entry_strategy);
     return samplers;
   }
 

@@ -173,7 +173,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
   for (GroupPlan& group : plan.groups) group.model = planned_model(scene, group);
-  plan.warnings.insert(plan.warnings.end(), scene.asset_warnings.begin(), scene.asset_warnings.end());
+  plan.warnings.insert(plan.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   std::set<std::string> said;  // by the first of several shapes from one file
   for (const MeshReport& report : world.reports)
     for (const std::string& warning : report.warnings)

@@ -100,7 +100,7 @@ std::optional<SurfaceCache> make_body_cache(const PrecomputeInput& input, const 
        .octree = state.octree(),
        .kernel = state.kernel(),
        .tolerance = settings.tolerance,
-       .instruction_set = settings.instruction_set,
+       .instruction_set = settings.laboratory.instruction_set,
        .cloud = state.cloud,
        .most_places = most_places,
        .add_own_light = own_light ? std::bind_front(&OwnLight::add, &*own_light) : AddOwnLight(),

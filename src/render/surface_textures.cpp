@@ -324,7 +324,7 @@ StageKey medium_key(const Medium& medium, Method method, const World& world,
                     std::span<const std::uint32_t> meshes) {
   if (!varies_inside(medium, method)) return {};
   const auto& mean = std::get<ArtistMedium>(medium.coefficients);
-  KeyBuilder key("medium inside", 1);
+  KeyBuilder key("medium inside", 2);
   key.add(mean.subsurface_color).add(mean.subsurface_radius).add(mean.anisotropy).add(medium.eta);
   key.add(profile_kind(medium)).add(profile_thickness(medium));
   if (has_color_inside(medium, method)) add_to_key(key.add(std::string("color")), *medium.tint_texture);

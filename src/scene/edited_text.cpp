@@ -59,10 +59,11 @@ void add_changes(std::string_view text, const Node& before, const Node& now,
       add_changes(text, before.children[i], now.children[i], changes);
     return;
   }
-  const bool keeps_members =
-      before.kind == Node::Kind::object && now.kind == Node::Kind::object && !before.children.empty() &&
-      std::ranges::all_of(before.children,
-                          [&](const Node& member) { return find_member(now, member.key) != nullptr; });
+  const bool keeps_members = before.kind == Node::Kind::object && now.kind == Node::Kind::object &&
+                             !before.children.empty() &&
+                             std::ranges::all_of(before.children, [&](const Node& member) {
+                               return member.end_offset > 0 && find_member(now, member.key) != nullptr;
+                             });
   if (!keeps_members) return changes.push_back({before.offset, before.end_offset, to_json(now)});
   for (const Node& member : before.children)
     add_changes(text, member, *find_member(now, member.key), changes);

@@ -14,6 +14,7 @@
 #include "opaline/lights/environment_picture.h"
 #include "opaline/scene/nearest_name.h"
 #include "opaline/scene/unread_format.h"
+#include "scene/deprecated_spellings.h"
 #include "scene/edited_text.h"
 #include "scene/keyed_values.h"
 #include "scene/overrides.h"
@@ -140,7 +141,9 @@ Document merged_document(std::string_view text, const std::string& file,
     throw bad_file(file, "the scene file is empty", "a JSON object {...}");
   Document document{file, text, {overrides.begin(), overrides.end()}, {}, frame, line_starts_of(text)};
   document.root = parse_tree(document, text);
-  if (document.root.kind == Node::Kind::object) apply_overrides(document);
+  if (document.root.kind != Node::Kind::object) return document;
+  replace_deprecated_spellings(document);
+  apply_overrides(document);
   return document;
 }
 
@@ -207,7 +210,7 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
   Scene scene = parse_asset(asset.text, path, overrides, frame);
   scene.translation = asset.summary;
-  scene.asset_warnings.insert(scene.asset_warnings.begin(), asset.warnings.begin(), asset.warnings.end());
+  scene.warnings.insert(scene.warnings.begin(), asset.warnings.begin(), asset.warnings.end());
   scene.asset_bytes = asset.bytes;
   if (!asset.not_carried.empty()) scene.translation += "; opaline import lists all";
   forget_places(scene);
@@ -241,7 +244,8 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
   }
   Scene scene = read_scene(document);
   scene.camera_frames = camera_frames;
-  scene.asset_warnings = texture_warnings(scene);
+  scene.warnings = document.warnings;
+  for (std::string& warning : texture_warnings(scene)) scene.warnings.push_back(std::move(warning));
   return scene;
 }
 
@@ -261,6 +265,7 @@ std::string edited_scene(std::string_view text, const std::string& file,
 Medium parse_medium(std::string_view text, const std::string& file) {
   Document document{file, text, {}, {}, 1, line_starts_of(text)};
   document.root = parse_tree(document, text);
+  replace_deprecated_spellings(document, document.root, "");
   document.root.key = "medium";
   return read_medium(Value(document, document.root, document.root.key, key_info("scene", "media")), 1);
 }

@@ -50,7 +50,6 @@ std::vector<KeyInfo> medium_rows() {
           "diffusion depends on `sigma_s_prime` only"),
       row("medium", "specular_ior", number, "", {.1, 10},
           "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
-      row("medium", "eta", number, "", {.1, 10}, "", "another word for `specular_ior`; use one of the two"),
       textured(row(
           "medium", "specular_roughness", number, "", kUnitInterval, "0",
           "of the surface as it mirrors: 0 smooth, .3 satin; alone a rough one shows highlights of lights "
@@ -83,6 +82,12 @@ std::vector<KeyInfo> medium_rows() {
           "leaves on "
           "this one"),
       row("medium", "profile", choice, "", kFiniteNumber, "`\"auto\"`", profile_meaning(), kProfileChoices),
+      row("medium", "fit", choice, "", kFiniteNumber, "`\"refit\"`",
+          "length of `\"normalized_diffusion\"`, which replaces `\"auto\"` then: `\"refit\"`, fitted to "
+          "random "
+          "walks behind a boundary; of Christensen & Burley 2015 without a boundary `\"diffuse_entry\"`, "
+          "`\"searchlight\"` (a beam) and `\"dmfp\"` (by the diffuse mean free path)",
+          kFitNames),
   };
 }
 

@@ -148,7 +148,8 @@ Names similar_names(std::string_view name, std::span<const std::string_view> can
 }
 
 /// The sections that stand once in a scene, so that their keys have one path.
-constexpr std::array<std::string_view, 3> kSingleSections{"camera", "film", "settings"};
+constexpr std::array<std::string_view, 4> kSingleSections{"camera", "film", "settings",
+                                                          "settings.laboratory"};
 
 /// Paths of the keys that are called like this, there or by another program.
 Names paths_of(std::string_view key) {

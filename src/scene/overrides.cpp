@@ -2,25 +2,16 @@
 #include "scene/overrides.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "opaline/scene/nearest_name.h"
 #include "opaline/scene/schema.h"
+#include "scene/deprecated_spellings.h"
 
 namespace opaline {
 namespace {
-
-constexpr std::array<std::string_view, 2> synonyms{"specular_ior", "eta"};
-
-bool same_key(std::string_view a, std::string_view b) {
-  const auto is_synonym = [](std::string_view key) {
-    return std::find(synonyms.begin(), synonyms.end(), key) != synonyms.end();
-  };
-  return a == b || (is_synonym(a) && is_synonym(b));
-}
 
 /// What a list's element is called: its own name, or the default one ("shape0" in "shapes").
 std::string element_name(const Node& list, std::size_t i) {
@@ -129,11 +120,8 @@ class Override {
     if (parent.kind != Node::Kind::object)
       fail("'" + printable(so_far) + "' is a single value, there is no '" + printable(name) + "' in it",
            "--set " + printable(so_far) + "=VALUE");
-    for (Node& child : parent.children) {
-      if (!same_key(child.key, name)) continue;
-      child.key = name;
-      return child;
-    }
+    for (Node& child : parent.children)
+      if (child.key == name) return child;
     Node& child = parent.children.emplace_back();
     child.kind = Node::Kind::object;
     child.key = name;
@@ -243,8 +231,7 @@ void drop_replaced_surface(Node& shape) {
     return member != nullptr && member->override_index >= 0;
   };
   const auto drop = [&](std::string_view key) {
-    std::erase_if(shape.children,
-                  [&](const Node& c) { return c.override_index < 0 && same_key(c.key, key); });
+    std::erase_if(shape.children, [&](const Node& c) { return c.override_index < 0 && c.key == key; });
   };
   if (is_given("medium"))
     for (const char* key : {"reflectance", "metalness", "specular_roughness", "specular_ior",
@@ -258,7 +245,10 @@ void drop_replaced_surface(Node& shape) {
 
 void apply_overrides(Document& document) {
   const std::set<std::string> names = media_names(document.root);
-  for (std::size_t i = 0; i < document.overrides.size(); ++i) Override(document, static_cast<int>(i)).apply();
+  for (std::size_t i = 0; i < document.overrides.size(); ++i) {
+    Override(document, static_cast<int>(i)).apply();
+    replace_deprecated_spellings(document);
+  }
   check_new_media(document, names);
   for (Node& member : document.root.children)
     if (member.key == "shapes") std::ranges::for_each(member.children, drop_replaced_surface);

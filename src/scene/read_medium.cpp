@@ -165,9 +165,7 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   }
   if (const auto g = reader.find(form == "sigma_s" ? "g" : "scatter_anisotropy"))
     medium.scatter_anisotropy = g->number();
-  const auto eta = reader.find("eta"), specular_ior = reader.find("specular_ior");
-  if (eta && specular_ior) eta->fail_key("and 'specular_ior' are the same", "one of the two");
-  if (eta || specular_ior) medium.eta = (eta ? eta : specular_ior)->number();
+  if (const auto ior = reader.find("specular_ior")) medium.eta = ior->number();
   if (const auto weight = reader.find("specular_weight"))
     medium.eta = weighted_ior(medium.eta, weight->number());
   if (const auto rough = reader.find("specular_roughness")) {
@@ -185,6 +183,11 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   const auto thickness = reader.find("thickness");
   if (thickness) medium.thickness = thickness->length(mm_per_unit);
   if (thickness && choice == 0) medium.profile = ProfileKind::multipole;
+  if (const auto fit = reader.find("fit")) {
+    medium.fit = NormalizedDiffusionFit(fit->choice());
+    if (thickness && choice == 0) fit->fail_key("cannot stand beside 'thickness'", "a 'profile' beside them");
+    if (choice == 0) medium.profile = ProfileKind::normalized_diffusion;
+  }
   return medium;
 }
 

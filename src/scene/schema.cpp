@@ -80,6 +80,8 @@ std::vector<KeyInfo> scene_rows() {
       row("scene", "camera", object, "", kFiniteNumber, "see camera", "where the picture is taken from"),
       row("scene", "film", object, "", kFiniteNumber, "see film", "the picture itself"),
       row("scene", "settings", object, "", kFiniteNumber, "see settings", "how it is computed"),
+      row("scene", "$schema", text, "", kFiniteNumber, "none",
+          "JSON Schema of the file, for an editor; opaline ignores it"),
   };
 }
 
@@ -220,6 +222,7 @@ std::vector<KeyInfo> all_rows() {
     rows.insert(rows.end(), part.begin(), part.end());
   for (const Member<Film>& member : film_members()) rows.push_back(member.info);
   for (const Member<Settings>& member : settings_members()) rows.push_back(member.info);
+  for (const Member<Laboratory>& member : laboratory_members()) rows.push_back(member.info);
   return rows;
 }
 
@@ -302,6 +305,11 @@ std::span<const std::string_view> section_keys(std::string_view section) {
   }();
   const auto found = sections.find(section);
   return found == sections.end() ? std::span<const std::string_view>() : found->second;
+}
+
+std::string settings_path(std::string_view key) {
+  const bool is_laboratory = std::ranges::count(section_keys("settings.laboratory"), key) > 0;
+  return fmt::format("settings.{}{}", is_laboratory ? "laboratory." : "", key);
 }
 
 std::string documentation(const KeyInfo& info) {

@@ -20,6 +20,8 @@ template <>
 constexpr std::string_view kSection<Film> = "film";
 template <>
 constexpr std::string_view kSection<Settings> = "settings";
+template <>
+constexpr std::string_view kSection<Laboratory> = "settings.laboratory";
 
 // ---- members of one value ---------------------------------------------------------------------------------
 
@@ -92,6 +94,21 @@ void read_tolerance(Settings& settings, const Value& value, double) {
   if (settings.tolerance < kLeastTolerance)
     value.fail("cannot be kept: sums in single precision are off by .006 %",
                "at least 1e-4; \"evaluator\": \"brute_force\" is exact");
+}
+
+void read_laboratory(Settings& settings, const Value& value, double mm_per_unit) {
+  const ObjectReader reader(value, kSection<Laboratory>);
+  for (const Member<Laboratory>& member : laboratory_members())
+    if (const std::optional<Value> given = reader.find(member.info.key))
+      member.read(settings.laboratory, *given, mm_per_unit);
+}
+
+std::string laboratory_json(const Settings& settings) {
+  std::string json;
+  for (const Member<Laboratory>& member : laboratory_members())
+    json += fmt::format("{}\"{}\":{}", json.empty() ? "" : ",", member.info.key,
+                        member.json(settings.laboratory));
+  return '{' + json + '}';
 }
 
 // ---- members that are more than one value -----------------------------------------------------------------
@@ -176,6 +193,13 @@ std::span<const Member<Film>> film_members() {
 
 std::span<const Member<Settings>> settings_members() {
   using enum ValueType;
+  static const KeyInfo laboratory{"settings",
+                                  "laboratory",
+                                  object,
+                                  "",
+                                  kFiniteNumber,
+                                  "none",
+                                  "switches for experiments, see `docs/laboratory.md`"};
   static const std::vector<Member<Settings>> table{
       member<&Settings::method>(
           "method", choice, "", kFiniteNumber, "",
@@ -197,22 +221,6 @@ std::span<const Member<Settings>> settings_members() {
                   "dual tree, and a surface cache that is asked for: 99 % of the points are at least this "
                   "close to "
                   "the exact sum, relatively; what is smaller single precision does not keep")),
-      member<&Settings::instruction_set>(
-          "instruction_set", choice, "", kFiniteNumber, "",
-          "dual tree: `\"automatic\"`: the widest vectors of the machine; `\"baseline\"`, `\"avx2\"`, "
-          "`\"avx512\"`: these"),
-      member<&Settings::max_solid_angle>(
-          "max_solid_angle", number, "sr", {0, 1e30, true}, "",
-          "classic: open a node that looks larger than this; smaller is slower and closer to the exact sum"),
-      member<&Settings::near_field>(
-          "near_field", flag, "", kFiniteNumber, "",
-          "treat the light that enters close by separately: far fewer samples needed"),
-      member<&Settings::near_irradiance>(
-          "near_irradiance", choice, "", kFiniteNumber, "",
-          "the irradiance of the light that enters close by: `\"samples\"`: their mean around the point; "
-          "`\"point\"`: traced at the point; `\"mixed\"`: as much of each as keeps the width of the kernel, "
-          "and "
-          "traced at places around the point where the two differ"),
       member<&Settings::sample_spacing>("sample_spacing", length, "", kFiniteNumber,
                                         "from the medium's mean free path",
                                         "distance between samples, sqrt(area / samples)"),
@@ -227,10 +235,6 @@ std::span<const Member<Settings>> settings_members() {
                                        "surface, to each area light and to the "
                                        "surroundings; where lights are more than 16, to all area lights "
                                        "together, and a third of them to all others"),
-      member<&Settings::entry_strategy>("entry_strategy", choice, "", kFiniteNumber, "",
-                                        "direct: how the places where light entered are drawn; "
-                                        "`\"disc_axes\"`: lines through discs along three "
-                                        "axes; `\"chords\"`: chords of spheres, for comparison"),
       member<&Settings::entry_samples>(
           "entry_samples", whole_number, "", {1, kMostSamples},
           fmt::format("{}, or as many as `until_error` takes", kDefaultEntrySamples),
@@ -258,6 +262,35 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::reference_frame>("reference_frame", whole_number, "", {0, 1e9}, "",
                                          "of frame ranges: samples are placed on the surfaces of this frame "
                                          "and go along with them to all others"),
+      {laboratory, read_laboratory, laboratory_json},
+  };
+  return table;
+}
+
+std::span<const Member<Laboratory>> laboratory_members() {
+  using enum ValueType;
+  static const std::vector<Member<Laboratory>> table{
+      member<&Laboratory::instruction_set>(
+          "instruction_set", choice, "", kFiniteNumber, "",
+          "instructions of the dual tree: `\"automatic\"`, the widest of the machine; `\"baseline\"`, "
+          "`\"avx2\"` or `\"avx512\"`"),
+      member<&Laboratory::max_solid_angle>(
+          "max_solid_angle", number, "sr", {0, 1e30, true}, "",
+          "largest solid angle of a node that evaluator `classic` does not open; a smaller one is slower and "
+          "closer to the exact sum"),
+      member<&Laboratory::near_field>("near_field", flag, "", kFiniteNumber, "",
+                                      "integrate the kernel near the shading point separately; `false` needs "
+                                      "far more samples"),
+      member<&Laboratory::near_irradiance>(
+          "near_irradiance", choice, "", kFiniteNumber, "",
+          "irradiance of the near field: `\"samples\"`, the mean of the samples around the point; "
+          "`\"point\"`, "
+          "traced at the point; `\"mixed\"`, as much of each as preserves the width of the kernel, traced at "
+          "points around where the two differ"),
+      member<&Laboratory::entry_strategy>("entry_strategy", choice, "", kFiniteNumber, "",
+                                          "sampling of entry points by method `direct`: `\"disc_axes\"`, "
+                                          "lines through discs along three axes; "
+                                          "`\"chords\"`, chords of spheres"),
   };
   return table;
 }

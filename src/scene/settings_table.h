@@ -21,5 +21,6 @@ struct Member {
 
 std::span<const Member<Film>> film_members();
 std::span<const Member<Settings>> settings_members();
+std::span<const Member<Laboratory>> laboratory_members();
 
 }  // namespace opaline

@@ -85,7 +85,10 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
                       std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
   KeyBuilder key("surfaces in their light", 4);
-  key.add(settings.seed).add(settings.tolerance).add(settings.evaluator).add(settings.max_solid_angle);
+  key.add(settings.seed)
+      .add(settings.tolerance)
+      .add(settings.evaluator)
+      .add(settings.laboratory.max_solid_angle);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];

@@ -55,7 +55,7 @@ SetValues read_values(const MessageReader& reader) {
   SetValues message{{}, reader.whole("stroke")};
   for (const Node& child : reader.need("values", Node::Kind::object, "{\"path\": value}").children) {
     if (child.key.empty() || child.key.find('=') != std::string::npos)
-      reader.fail(child, "is no path", "a path such as media.marble.eta");
+      reader.fail(child, "is no path", "a path such as media.marble.specular_ior");
     message.values.push_back({child.key, to_json(child)});
   }
   return message;

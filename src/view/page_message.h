@@ -67,8 +67,8 @@ using PageMessage =
     std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer, WorkBehind,
                  ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack, KeepLook>;
 
-/// in    text: {"do": "set", "values": {"media.marble.eta": 1.4}, "stroke": 7}, {"do": "undo"}, {"do": "redo"},
-///       {"do": "reset"}, {"do": "restore", "edits": ["media.marble.eta=1.4"]}, {"do": "save", "name": "a.json"},
+/// in    text: {"do": "set", "values": {"media.marble.specular_ior": 1.4}, "stroke": 7}, {"do": "undo"}, {"do": "redo"},
+///       {"do": "reset"}, {"do": "restore", "edits": ["media.marble.specular_ior=1.4"]}, {"do": "save", "name": "a.json"},
 ///       {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
 ///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "choose", "error": 0.01},
 ///       {"do": "frame", "frame": 7}, {"do": "shown", "frame": 3},

@@ -140,12 +140,12 @@ TEST(AssetFiles, AreFoundBeside) {
     folder.put_obj("a.mtl", name);
     const Scene found = load_scene(folder.file("asset/a.obj"));
     EXPECT_TRUE(found.shapes.at(0).reflectance_texture) << name;
-    EXPECT_EQ(found.asset_warnings.size(), name[0] == '"' ? 0u : 1u) << name;
+    EXPECT_EQ(found.warnings.size(), name[0] == '"' ? 0u : 1u) << name;
   }
   folder.put_textured("/home/x/own.png");
   const Scene glb = load_scene(folder.file("asset/a.glb"));
   EXPECT_TRUE(glb.shapes.at(0).reflectance_texture);
-  EXPECT_TRUE(has(glb.asset_warnings, "'own.png' beside is taken"));
+  EXPECT_TRUE(has(glb.warnings, "'own.png' beside is taken"));
 }
 
 // Claim: an OBJ and an MTL that begin with a byte order mark are read as without. Fails if their first line is lost.

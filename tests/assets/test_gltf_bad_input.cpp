@@ -158,7 +158,7 @@ TEST(GltfBadInput, SmallFaultsAreForgiven) {
   const Scene scene = load_scene(folder.file("a.glb"));
   EXPECT_EQ(scene.shapes.at(0).reflectance, Rgb(.8, .2, .2));
   EXPECT_EQ(mesh_of(folder.file("a.glb"), "0/0").mesh.triangles.size(), 1584u / 3);
-  EXPECT_TRUE(has(scene.asset_warnings, "not aligned to 4 bytes"));
+  EXPECT_TRUE(has(scene.warnings, "not aligned to 4 bytes"));
   EXPECT_EQ(error_of("\xef\xbb\xbf" + cube_asset().gltf()), "");
 }
 

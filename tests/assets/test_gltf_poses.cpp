@@ -63,7 +63,7 @@ TEST(GltfPoses, ASkinIgnoresItsNode) {
   const Scene scene = load_scene(OPALINE_TEST_INPUTS "/skin_root.glb");
   ASSERT_EQ(scene.shapes.size(), 1u);
   EXPECT_NEAR(surface_area(make_mesh(scene.shapes[0]).mesh), 5009, 1);
-  EXPECT_TRUE(scene.asset_warnings.empty());
+  EXPECT_TRUE(scene.warnings.empty());
 }
 
 // Claim: each vertex is at the weighted mean of its joints' world matrices times their inverse bind matrices; without

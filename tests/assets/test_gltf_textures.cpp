@@ -213,7 +213,7 @@ TEST(ObjTextures, AreTakenFromLibraries) {
             (std::array<double, 2>{.25, -2.5}));  // v = 0, downwards 1, becomes .5, downwards .5
   EXPECT_EQ(odd.scale, Rgb(.5));
   EXPECT_EQ(
-      scene.asset_warnings,
+      scene.warnings,
       (std::vector<std::string>{folder.file("maps/a.mtl") +
                                 ":6: map_Kd 'p.png' of material 'odd': the option '-clamp on' is left out"}));
 }

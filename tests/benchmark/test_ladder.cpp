@@ -67,7 +67,7 @@ TEST(Ladder, SettingsAreTheScenes) {
     EXPECT_EQ(scene.settings.evaluator == EvaluatorKind::brute_force, rung.evaluator == "brute_force");
     EXPECT_EQ(scene.settings.bounces.has_value(), rung.knob == "bounces");
     if (rung.knob == "max_solid_angle") {
-      EXPECT_EQ(scene.settings.max_solid_angle, std::stod(rung.value));
+      EXPECT_EQ(scene.settings.laboratory.max_solid_angle, std::stod(rung.value));
     }
     if (rung.knob == "samples") {
       EXPECT_EQ(scene.settings.samples, std::stoul(rung.value));

@@ -175,7 +175,7 @@ TEST(CliFrames, Resumes) {
   };
   EXPECT_EQ(rendered("1-4"), 1u);
   EXPECT_EQ(rendered("1-4"), 0u);
-  EXPECT_EQ(rendered("1-4", {"--set", "media.marble.eta=1.4"}), 4u);
+  EXPECT_EQ(rendered("1-4", {"--set", "media.marble.specular_ior=1.4"}), 4u);
   EXPECT_EQ(rendered("1-4"), 4u);
   std::filesystem::copy_file(shot.mesh(5), shot.mesh(2), std::filesystem::copy_options::overwrite_existing);
   EXPECT_EQ(rendered("1-4"), 1u);
@@ -334,13 +334,13 @@ TEST(CliFrames, ScriptPassesOptionsOn) {
   const Shot shot;
   ASSERT_EQ(shot.render("1-2", "one",
                         {"--cache", shot.file("one-cache"), "--seed", "3", "--set", "settings.samples=700",
-                         "--set=media.marble.eta=1.4"})
+                         "--set=media.marble.specular_ior=1.4"})
                 .exit_code,
             0);
   ASSERT_EQ(run_script("", "frames-parallel",
                        "1 1-2 " + shot.scene + ' ' + shot.file("parallel.####.exr") + ' ' +
                            shot.file("parallel-cache") +
-                           " --seed 3 --set settings.samples=700 --set=media.marble.eta=1.4"),
+                           " --seed 3 --set settings.samples=700 --set=media.marble.specular_ior=1.4"),
             0);
   EXPECT_EQ(names_in(shot.file("parallel-cache")), names_in(shot.file("one-cache")));
   for (const int frame : {1, 2})

@@ -43,7 +43,7 @@ class CliGoldens : public testing::TestWithParam<GoldenPicture> {};
 
 // Claim: a shipped scene has the picture that it had, value by value. Tolerance: 1 % and 2 of 1000 values, for rays at edges
 // that other processors round to the other side. Fails if: light, a medium, a coat, a texture, the room or what bounces
-// changes by more than 1 % (seen with media.marble.eta=1.52, with the table's reflectance times .97, and without bounces).
+// changes by more than 1 % (seen with media.marble.specular_ior=1.52, with the table's reflectance times .97, and without bounces).
 TEST_P(CliGoldens, AreAsTheyWere) {
   const GoldenPicture& golden = GetParam();
   const ScratchFolder folder;

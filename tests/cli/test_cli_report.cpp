@@ -237,10 +237,11 @@ TEST(LongCliReport, SpoiltPartShows) {
   const struct {
     std::string part;
     std::vector<std::string> settings, others;
-  } cases[] = {
-      {"hierarchy", {"settings.evaluator=classic", "settings.max_solid_angle=3"}, {"sampling", "irradiance"}},
-      {"irradiance", {"settings.light_samples=2"}, {"hierarchy", "interpolation"}},
-      {"sampling", {"settings.samples=60"}, {"hierarchy", "interpolation"}}};
+  } cases[] = {{"hierarchy",
+                {"settings.evaluator=classic", "settings.laboratory.max_solid_angle=3"},
+                {"sampling", "irradiance"}},
+               {"irradiance", {"settings.light_samples=2"}, {"hierarchy", "interpolation"}},
+               {"sampling", {"settings.samples=60"}, {"hierarchy", "interpolation"}}};
   const std::map<std::string, double> sound = parts_with(folder, {});
   for (const auto& c : cases) {
     const std::map<std::string, double> spoilt = parts_with(folder, c.settings);

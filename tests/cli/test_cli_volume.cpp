@@ -75,7 +75,7 @@ TEST(CliVolume, SumsOfAnotherSceneAreAnError) {
   ASSERT_EQ(run({}).exit_code, 0);
   const std::string before = bytes_of(sums);
   for (const std::vector<std::string>& other : {std::vector<std::string>{"--seed", "3"},
-                                                {"--set", "media.marble.eta=1.2"},
+                                                {"--set", "media.marble.specular_ior=1.2"},
                                                 {"--set", "settings.reenter=false"}}) {
     const Outcome outcome = run(other);
     EXPECT_EQ(outcome.exit_code, 2);

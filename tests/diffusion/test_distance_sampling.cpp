@@ -86,7 +86,7 @@ long double share_beyond(const ChannelProfile& profile, double beyond, double r)
     return beyond_radius(Real(r) / Real(better->mean_free_path)) / beyond_radius(0);
   }
   if (const auto* tabulated = std::get_if<TabulatedProfile>(&profile))
-    return tabulated->shape->table().beyond(r / tabulated->mean_free_path);
+    return tabulated->shape->get().table.beyond(r / tabulated->mean_free_path);
   const Dipole& dipole = std::get<Dipole>(profile);
   const Real ratio = std::exp(Real(dipole.s_real) - Real(dipole.s_virtual));
   const Real of_virtual = ratio / (1 + ratio), of_real = 1 / (1 + ratio);

@@ -9,6 +9,13 @@ namespace {
 
 using namespace test;
 
+using enum NormalizedDiffusionFit;
+
+NormalizedDiffusion fitted(NormalizedDiffusionFit fit, double mean_free_path, double absorbed, double eta) {
+  return make_profile({.mean_free_path = mean_free_path, .absorbed = absorbed, .eta = eta, .fit = fit},
+                      std::type_identity<NormalizedDiffusion>());
+}
+
 // Claim: R_d = A (e^(-r/d) + e^(-r/3d))/(8 pi d r). Source: Christensen & Burley 2015, equation 2. Tolerance:
 // 1e-14 relative. Fails if: 3d is d/3.
 TEST(NormalizedDiffusion, IsTheFormula) {
@@ -27,17 +34,16 @@ TEST(NormalizedDiffusion, ShapeLength) {
     EXPECT_NEAR(make_normalized_diffusion(.4, A).d, .4 / (1.9 - A + 3.5 * (A - .8) * (A - .8)), 1e-14) << A;
   for (const double eta : {.75, 1., 1.5})
     for (const double absorbed : {1e-6, .01, .5, .99}) {
-      const ReducedMedium medium{.4, absorbed, eta};
       const double A = half_space_albedo(absorbed, eta), l_d = .4 / std::sqrt(3 * absorbed / (1 + absorbed));
-      const auto diffuse = make_profile(medium, std::type_identity<NormalizedDiffusion>());
-      const auto beam = make_profile(medium, std::type_identity<NormalizedDiffusionSearchlight>());
-      const auto dmfp = make_profile(medium, std::type_identity<NormalizedDiffusionDmfp>());
+      const NormalizedDiffusion diffuse = fitted(diffuse_entry, .4, absorbed, eta),
+                                beam = fitted(searchlight, .4, absorbed, eta),
+                                by_dmfp = fitted(dmfp, .4, absorbed, eta);
       EXPECT_NEAR(diffuse.d * (1.9 - A + 3.5 * (A - .8) * (A - .8)) / .4, 1, 1e-13);
       EXPECT_NEAR(beam.d * (1.85 - A + 7 * std::pow(std::abs(A - .8), 3)) / .4, 1, 1e-13);
-      EXPECT_NEAR(dmfp.d * (3.5 + 100 * std::pow(A - .33, 4)) / l_d, 1, 1e-13);
+      EXPECT_NEAR(by_dmfp.d * (3.5 + 100 * std::pow(A - .33, 4)) / l_d, 1, 1e-13);
       EXPECT_EQ(diffuse.total, A);
       EXPECT_EQ(beam.total, A);
-      EXPECT_EQ(dmfp.total, A);
+      EXPECT_EQ(by_dmfp.total, A);
     }
 }
 
@@ -65,14 +71,10 @@ TEST(NormalizedDiffusion, RefitIsTheBestOfItsForm) {
     settings.seed = 31;
     settings.walks = 30000;
     const SlabWalks walked = walk_slab({absorbed, 1 - absorbed, 0, eta}, {}, kDiffuseEntry, settings);
-    const ReducedMedium medium{1, absorbed, eta};
     double best = 2;
     for (double d = .05; d < 20; d *= 1.02) best = std::min(best, l1_difference(walked, {1, d}));
-    EXPECT_LT(l1_difference(walked, make_profile(medium, std::type_identity<NormalizedDiffusionRefit>())),
-              best + .02)
-        << absorbed << " " << eta;
-    EXPECT_GT(l1_difference(walked, make_profile(medium, std::type_identity<NormalizedDiffusion>())),
-              published)
+    EXPECT_LT(l1_difference(walked, fitted(refit, 1, absorbed, eta)), best + .02) << absorbed << " " << eta;
+    EXPECT_GT(l1_difference(walked, fitted(diffuse_entry, 1, absorbed, eta)), published)
         << absorbed << " " << eta;
   }
 }
@@ -81,15 +83,11 @@ TEST(NormalizedDiffusion, RefitIsTheBestOfItsForm) {
 // of the refit's etas. Source: the contract. Fails if: l_d is divided out.
 TEST(NormalizedDiffusion, FiniteWithoutAbsorption) {
   for (const double eta : {.3, 1., 1.5, 8.})
-    for (const double absorbed : {0., 1e-12, 1 - 1e-12}) {
-      const ReducedMedium medium{1, absorbed, eta};
-      for (const NormalizedDiffusion& profile :
-           {make_profile(medium, std::type_identity<NormalizedDiffusion>()),
-            NormalizedDiffusion(make_profile(medium, std::type_identity<NormalizedDiffusionSearchlight>())),
-            NormalizedDiffusion(make_profile(medium, std::type_identity<NormalizedDiffusionDmfp>())),
-            NormalizedDiffusion(make_profile(medium, std::type_identity<NormalizedDiffusionRefit>()))})
+    for (const double absorbed : {0., 1e-12, 1 - 1e-12})
+      for (const NormalizedDiffusionFit fit : {diffuse_entry, searchlight, dmfp, refit}) {
+        const NormalizedDiffusion profile = fitted(fit, 1, absorbed, eta);
         EXPECT_TRUE(std::isfinite(profile.d) && profile.d > 0) << eta << " " << absorbed;
-    }
+      }
 }
 
 // Claim: it integrates to A, its running integral is the closed form, .996379 of it within 16 d, and the mean

@@ -99,7 +99,7 @@ TEST(Tabulated, SameBits) {
 // Fails if: the constructor changes the numbers that it was made from once more.
 TEST(Tabulated, HandedOver) {
   const TabulatedProfile a = tabulated(1, .03, 1.4);
-  const RadialTable& walked = a.shape->table();
+  const RadialTable& walked = a.shape->get().table;
   const RadialTable copy(walked.reference(), walked.logarithms());
   for (double r = 1e-4; r < 1e3; r *= 1.7) EXPECT_EQ(copy.density(r), walked.density(r)) << r;
 }

@@ -51,6 +51,7 @@ const std::vector<std::string>* names_of(const std::string& key) {
       {"near_irradiance", {"samples", "point", "mixed"}},
       {"entry_strategy", {"disc_axes", "chords"}},
       {"profile", {"auto", "dipole", "normalized_diffusion", "multipole", "directional_dipole"}},
+      {"fit", {"diffuse_entry", "searchlight", "dmfp", "refit"}},
       {"preset", {"marble", "skin1", "wholemilk", "spectralon", "ketchup"}},
       {"normals", {"smooth", "faceted"}},
       {"filter", {"box", "gaussian"}},
@@ -94,6 +95,7 @@ Json value_of(const std::string& key, Random& random) {
     return Json{uniform(random, 0, 1), uniform(random, 0, 1), double(below(random, 2))};
   if (key == "uv_scale" || key == "uv_offset") return Json{signed_number(random), signed_number(random)};
   if (key == "near_field" || key == "fill_holes") return random() % 2 == 0;
+  if (key == "laboratory") return object_of("settings.laboratory", random);
   if (key == "rotate") return object_of("shape.transform.rotate", random);
   if (key == "transform") return Json{transform_of(random), transform_of(random)};
   if (key == "matrix") {
@@ -131,6 +133,7 @@ std::string section_at(const std::vector<std::string>& path, const Json& object)
   if (first == "media") return path.size() == 2 ? "medium" : "";
   if (first == "lights") return path.size() == 2 ? "light." + object.value("type", Json("point")).dump() : "";
   if (first == "shapes") return path.size() == 2 ? "shape" : path.size() == 3 ? "shape." + path[2] : "";
+  if (path.size() == 2 && path[1] == "laboratory") return "settings.laboratory";
   return path.size() == 1 ? first : "";
 }
 

@@ -16,6 +16,7 @@ namespace {
 std::vector<Scene> small_scenes() {
   Medium skin{"skin", PhysicalMedium{{.032, .17, .48}, {.74, .88, 1.01}}, 1.3,
               ProfileKind::normalized_diffusion};
+  skin.fit = NormalizedDiffusionFit::diffuse_entry;
   Scene balls = two_balls();
   balls.film.resolution = {96, 64};
   for (Shape& shape : balls.shapes) shape.reflectance = {};  // as the promise leaves it out

@@ -223,7 +223,7 @@ TEST(BouncedLight, OfACropIsThatOfTheWhole) {
 TEST(BouncedLight, IsGatheredWhereItIsAskedFor) {
   Scene scene = ball_beside_wall();
   scene.shapes.erase(scene.shapes.begin(), scene.shapes.begin() + 2);
-  scene.settings.near_irradiance = NearIrradiance::samples;
+  scene.settings.laboratory.near_irradiance = NearIrradiance::samples;
   const Prepared prepared(scene);
   const std::uint64_t before = prepared.rays.statistics().rays;
   prepared.picture();

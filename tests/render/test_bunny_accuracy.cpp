@@ -95,7 +95,7 @@ TEST(LongBunnyAccuracy, AgainstThreeMillionSamples) {
 // The green channel where the object covers the pixel, else 0.
 std::vector<double> bunny_picture(std::size_t samples) {
   Scene scene = bunny(samples);
-  scene.settings.max_solid_angle = 0.02;
+  scene.settings.laboratory.max_solid_angle = 0.02;
   const Prepared prepared(scene);
   const Image image = prepared.picture();
   std::vector<double> green;

@@ -47,13 +47,11 @@ TEST(ChooseModels, EachRowOfTheRule) {
   EXPECT_NEAR(plate.profile.thickness, 1, .01);
   EXPECT_TRUE(plate.is_chosen);
   EXPECT_EQ(model_of(SlabShape{{}, 1000, 1000, 50}).profile.kind, ProfileKind::dipole);
-  EXPECT_EQ(model_of(SphereShape{{}, 12.5}).profile.kind, ProfileKind::normalized_diffusion_refit);
-  EXPECT_EQ(model_of(BoxShape{{-5, -5, -5}, {5, 5, 5}}).profile.kind,
-            ProfileKind::normalized_diffusion_refit);
-  EXPECT_EQ(model_of(BoxShape{{-1, -1, -30}, {1, 1, 30}}).profile.kind,
-            ProfileKind::normalized_diffusion_refit);
+  EXPECT_EQ(model_of(SphereShape{{}, 12.5}).profile.kind, ProfileKind::normalized_diffusion);
+  EXPECT_EQ(model_of(BoxShape{{-5, -5, -5}, {5, 5, 5}}).profile.kind, ProfileKind::normalized_diffusion);
+  EXPECT_EQ(model_of(BoxShape{{-1, -1, -30}, {1, 1, 30}}).profile.kind, ProfileKind::normalized_diffusion);
   const BodyModel open = model_of(QuadShape{{}, {10, 0, 0}, {0, 10, 0}});
-  EXPECT_EQ(open.profile.kind, ProfileKind::normalized_diffusion_refit);
+  EXPECT_EQ(open.profile.kind, ProfileKind::normalized_diffusion);
   EXPECT_FALSE(open.expected_error || open.expected_error_of_diffusion);
 }
 
@@ -79,7 +77,7 @@ TEST(ChooseModels, EachBodyForItself) {
   choose_models(scene, world);
   ASSERT_EQ(scene.media.size(), 2u);
   EXPECT_EQ(scene.media[*scene.shapes[0].medium].chosen.kind, ProfileKind::multipole);
-  EXPECT_EQ(scene.media[*scene.shapes[1].medium].chosen.kind, ProfileKind::normalized_diffusion_refit);
+  EXPECT_EQ(scene.media[*scene.shapes[1].medium].chosen.kind, ProfileKind::normalized_diffusion);
   EXPECT_EQ(scene.shapes[2].medium, scene.shapes[0].medium);
   EXPECT_EQ(scene.media[1].coefficients, scene.media[0].coefficients);
   const Scene chosen = scene;
@@ -97,7 +95,7 @@ TEST(ChooseModels, FramesAgree) {
     reference.settings.method = frame.settings.method = method;
     Session session;
     session.edit(frame);
-    EXPECT_EQ(session.plan().groups[0].model.profile.kind, ProfileKind::normalized_diffusion_refit);
+    EXPECT_EQ(session.plan().groups[0].model.profile.kind, ProfileKind::normalized_diffusion);
     session.anchor(reference);
     session.edit(frame);
     EXPECT_EQ(session.plan().groups[0].model.profile.kind, ProfileKind::multipole);

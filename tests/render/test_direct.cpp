@@ -44,7 +44,7 @@ TEST(Direct, WhiteFurnace) {
       scene.film.resolution = {16, 16};
       scene.film.samples_per_pixel = 2;
       scene.camera.field_of_view = 25;
-      scene.settings.entry_strategy = strategy;
+      scene.settings.laboratory.entry_strategy = strategy;
       DirectScene ball(scene);
       const Image image = ball.picture(16);
       const double returned = diffuse_reflectance_within(ball.profile().channels[1], 50);
@@ -76,7 +76,7 @@ TEST(Direct, StrategiesAgreeOnTheBunny) {
     scene.camera.position = {0, 30, 90};
     scene.camera.look_at = {0, 24, 0};
     scene.film.resolution = {64, 64};
-    scene.settings.entry_strategy = strategy;
+    scene.settings.laboratory.entry_strategy = strategy;
     pictures.push_back(DirectScene(scene).picture(8));
   }
   double all = 0, all_variance = 0, largest = 0;
@@ -133,7 +133,7 @@ TEST(Direct, NoBleedUnlessGrouped) {
       scene.lights = {point_light({-200, 0, 0}, Rgb(1e5))};
       scene.camera.position = {0, 0, 60};
       scene.camera.field_of_view = 25;
-      scene.settings.entry_strategy = strategy;
+      scene.settings.laboratory.entry_strategy = strategy;
       scene.settings.bounces = 0;
       const Image image = DirectScene(scene).picture(4);
       double right = 0;
@@ -197,7 +197,7 @@ TEST(Direct, ChannelsThatDoNotScatterAreBlack) {
       for (const double sigma_a : {0., .1}) {
         Scene scene = lit_box(12);
         scene.media[0].coefficients = PhysicalMedium{Rgb(sigma_a), sigma_s_prime};
-        scene.settings.entry_strategy = strategy;
+        scene.settings.laboratory.entry_strategy = strategy;
         DirectScene box(scene);
         DirectState state;
         const DirectResult result = box.run(state, 2);

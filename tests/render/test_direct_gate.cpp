@@ -17,9 +17,12 @@ struct Row {
 };
 
 Scene scene_of(const Row& row, const std::vector<std::string>& more) {
-  std::vector<std::string> overrides{"film.resolution=[256,256]", "film.samples_per_pixel=1",
-                                     "film.filter=box", "settings.samples=100000",
-                                     "media." + row.medium + ".profile=" + row.profile};
+  std::vector<std::string> overrides{"film.resolution=[256,256]",
+                                     "film.samples_per_pixel=1",
+                                     "film.filter=box",
+                                     "settings.samples=100000",
+                                     "media." + row.medium + ".profile=" + row.profile,
+                                     "media." + row.medium + ".fit=diffuse_entry"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return load_scene(std::string(OPALINE_SCENES_DIR) + "/" + row.scene + ".json", overrides);
 }

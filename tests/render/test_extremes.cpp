@@ -152,7 +152,7 @@ TEST(Extremes, Pictures) {
          s.film.resolution = {1, 1};
        },
        kLit},
-      {"no near field", [](Scene& s) { s.settings.near_field = false; }, kLit},
+      {"no near field", [](Scene& s) { s.settings.laboratory.near_field = false; }, kLit},
       {"normalized diffusion", [](Scene& s) { s.media[0].profile = ProfileKind::normalized_diffusion; },
        kLit},
       {"camera inside the object",

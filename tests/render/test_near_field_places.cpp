@@ -24,7 +24,7 @@ double place_rays(int side, double fill = 0) {
   scene.film.resolution = {side, side};
   scene.settings.evaluator = EvaluatorKind::dual_tree;
   const auto rays_of = [&](NearIrradiance near) {
-    scene.settings.near_irradiance = near;
+    scene.settings.laboratory.near_irradiance = near;
     const Prepared prepared(scene);
     const std::uint64_t before = prepared.rays.statistics().rays;
     prepared.picture();
@@ -43,6 +43,7 @@ struct Noise {
 Noise place_noise(int side) {
   Scene scene = single_shape(TorusShape{{}, 20, 8}, marble(), 8000);
   scene.media[0].profile = ProfileKind::normalized_diffusion;
+  scene.media[0].fit = NormalizedDiffusionFit::diffuse_entry;
   scene.lights = {point_light({30, 60, 40}, {9000, 8000, 7000})};
   scene.camera.position = {0, 50, 90};
   scene.film.resolution = {side, side};

@@ -17,17 +17,19 @@ std::string between_backticks(const std::string& line) {
   return end == std::string::npos ? "" : line.substr(begin + 1, end - begin - 1);
 }
 
-// Claim: the tables of scenes/README.md are the rows of the schema, each in the table of its section, with
+// Claim: the tables of scenes/README.md and docs/laboratory.md are the rows of the schema, each in the table of its section, with
 // the checks and defaults that the reader uses. Fails if a row, a range or a default changes on one side
 // alone; then take over the lines that it prints.
 TEST(SceneDocumentation, HasTheRowsOfTheSchema) {
-  std::ifstream in(scenes + "/README.md");
-  ASSERT_TRUE(in);
   std::map<std::string, std::vector<std::string>> documented, known;
-  std::string line, section;
-  while (std::getline(in, line)) {
-    if (line.starts_with("##")) section = between_backticks(line);
-    if (line.starts_with("| `")) documented[section].push_back(line);
+  for (const char* page : {"/README.md", "/../docs/laboratory.md"}) {
+    std::ifstream in(scenes + page);
+    ASSERT_TRUE(in) << page;
+    std::string line, section;
+    while (std::getline(in, line)) {
+      if (line.starts_with("##")) section = between_backticks(line);
+      if (line.starts_with("| `")) documented[section].push_back(line);
+    }
   }
   for (const KeyInfo& info : schema()) known[std::string(info.section)].push_back(documentation(info));
   EXPECT_GT(schema().size(), 70u);

@@ -12,7 +12,7 @@ const std::string base = R"({
 })";
 
 // Claim: an override puts its value where its path leads, by key, index, name or default name, creates
-// missing keys and replaces synonyms. Source: load_scene.h. Fails if same_key compares with == alone
+// missing keys and replaces old spellings. Source: load_scene.h. Fails if deprecated spellings stay
 // (specular_ior collides).
 TEST(SceneOverrides, Apply) {
   const Scene scene = parse(
@@ -57,7 +57,7 @@ TEST(SceneOverrides, NewMediumWithANearName) {
 TEST(SceneOverrides, OpaqueAndTranslucentReplaceEachOther) {
   const std::string scene = R"({
     "media": {"marble": {"preset": "marble"}},
-    "shapes": [{"sphere": {"radius": 1}, "reflectance": 0.2, "metalness": 1, "specular_roughness": 0.3, "eta": 2},
+    "shapes": [{"sphere": {"radius": 1}, "reflectance": 0.2, "metalness": 1, "specular_roughness": 0.3, "specular_ior": 2},
                {"sphere": {"radius": 1}, "medium": "marble", "group": "a"}]})";
   const Scene swapped = parse(scene, {"shapes.0.medium=marble", "shapes.1.reflectance=0.25"});
   EXPECT_EQ(swapped.shapes[0].medium, 0u);
@@ -80,8 +80,14 @@ TEST(SceneOverrides, Errors) {
   };
   const auto set = [](const std::string& text) { return "--set " + text; };
   const std::vector<Case> cases{
-      {"media.marble.eta=-1", set("media.marble.eta=-1"), 0, {"'media.marble.eta'", "got -1"}},
-      {"media.marble.etta=1", set("media.marble.etta=1"), 0, {"unknown key 'etta'", "did you mean 'eta'?"}},
+      {"media.marble.specular_ior=-1",
+       set("media.marble.specular_ior=-1"),
+       0,
+       {"'media.marble.specular_ior'", "got -1"}},
+      {"media.marble.specular_iro=1",
+       set("media.marble.specular_iro=1"),
+       0,
+       {"unknown key 'specular_iro'", "did you mean 'specular_ior'?"}},
       {"media.marbel.eta=1",
        set("media.marbel.eta=1"),
        0,

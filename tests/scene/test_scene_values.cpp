@@ -198,7 +198,7 @@ TEST(SceneValues, TheRest) {
     "lights": [{"type": "point", "position": [0, 0, 0], "intensity": 0}], "surroundings": [0, 0, 2],
     "film": {"resolution": [16384, 16384], "crop": [1, 2, 3, 16384], "samples_per_pixel": 65536, "filter": "gaussian",
       "pixel_type": "float", "exposure": -1.5},
-    "settings": {"method": "lambert", "evaluator": "brute_force", "max_solid_angle": 0.01, "near_field": false,
+    "settings": {"method": "lambert", "evaluator": "brute_force", "laboratory": {"max_solid_angle": 0.01, "near_field": false},
       "samples": 1e5, "max_samples": 300000, "light_samples": 16, "seed": 9}})");
   EXPECT_EQ(scene.shapes[0].name, "shape0");
   EXPECT_EQ(scene.shapes[1].name, "b");
@@ -221,8 +221,8 @@ TEST(SceneValues, TheRest) {
   EXPECT_EQ(scene.film.exposure, -1.5);
   EXPECT_EQ(scene.settings.method, Method::lambert);
   EXPECT_EQ(scene.settings.evaluator, EvaluatorKind::brute_force);
-  EXPECT_EQ(scene.settings.max_solid_angle, 0.01);
-  EXPECT_FALSE(scene.settings.near_field);
+  EXPECT_EQ(scene.settings.laboratory.max_solid_angle, 0.01);
+  EXPECT_FALSE(scene.settings.laboratory.near_field);
   EXPECT_EQ(scene.settings.samples, 100000u);
   EXPECT_EQ(scene.settings.max_samples, 300000u);
   EXPECT_EQ(scene.settings.light_samples, 16);

@@ -90,7 +90,6 @@ std::vector<Change> changes() {
       {"medium.subsurface_scatter_anisotropy", "media.wax.subsurface_scatter_anisotropy=0.4"},
       {"medium.scatter_anisotropy", "media.stone.scatter_anisotropy=0.6", volume},
       {"medium.specular_ior", "media.stone.specular_ior=1.6"},
-      {"medium.eta", "media.wax.eta=1.6"},
       {"medium.specular_roughness", "media.stone.specular_roughness=0.5"},
       {"medium.specular_weight", "media.stone.specular_weight=0.5"},
       {"medium.specular_anisotropy", "media.stone.specular_anisotropy=0.8", {kRough}},
@@ -109,6 +108,7 @@ std::vector<Change> changes() {
        {"media.wax.texture_mix=medium", R"(media.wax.subsurface_color={"texture": "cells.png"})"}},
       {"medium.thickness", "media.stone.thickness=3", {"media.stone.profile=multipole"}},
       {"medium.profile", "media.stone.profile=dipole"},
+      {"medium.fit", "media.stone.fit=searchlight", {"media.stone.profile=normalized_diffusion"}},
       {"shape.file", R"(shapes.ball={"name": "ball", "file": "bump.obj", "medium": "stone"})"},
       {"shape.part", "shapes.ball.part=lid", {kMesh}},
       {"shape.sphere", "shapes.ball.sphere={\"radius\": 8}"},
@@ -221,9 +221,12 @@ std::vector<Change> changes() {
       {"settings.method", "settings.method=lambert"},
       {"settings.evaluator", "settings.evaluator=surface_cache"},
       {"settings.tolerance", "settings.tolerance=0.3"},
-      {"settings.max_solid_angle", "settings.max_solid_angle=0.5", {"settings.evaluator=classic"}},
-      {"settings.near_field", "settings.near_field=false"},
-      {"settings.near_irradiance", "settings.near_irradiance=samples"},
+      {"settings.laboratory", R"(settings.laboratory={"near_field": false})"},
+      {"settings.laboratory.max_solid_angle",
+       "settings.laboratory.max_solid_angle=0.5",
+       {"settings.evaluator=classic"}},
+      {"settings.laboratory.near_field", "settings.laboratory.near_field=false"},
+      {"settings.laboratory.near_irradiance", "settings.laboratory.near_irradiance=samples"},
       {"settings.sample_spacing",
        "settings.sample_spacing=4",
        {R"(settings={"sample_spacing": 6, "light_samples": 2})"}},
@@ -238,17 +241,18 @@ std::vector<Change> changes() {
 }
 
 /// Of the picture's file, of `direct`, of frames, names of what draws no random numbers, and twins that give the same bits.
-const std::vector<std::string> kWithoutPicture{"shape.name",
+const std::vector<std::string> kWithoutPicture{"scene.$schema",
+                                               "shape.name",
                                                "light.spot.name",
                                                "film.pixel_type",
                                                "film.exposure",
                                                "film.view",
                                                "film.color_space",
-                                               "settings.entry_strategy",
+                                               "settings.laboratory.entry_strategy",
                                                "settings.entry_samples",
                                                "settings.until_error",
                                                "settings.reference_frame",
-                                               "settings.instruction_set"};
+                                               "settings.laboratory.instruction_set"};
 
 /// "section.key", as Change has it.
 std::string name_of(const KeyInfo& info) {

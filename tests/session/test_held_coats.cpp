@@ -107,7 +107,7 @@ std::vector<Edit> edits_of_a_room() {
 // colours of its time (another picture), or is found again without need (rays; near fields look for shadow edges again).
 void expect_edits(bool near_field, int bounces = 0) {
   Scene scene = satin_room();
-  scene.settings.near_field = near_field;
+  scene.settings.laboratory.near_field = near_field;
   scene.settings.bounces = bounces;
   Session session;
   session.hold_view(true);

@@ -14,7 +14,7 @@ Scene balls_and_light() {
   Scene scene = two_balls();
   scene.settings.bounces = 1;
   scene.settings.samples = 800;
-  scene.settings.near_field = false;
+  scene.settings.laboratory.near_field = false;
   scene.settings.evaluator = EvaluatorKind::dual_tree;  // `automatic` looks at some pixels first
   for (Medium& medium : scene.media) medium.specular_roughness = .25;
   scene.film.resolution = {24, 16};
@@ -120,8 +120,8 @@ TEST(HeldGathering, OtherHitsGather) {
   };
   edit("another index", [](Scene& s) { s.media[0].eta = 1.4; });
   edit("that of the strip", [](Scene& s) { s.media[0].eta = 1.5; });
-  edit("a block without places", [](Scene& s) { s.settings.near_field = false; });
-  edit("with places", [](Scene& s) { s.settings.near_field = true; });
+  edit("a block without places", [](Scene& s) { s.settings.laboratory.near_field = false; });
+  edit("with places", [](Scene& s) { s.settings.laboratory.near_field = true; });
 }
 
 // Claim: closer places are chosen by the light there is, and what those of other light gathered is not theirs. Source:

@@ -133,7 +133,7 @@ TEST(Reuse, Medium) {
                 s.media[0].coefficients = ArtistMedium{{.8, .7, .6}, {1, 2, 3}, .1};
               }});
   expect_row({"evaluator", [](Scene& s) { s.settings.evaluator = EvaluatorKind::classic; }});
-  expect_row({"near field", [](Scene& s) { s.settings.near_field = false; }});
+  expect_row({"near field", [](Scene& s) { s.settings.laboratory.near_field = false; }});
   expect_row({"eta", [](Scene& s) { s.media[0].eta = 1.4; }, 3, true});
 }
 

@@ -135,10 +135,10 @@ TEST(SessionCache, WalkedProfilesAreKept) {
   const DiffuseProfile profile = make_diffuse_profile(scene.media[0]);
   StageCache cache(folder.path.string());
   for (const ChannelProfile& channel : profile.channels) {
-    const WalkedShape& shape = *std::get<TabulatedProfile>(channel).shape;
-    const auto kept = cache.find(walked_profile_key(shape.absorbed(), shape.eta()), WalkedProfileCodec{});
+    const TabulatedProfile& walked = std::get<TabulatedProfile>(channel);
+    const auto kept = cache.find(walked_profile_key(walked.absorbed, walked.eta), WalkedProfileCodec{});
     ASSERT_TRUE(kept);
-    for (const double r : {.01, 1., 40.}) EXPECT_EQ(kept->density(r), shape.table().density(r));
+    for (const double r : {.01, 1., 40.}) EXPECT_EQ(kept->density(r), walked.shape->get().table.density(r));
   }
 }
 

@@ -14,12 +14,15 @@ namespace opaline::test {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// A medium given by mean free path (mm) and 1 - reduced albedo, the same in all channels.
+/// A medium given by mean free path (mm) and 1 - reduced albedo, the same in all channels; of normalized diffusion the fit of
+/// the steepest profile.
 inline Medium grey_medium(double mean_free_path, double absorbed, double eta,
                           ProfileKind profile = ProfileKind::dipole) {
   const double sigma_t_prime = 1 / mean_free_path;
-  return {"grey", PhysicalMedium{Rgb(absorbed * sigma_t_prime), Rgb((1 - absorbed) * sigma_t_prime)}, eta,
-          profile};
+  Medium medium{"grey", PhysicalMedium{Rgb(absorbed * sigma_t_prime), Rgb((1 - absorbed) * sigma_t_prime)},
+                eta, profile};
+  medium.fit = NormalizedDiffusionFit::diffuse_entry;
+  return medium;
 }
 
 inline Medium marble() {

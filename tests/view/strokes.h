@@ -86,7 +86,7 @@ class Strokes {
          {"settings.light_samples", "light_samples", 1, 6, true},
          {"settings.samples", "samples", 100, 1500, true},
          {"settings.bounces", "bounces", 0, 1, true},
-         {"settings.max_solid_angle", "max_solid_angle", .01, .2},
+         {"settings.laboratory.max_solid_angle", "max_solid_angle", .01, .2},
          {"settings.seed", "seed", 0, 5, true}}};
     const Number& number = kNumbers[pick(kNumbers.size())];
     double value = between(number.low, number.high);
@@ -140,14 +140,14 @@ class Strokes {
         {"media.stone.profile", {"auto", "dipole", "better_dipole", "normalized_diffusion"}},
         {"settings.method", {"hierarchical", "lambert", "volume_diffusion"}},
         {"settings.evaluator", {"automatic", "dual_tree", "surface_cache", "classic"}},
-        {"settings.near_irradiance", {"mixed", "samples", "point"}},
+        {"settings.laboratory.near_irradiance", {"mixed", "samples", "point"}},
         {"film.filter", {"box", "gaussian"}},
         {"shapes.left.normals", {"smooth", "faceted"}}};
     const std::size_t choice = pick(kChoices.size() + 2);
     if (choice == kChoices.size()) {
       const bool value = pick(2) == 1;
-      run(fmt::format("hand.type({}, {})", field("settings.near_field", "near_field"), value));
-      return fmt::format("tick settings.near_field: {}", value);
+      run(fmt::format("hand.type({}, {})", field("settings.laboratory.near_field", "near_field"), value));
+      return fmt::format("tick settings.laboratory.near_field: {}", value);
     }
     if (choice == kChoices.size() + 1) {
       static const Words kForms{"preset", "sigma_s_prime", "sigma_s", "subsurface_color"};

@@ -28,7 +28,7 @@ TEST_F(LongViewPage, EditsAreShown) {
   type("media.stone.specular_ior", "specular_ior", "1.35");
   EXPECT_EQ(final_edits(2), std::vector<std::string>{"media.stone.specular_ior=1.35"});
   expect_shown(rendered(folder.scene, {"media.stone.specular_ior=1.35"}));
-  type("settings.near_field", "near_field", "false");
+  type("settings.laboratory.near_field", "near_field", "false");
   type("media.stone.profile", "profile", "better_dipole");
   type("lights.panel.radiance", "radiance green", "7");
   std::vector<std::string> edits = final_edits(5);

@@ -6,6 +6,7 @@
 
 #include "opaline/core/error.h"
 #include "opaline/transport/point_source.h"
+#include "support/point_source_walks.h"
 #include "volume_test.h"
 
 namespace opaline {
@@ -151,10 +152,10 @@ TEST(LaboratoryExtremes, BadInput) {
       {"radii", [&] { with([](LaboratorySettings& s) {
                         s.radii = {0, 1};
                       }); }},
-      {"radii", [&] { walk_point_source(good, walks_of_seed(1, 1)); }},
+      {"radii", [&] { test::walk_point_source(good, walks_of_seed(1, 1)); }},
       {"sigma_a",
        [&] {
-         walk_point_source({0, 1, 0, 1}, walks_of_seed(1, 1));
+         test::walk_point_source({0, 1, 0, 1}, walks_of_seed(1, 1));
        }},
   };
   for (const auto& [name, call] : cases) try {

@@ -2,6 +2,7 @@
 // The fluence around a point source.
 #include "diffusion/diffusion_test.h"
 #include "opaline/transport/point_source.h"
+#include "support/point_source_walks.h"
 #include "volume_test.h"
 
 namespace opaline {
@@ -9,6 +10,8 @@ namespace {
 
 using test::expect_walked;
 using test::medium_of_albedo;
+using test::walk_point_source;
+using test::WalkedShell;
 using test::walks_of_seed;
 
 // Claim: the decay far from a source. Source: Case, de Hoffmann & Placzek 1953, table of 1/kappa; kappa^2 = 3 (1-c)

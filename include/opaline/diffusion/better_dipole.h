@@ -21,7 +21,7 @@ struct BetterDipole {
   double from_flux = 0;       ///< C_E
 };
 
-/// For make_channel_profile (diffuse_profile.h).
+/// Profile for make_channel_profile (diffuse_profile.h).
 BetterDipole make_profile(const ReducedMedium& medium, std::type_identity<BetterDipole>);
 /// R_d(r), 1/mm^2, per entered flux, r >= 0 in mm.
 double diffuse_reflectance_profile(const BetterDipole& profile, double r);
@@ -29,9 +29,8 @@ double diffuse_reflectance_profile(const BetterDipole& profile, double r);
 double diffuse_reflectance_within(const BetterDipole& profile, double r);
 /// alpha'^2/2 e^-s (C_E (1 + e^-4A mu) + C_phi/mu (1 - e^-4A mu)), s = sigma_tr, mu = s D.
 double total_diffuse_reflectance(const BetterDipole& profile);
-/// As that of ChannelProfile; by bisection.
+/// Samples as those of ChannelProfile, by bisection.
 double sample_diffusion_distance(const BetterDipole& profile, double beyond);
-/// As that of ChannelProfile; by bisection.
 double sample_chord_sphere_radius(const BetterDipole& profile, double u, double v);
 /// sigma_tr, 1/mm.
 double slowest_decay(const BetterDipole& profile);

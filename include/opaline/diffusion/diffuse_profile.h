@@ -19,8 +19,7 @@ namespace opaline {
 /// A kind of profile is a file that defines all of the functions below, and `Kind make_profile(const
 /// ReducedMedium&, std::type_identity<Kind>)`; without one it does not compile. In the order of ProfileKind.
 using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion, BetterDipole,
-                                    NormalizedDiffusionSearchlight, NormalizedDiffusionDmfp,
-                                    NormalizedDiffusionRefit, TabulatedProfile, Multipole, DirectionalDipole>;
+                                    TabulatedProfile, Multipole, DirectionalDipole>;
 
 /// The profile of a kind; monostate where the medium does not scatter.
 ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& medium);

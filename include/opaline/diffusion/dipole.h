@@ -25,18 +25,14 @@ Dipole make_dipole(double mean_free_path, double absorbed, double boundary_misma
 /// R_d(r) = alpha'/(4 pi) times the sum over both sources of z (1 + sigma_tr d) exp(-sigma_tr d) / d^3, d =
 /// sqrt(r^2 + z^2); 1/mm^2, per entered flux, r >= 0 in mm.
 double diffuse_reflectance_profile(const Dipole& dipole, double r);
-
 /// Integral of 2 pi r' R_d(r') from 0 to r: the share of the entered flux that leaves within r.
 double diffuse_reflectance_within(const Dipole& dipole, double r);
-
 /// The same to infinity: alpha'/2 (1 + exp(-4/3 A s)) exp(-s), s = sqrt(3 (1 - alpha')).
 double total_diffuse_reflectance(const Dipole& dipole);
-
-/// For make_channel_profile (diffuse_profile.h).
+/// Profile for make_channel_profile (diffuse_profile.h).
 Dipole make_profile(const ReducedMedium& medium, std::type_identity<Dipole>);
-/// As that of ChannelProfile; each source by Lambert's W.
+/// Samples as those of ChannelProfile: by Lambert's W, and by bisection.
 double sample_diffusion_distance(const Dipole& profile, double beyond);
-/// As that of ChannelProfile; by bisection.
 double sample_chord_sphere_radius(const Dipole& profile, double u, double v);
 /// sigma_tr, 1/mm.
 double slowest_decay(const Dipole& profile);

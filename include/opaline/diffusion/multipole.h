@@ -31,7 +31,7 @@ struct Multipole {
   std::shared_ptr<const ShareTable> shares;  ///< of the reflected side; none where it is the dipole
 };
 
-/// For make_channel_profile (diffuse_profile.h).
+/// Profile for make_channel_profile (diffuse_profile.h).
 Multipole make_profile(const ReducedMedium& medium, std::type_identity<Multipole>);
 /// R_d(r), 1/mm^2, per entered flux, r >= 0 in mm.
 double diffuse_reflectance_profile(const Multipole& profile, double r);
@@ -39,9 +39,8 @@ double diffuse_reflectance_profile(const Multipole& profile, double r);
 double diffuse_reflectance_within(const Multipole& profile, double r);
 /// strength sinh(s (d + b - z)) cosh(s b) / sinh(s (d + 2 b)), b the extrapolation, z the source's depth.
 double total_diffuse_reflectance(const Multipole& profile);
-/// As that of ChannelProfile, but by cubics through a table: relative error of the share below 1e-6.
+/// Samples as those of ChannelProfile: by cubics through a table, relative error of the share below 1e-6, and by bisection.
 double sample_diffusion_distance(const Multipole& profile, double beyond);
-/// As that of ChannelProfile; by bisection.
 double sample_chord_sphere_radius(const Multipole& profile, double u, double v);
 /// Of the lowest mode across the plate, sqrt(sigma_tr^2 + (pi / (d + 2 b))^2), 1/mm.
 double slowest_decay(const Multipole& profile);

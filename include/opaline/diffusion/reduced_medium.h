@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "opaline/scene/enumerations.h"
+
 namespace opaline {
 
 /// One channel of a medium by similarity: scattering without direction. 1 - alpha' is carried by itself,
@@ -14,6 +16,7 @@ struct ReducedMedium {
   double eta = 1;             ///< index of refraction, inside / outside
   /// Of the plate or body, in the unit of mean_free_path, > 0; infinite: a half space. Multipole alone asks.
   double thickness = std::numeric_limits<double>::infinity();
+  NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< normalized diffusion alone asks
 };
 
 }  // namespace opaline

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The choices that a scene makes, each beside the words that scene files, options, reports and metadata use
-// for it, in the order of the enumeration.
+// for it, in the order of the enumeration: names_of(value).
 #pragma once
 
 #include <array>
@@ -12,47 +12,40 @@ namespace opaline {
 
 using NameList = std::span<const std::string_view>;
 
-/// Which radial diffuse reflectance profile R_d(r) stands for the medium; in the order of ChannelProfile
-/// (diffuse_profile.h).
+/// Radial diffuse reflectance profile R_d(r) of a medium; in the order of ChannelProfile (diffuse_profile.h).
 enum class ProfileKind {
   dipole,
-  normalized_diffusion,  ///< the fit for diffuse entry
+  normalized_diffusion,  ///< its length by NormalizedDiffusionFit
   better_dipole,
-  normalized_diffusion_searchlight,
-  normalized_diffusion_dmfp,   ///< by the diffuse mean free path
-  normalized_diffusion_refit,  ///< fitted anew, to walks behind a boundary
-  tabulated,                   ///< random walks through the medium itself
-  multipole,                   ///< a plate of the medium's thickness
-  directional_dipole,          ///< knows from where light comes; method `direct` only
+  tabulated,          ///< random walks through the medium itself
+  multipole,          ///< a plate of the medium's thickness
+  directional_dipole  ///< depends on the direction of entry; method `direct` only
 };
-inline constexpr std::array<std::string_view, 9> kProfileNames{"dipole",
-                                                               "normalized_diffusion",
-                                                               "better_dipole",
-                                                               "normalized_diffusion_searchlight",
-                                                               "normalized_diffusion_dmfp",
-                                                               "normalized_diffusion_refit",
-                                                               "tabulated",
-                                                               "multipole",
-                                                               "directional_dipole"};
-inline constexpr std::array<std::string_view, 9> kProfileSources{
-    "Jensen et al. 2001",
-    "Christensen & Burley 2015, for diffuse entry",
-    "d'Eon 2012",
-    "Christensen & Burley 2015, for a beam",
-    "Christensen & Burley 2015, by diffuse mean free path",
-    "its form, fitted to walks behind a boundary",
-    "random walks of the medium",
-    "Donner & Jensen 2005",
-    "Frisvad et al. 2014"};
+inline constexpr std::array<std::string_view, 6> kProfileNames{
+    "dipole", "normalized_diffusion", "better_dipole", "tabulated", "multipole", "directional_dipole"};
+inline constexpr std::array<std::string_view, 6> kProfileSources{
+    "Jensen et al. 2001",         "Christensen & Burley 2015", "d'Eon 2012",
+    "random walks of the medium", "Donner & Jensen 2005",      "Frisvad et al. 2014"};
 /// What a medium says: the choice is left open, or one of the profiles.
 inline constexpr std::array<std::string_view, kProfileNames.size() + 1> kProfileChoices = [] {
   std::array<std::string_view, kProfileNames.size() + 1> choices{"auto"};
   for (std::size_t i = 0; i < kProfileNames.size(); ++i) choices[i + 1] = kProfileNames[i];
   return choices;
 }();
-/// The words for its values, in their order.
 constexpr NameList names_of(ProfileKind) {
   return kProfileNames;
+}
+
+/// Fit of the length d of normalized diffusion.
+enum class NormalizedDiffusionFit {
+  diffuse_entry,  ///< Christensen & Burley 2015, diffuse entry without a boundary
+  searchlight,    ///< Christensen & Burley 2015, a beam along the normal without a boundary
+  dmfp,           ///< Christensen & Burley 2015, by the diffuse mean free path
+  refit           ///< random walks behind a boundary in diffuse light
+};
+inline constexpr std::array<std::string_view, 4> kFitNames{"diffuse_entry", "searchlight", "dmfp", "refit"};
+constexpr NameList names_of(NormalizedDiffusionFit) {
+  return kFitNames;
 }
 
 enum class NormalMode {
@@ -60,14 +53,12 @@ enum class NormalMode {
   faceted,  ///< geometric normals
 };
 inline constexpr std::array<std::string_view, 2> kNormalNames{"smooth", "faceted"};
-/// The words for its values, in their order.
 constexpr NameList names_of(NormalMode) {
   return kNormalNames;
 }
 
 enum class PixelFilter { box, gaussian };
 inline constexpr std::array<std::string_view, 2> kFilterNames{"box", "gaussian"};
-/// The words for its values, in their order.
 constexpr NameList names_of(PixelFilter) {
   return kFilterNames;
 }
@@ -81,7 +72,6 @@ enum class Method {
 };
 inline constexpr std::array<std::string_view, 5> kMethodNames{"hierarchical", "lambert", "direct", "volume",
                                                               "volume_diffusion"};
-/// The words for its values, in their order.
 constexpr NameList names_of(Method) {
   return kMethodNames;
 }
@@ -104,7 +94,6 @@ enum class EvaluatorKind {
 };
 inline constexpr std::array<std::string_view, 5> kEvaluatorNames{"automatic", "dual_tree", "surface_cache",
                                                                  "classic", "brute_force"};
-/// The words for its values, in their order.
 constexpr NameList names_of(EvaluatorKind) {
   return kEvaluatorNames;
 }
@@ -112,7 +101,6 @@ constexpr NameList names_of(EvaluatorKind) {
 /// Where the irradiance of the near field is taken from; mixed: as much of each as keeps the kernel's width.
 enum class NearIrradiance { mixed, samples, point };
 inline constexpr std::array<std::string_view, 3> kNearIrradianceNames{"mixed", "samples", "point"};
-/// The words for its values, in their order.
 constexpr NameList names_of(NearIrradiance) {
   return kNearIrradianceNames;
 }
@@ -121,7 +109,6 @@ constexpr NameList names_of(NearIrradiance) {
 enum class InstructionSet { automatic, baseline, avx2, avx512 };
 inline constexpr std::array<std::string_view, 4> kInstructionSetNames{"automatic", "baseline", "avx2",
                                                                       "avx512"};
-/// The words for its values, in their order.
 constexpr NameList names_of(InstructionSet) {
   return kInstructionSetNames;
 }
@@ -133,7 +120,6 @@ enum class ColorSpace {
   linear
 };
 inline constexpr std::array<std::string_view, 3> kColorSpaceNames{"automatic", "srgb", "linear"};
-/// The words for its values, in their order.
 constexpr NameList names_of(ColorSpace) {
   return kColorSpaceNames;
 }
@@ -146,7 +132,6 @@ enum class ViewTransform {
   srgb      ///< as it is; what is brighter than white is cut
 };
 inline constexpr std::array<std::string_view, 4> kViewNames{"soft", "neutral", "agx", "srgb"};
-/// The words for its values, in their order.
 constexpr NameList names_of(ViewTransform) {
   return kViewNames;
 }
@@ -154,7 +139,6 @@ constexpr NameList names_of(ViewTransform) {
 /// What the colours of an EXR are in; the words are those of OpenColorIO's configurations.
 enum class FilmColorSpace { lin_rec709, acescg };
 inline constexpr std::array<std::string_view, 2> kFilmColorSpaceNames{"lin_rec709", "acescg"};
-/// The words for its values, in their order.
 constexpr NameList names_of(FilmColorSpace) {
   return kFilmColorSpaceNames;
 }
@@ -163,14 +147,12 @@ constexpr NameList names_of(FilmColorSpace) {
 /// `medium` a texture of the medium's colour is no tint: the medium itself differs from place to place.
 enum class TextureMix { pre, post, split, medium };
 inline constexpr std::array<std::string_view, 4> kTextureMixNames{"pre", "post", "split", "medium"};
-/// The words for its values, in their order.
 constexpr NameList names_of(TextureMix) {
   return kTextureMixNames;
 }
 
 enum class EntryStrategy { disc_axes, chords };
 inline constexpr std::array<std::string_view, 2> kEntryStrategyNames{"disc_axes", "chords"};
-/// The words for its values, in their order.
 constexpr NameList names_of(EntryStrategy) {
   return kEntryStrategyNames;
 }

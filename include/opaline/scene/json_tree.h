@@ -25,7 +25,7 @@ struct Node {
   std::vector<Node> children;              ///< of an array or object, in the order of the text
   std::string key;                         ///< of a member of an object
   std::size_t key_offset = 0, offset = 0;  ///< bytes from the start of the text
-  std::size_t end_offset = 0;              ///< just behind the value's last byte
+  std::size_t end_offset = 0;              ///< just behind the value's last byte; 0: not in the text
   int override_index = -1;                 ///< which override it came from; -1: the file
 };
 
@@ -37,6 +37,7 @@ struct Document {
   Node root;
   int frame = 1;
   std::vector<std::size_t> line_starts = {};  ///< of the text, see line_starts_of
+  std::vector<std::string> warnings = {};     ///< one line each
 };
 
 /// Offset of each line's first byte.

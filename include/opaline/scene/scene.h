@@ -73,10 +73,11 @@ struct ArtistMedium {
   friend bool operator==(const ArtistMedium&, const ArtistMedium&) = default;
 };
 
-/// What stands for the profile of a medium that leaves it open.
+/// Profile of a medium that names none.
 struct ChosenProfile {
   ProfileKind kind = ProfileKind::dipole;
   double thickness = std::numeric_limits<double>::infinity();  ///< as Medium::thickness
+  NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;
   friend bool operator==(const ChosenProfile&, const ChosenProfile&) = default;
 };
 
@@ -103,7 +104,9 @@ struct Medium {
   Rgb base_color{.8, .8, .8};
   std::optional<Texture> weight_texture{}, base_texture{};  ///< times these
   ChosenProfile chosen{};                                   ///< where profile is none
-  Grain grain{};                                            ///< of the boundary
+  NormalizedDiffusionFit fit =
+      NormalizedDiffusionFit::refit;  ///< ProfileKind::normalized_diffusion alone asks
+  Grain grain{};                      ///< of the boundary
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
@@ -126,6 +129,9 @@ inline ProfileKind profile_kind(const Medium& medium) {
 }
 inline double profile_thickness(const Medium& medium) {
   return medium.profile ? medium.thickness : medium.chosen.thickness;
+}
+inline NormalizedDiffusionFit profile_fit(const Medium& medium) {
+  return medium.profile ? medium.fit : medium.chosen.fit;
 }
 
 // ---- shapes ---------------------------------------------------------------------------------------------
@@ -311,19 +317,24 @@ struct Film {
 /// Of `direct`, where neither Settings::entry_samples nor Settings::until_error says.
 inline constexpr std::size_t kDefaultEntrySamples = 256;
 
-struct Settings {
-  Method method = Method::hierarchical;
-  EvaluatorKind evaluator = EvaluatorKind::automatic;
-  double tolerance = 0.005;  ///< dual_tree, surface_cache: p99 of the relative error against the exact sum
+/// Switches for experiments with the methods themselves (docs/laboratory.md).
+struct Laboratory {
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
   double max_solid_angle = 0.05;  ///< classic: open a node when area / distance^2 exceeds it, sr
   bool near_field = true;         ///< split the kernel near the shading point
   NearIrradiance near_irradiance = NearIrradiance::mixed;
+  EntryStrategy entry_strategy = EntryStrategy::disc_axes;  ///< direct: how entry points are drawn
+  friend bool operator==(const Laboratory&, const Laboratory&) = default;
+};
+
+struct Settings {
+  Method method = Method::hierarchical;
+  EvaluatorKind evaluator = EvaluatorKind::automatic;
+  double tolerance = 0.005;  ///< dual_tree, surface_cache: p99 of the relative error against the exact sum
   std::optional<double> sample_spacing;  ///< sqrt(area / samples), mm; none: from the mean free path
   std::optional<std::size_t> samples;    ///< per group; none: from the spacing
   std::size_t max_samples = 2000000;     ///< per group
   int light_samples = 64;                ///< shadow rays per sample (opaque: pixel) and light with an area
-  EntryStrategy entry_strategy = EntryStrategy::disc_axes;  ///< direct: how entry points are drawn
   std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
   std::optional<double>
       until_error;             ///< direct, volume: stop at this estimated relative error of the pixels, cells
@@ -332,14 +343,15 @@ struct Settings {
   std::optional<int> bounces;  ///< 1: surfaces that are lit light others, once; none: bounces_of()
   std::uint64_t seed = 0;
   int reference_frame = 1;  ///< of frame ranges: samples are placed there and go along to all others
+  Laboratory laboratory{};
   friend bool operator==(const Settings&, const Settings&) = default;
 };
 
 struct Scene {
   std::string file;         ///< for messages
   std::string translation;  ///< of an asset: what its import made of it, in a line; empty: a scene file
-  /// Deviations from the asset that change the image, one line each.
-  std::vector<std::string> asset_warnings;
+  /// Deprecated spellings in the file, and deviations from an asset that change the image, one line each.
+  std::vector<std::string> warnings;
   std::size_t asset_bytes = 0;  ///< of an asset: memory that its records take
   double mm_per_unit = 1;       ///< of the file, for what is written in its units; nothing here is
   std::vector<Medium> media;

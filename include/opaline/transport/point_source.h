@@ -34,16 +34,4 @@ double diffusion_point_fluence(const HomogeneousMedium& medium, double r);
 /// from  Grosjean 1956; d'Eon & Irving 2011, A Quantized-Diffusion Model for Rendering Translucent Materials
 double grosjean_point_fluence(const HomogeneousMedium& medium, double r);
 
-/// Mean fluence in a spherical shell.
-struct WalkedShell {
-  double low = 0, high = 0;  ///< mm
-  WalkedValue fluence;       ///< 1/mm^2
-};
-
-/// Shells between the radii, the first from 0 on; any g. The same bits for any number of threads.
-/// in    sigma_a and sigma_s > 0; settings.radii: ascending, mm, at least one; cosine_bins is not used
-/// error Error{bad_input} naming what is out of range; Error{interrupted}
-std::vector<WalkedShell> walk_point_source(const HomogeneousMedium& medium,
-                                           const LaboratorySettings& settings);
-
 }  // namespace opaline

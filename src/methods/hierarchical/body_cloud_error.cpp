@@ -52,9 +52,9 @@ CloudError body_cloud_error(const Body& body, const World& world, const Scene& s
   const HierarchicalState& state = hierarchical_state(body);
   const Settings& settings = scene.settings;
   const LightShares shares = light_shares(body, world, scene);
-  CloudError error = tell_cloud_error({state.octree(), state.kernel(), state.kernels.value.wider,
-                                       settings.evaluator, settings.tolerance, settings.max_solid_angle,
-                                       settings.instruction_set, shares.from_points});
+  CloudError error = tell_cloud_error(
+      {state.octree(), state.kernel(), state.kernels.value.wider, settings.evaluator, settings.tolerance,
+       settings.laboratory.max_solid_angle, settings.laboratory.instruction_set, shares.from_points});
   error.light_shift = shares.shifted;
   return error;
 }

@@ -17,7 +17,7 @@ namespace opaline {
 namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
-constexpr std::uint64_t kKernelVersion = 3, kExitanceVersion = 8;
+constexpr std::uint64_t kKernelVersion = 4, kExitanceVersion = 8;
 
 /// Builds the tree of the body's irradiance, or reads it from the cache.
 ResultSource update_tree(BodyStages& stages, const StageKey& key) {
@@ -35,13 +35,13 @@ void find_walked_profiles(BodyStages& stages) {
   for (const ChannelProfile& channel : stages.body.profile.channels) {
     const auto* profile = std::get_if<TabulatedProfile>(&channel);
     if (profile == nullptr || profile->mean_free_path == 0) continue;
-    const double absorbed = profile->shape->absorbed(), eta = profile->shape->eta();
-    if (WalkedShape::find(absorbed, eta) != nullptr) continue;
+    const double absorbed = profile->absorbed, eta = profile->eta;
+    if (has_walked_table(absorbed, eta)) continue;
     const StageKey key = walked_profile_key(absorbed, eta);
     if (auto found = stages.store.find(key, WalkedProfileCodec{}))
-      WalkedShape::hand_over(absorbed, eta, std::move(*found));
+      take_walked_table(absorbed, eta, std::move(*found));
     else
-      stages.store.keep(key, profile->shape->table(), WalkedProfileCodec{});
+      stages.store.keep(key, profile->shape->get().table, WalkedProfileCodec{});
   }
 }
 
@@ -54,8 +54,9 @@ void update_kernels(BodyStages& stages) {
   std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
   key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(profile_kind(medium));
   if (profile_kind(medium) == ProfileKind::multipole) key.add(profile_thickness(medium));
+  if (profile_kind(medium) == ProfileKind::normalized_diffusion) key.add(profile_fit(medium));
   key.add(spacing).add(world.diagonal).add(world.unit);
-  key.add(scene.settings.near_field).add(near_irradiance(scene));
+  key.add(scene.settings.laboratory.near_field).add(near_irradiance(scene));
   stages.store.get(state_of<HierarchicalState>(stages.body).kernels, key.key(), [&] {
     find_walked_profiles(stages);
     return Kernels{body_kernel(body.profile, spacing, stages.input.world, stages.input.scene),
@@ -66,7 +67,10 @@ void update_kernels(BodyStages& stages) {
 StageKey exitance_key(const BodyStages& stages, const HierarchicalState& state) {
   const Settings& settings = stages.input.scene.settings;
   KeyBuilder key("exitance", kExitanceVersion);
-  key.add(state.tree.key).add(state.kernels.key).add(settings.tolerance).add(settings.instruction_set);
+  key.add(state.tree.key)
+      .add(state.kernels.key)
+      .add(settings.tolerance)
+      .add(settings.laboratory.instruction_set);
   key.add(settings.evaluator == EvaluatorKind::surface_cache);
   key.add(settings.light_samples).add(settings.seed);
   key.add(std::string(widest_instructions()));
@@ -183,8 +187,8 @@ std::vector<RgbF> HierarchicalMethod::exitance_at(const Body& body, std::span<co
                                      {},
                                      settings.evaluator,
                                      settings.tolerance,
-                                     settings.max_solid_angle,
-                                     settings.instruction_set}))
+                                     settings.laboratory.max_solid_angle,
+                                     settings.laboratory.instruction_set}))
     result.push_back(e.exitance);
   return result;
 }

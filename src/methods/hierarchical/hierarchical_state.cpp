@@ -44,14 +44,14 @@ NearIrradiance near_irradiance(const Scene& scene) {
     const LightExtent shape = extent(light);
     return !is_delta(light) && !shape.center && !shape.towards;
   };
-  const NearIrradiance wanted = scene.settings.near_irradiance;
+  const NearIrradiance wanted = scene.settings.laboratory.near_irradiance;
   const bool is_soft = !scene.lights.empty() && std::ranges::all_of(scene.lights, is_from_all_directions);
   return wanted == NearIrradiance::mixed && is_soft ? NearIrradiance::samples : wanted;
 }
 
 SplitKernel body_kernel(const DiffuseProfile& profile, double spacing, const World& world,
                         const Scene& scene) {
-  return make_split_kernel(profile, spacing, world.diagonal, scene.settings.near_field,
+  return make_split_kernel(profile, spacing, world.diagonal, scene.settings.laboratory.near_field,
                            near_irradiance(scene));
 }
 

@@ -53,7 +53,7 @@ std::string evaluation_stage(const Settings& settings) {
     case EvaluatorKind::surface_cache:
       return "evaluation: dual tree at places of the surface, " + promise;
     case EvaluatorKind::classic:
-      return fmt::format("evaluation: classic traversal, {} sr", settings.max_solid_angle);
+      return fmt::format("evaluation: classic traversal, {} sr", settings.laboratory.max_solid_angle);
     case EvaluatorKind::brute_force:
       return "evaluation: brute force";
   }

@@ -48,7 +48,7 @@ RgbF crease_deviation(const RenderInput& input, const Body& group) {
   const HierarchicalState& state = hierarchical_state(group);
   const Vec3f eye(into_world(input.world, input.scene.camera.position));
   const std::array<float, 3> error = crease_error(
-      {state.octree(), state.kernel(), group.profile, eye, input.scene.settings.instruction_set});
+      {state.octree(), state.kernel(), group.profile, eye, input.scene.settings.laboratory.instruction_set});
   return RgbF{error[0], error[1], error[2]} * std::sqrt(float(std::numbers::pi) / 2);
 }
 
@@ -147,7 +147,7 @@ std::vector<Exitance> SampleField::summed(const SurfaceHits& hits, std::span<con
   for (const SurfacePoint& point : hits.points) queries.push_back({point.position, point.normal});
   const Settings& settings = input_.scene.settings;
   return evaluate({state_.octree(), state_.kernel(), queries, irradiance, settings.evaluator,
-                   settings.tolerance, settings.max_solid_angle, settings.instruction_set, state_.cloud,
+                   settings.tolerance, settings.laboratory.max_solid_angle, settings.laboratory.instruction_set, state_.cloud,
                    nullptr, packets});
 }
 

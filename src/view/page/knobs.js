@@ -14,7 +14,7 @@ const kForms = {
 const kNumbers = ["number", "whole_number", "length"], kThrees = ["point", "triple"];
 const kColours = ["color", "number_or_triple"];
 // Shown where the scene has them.
-const kOptional = ["base_color", "specular_anisotropy", "specular_rotation", "tint", "texture_mix", "thickness"];
+const kOptional = ["base_color", "specular_anisotropy", "specular_rotation", "tint", "texture_mix", "thickness", "fit"];
 const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_weight", "specular_anisotropy", "specular_rotation"];
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};
 const kWidestLinear = 1000, kDecade = 1;
@@ -71,7 +71,7 @@ export class Knobs {
     this.scene = scene;
     if (!this.rows) return;
     const media = scene.media || {}, lights = scene.lights || [], shapes = scene.shapes || [];
-    const shape = JSON.stringify([Object.entries(media).map(([name, m]) => [name, this.formOf(m), "eta" in m, kOptional.filter((key) => key in m), textured(m)]),
+    const shape = JSON.stringify([Object.entries(media).map(([name, m]) => [name, this.formOf(m), kOptional.filter((key) => key in m), textured(m)]),
       lights.map((l) => [l.name, l.type]), shapes.map((s) => [s.name, "medium" in s, kGloss.filter((key) => key in s), textured(s)])]);
     if (shape !== this.shape) this.build(scene);
     this.shape = shape;
@@ -99,7 +99,8 @@ export class Knobs {
         this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))));
     group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera));
     group("film", "Picture", this.rowsOf("film", "film", (s) => s.film));
-    group("settings", "Method", this.rowsOf("settings", "settings", (s) => s.settings));
+    group("settings", "Method", this.rowsOf("settings", "settings", (s) => s.settings, ["laboratory"]));
+    group("laboratory", "Laboratory", this.rowsOf("settings.laboratory", "settings.laboratory", (s) => (s.settings || {}).laboratory));
   }
 
   rowsOf(section, path, owner, without = []) {
@@ -112,9 +113,8 @@ export class Knobs {
     const select = make("select", {}, ...Object.entries(kForms).map(([key, {name: text}]) => make("option", {value: key, textContent: text})));
     select.value = form;
     select.onchange = () => this.set({[path]: this.converted(name, select.value)}, newStroke());
-    const ior = "eta" in medium ? "eta" : "specular_ior";
     return [make("label", {className: "knob"}, make("span", {className: "name", textContent: "given by"}), select),
-      ...[...kForms[form].keys, ior, "specular_roughness", "specular_weight", "profile", ...kOptional.filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
+      ...[...kForms[form].keys, "specular_ior", "specular_roughness", "specular_weight", "profile", ...kOptional.filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
   }
 
   // The same medium in another form, or where there is no telling one to start from.
@@ -127,8 +127,8 @@ export class Knobs {
       sigma_s: {...start, sigma_s: preset.sigma_s_prime || medium.sigma_s_prime || 2},
       subsurface_color: {subsurface_color: [.8, .7, .6], subsurface_radius: 1},
     }[form];
-    const ior = medium.specular_ior || medium.eta || preset.specular_ior;
-    return {...made, ...(ior && form !== "preset" ? {specular_ior: ior} : {}), ...(medium.profile ? {profile: medium.profile} : {})};
+    const ior = medium.specular_ior || preset.specular_ior;
+    return {...made, ...(ior && form !== "preset" ? {specular_ior: ior} : {}), ...(medium.profile ? {profile: medium.profile} : {}), ...(medium.fit ? {fit: medium.fit} : {})};
   }
 
   knob(section, key, path, value) {

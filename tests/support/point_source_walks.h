@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Random walks from a point source in an infinite medium: the reference of its closed forms.
+#pragma once
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,8 +13,7 @@
 #include "transport/laboratory_checks.h"
 #include "transport/slab_tally.h"
 
-namespace opaline {
-namespace {
+namespace opaline::test {
 
 struct NoBoundary {
   BoundaryAhead ahead(const Vec3d&, const Vec3d&) const { return {}; }
@@ -30,10 +32,17 @@ struct ShellWatcher {
   void leave(const LeavingLight&) {}
 };
 
-}  // namespace
+/// Mean fluence in a spherical shell.
+struct WalkedShell {
+  double low = 0, high = 0;  ///< mm
+  WalkedValue fluence;       ///< 1/mm^2
+};
 
-std::vector<WalkedShell> walk_point_source(const HomogeneousMedium& medium,
-                                           const LaboratorySettings& settings) {
+/// Shells between the radii, the first from 0 on; any g. The same bits for any number of threads.
+/// in    sigma_a and sigma_s > 0; settings.radii: ascending, mm, at least one; cosine_bins is not used
+/// error Error{bad_input} naming what is out of range; Error{interrupted}
+inline std::vector<WalkedShell> walk_point_source(const HomogeneousMedium& medium,
+                                                  const LaboratorySettings& settings) {
   check_medium(medium);
   check_value(medium.sigma_s > 0, "sigma_s", "a number above 0", medium.sigma_s);
   check_value(medium.sigma_a > 0, "sigma_a", "a number above 0: else walks do not end", medium.sigma_a);
@@ -64,4 +73,4 @@ std::vector<WalkedShell> walk_point_source(const HomogeneousMedium& medium,
   return shells;
 }
 
-}  // namespace opaline
+}  // namespace opaline::test
