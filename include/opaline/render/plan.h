@@ -24,9 +24,9 @@ struct GroupPlan {
   BodyModel model = {};
   /// That of the settings, or another one if that does not suit the body.
   Method method = Method::hierarchical;
-  std::string reason_against_method = {};   ///< why not that of the settings; empty: it is that
-  double smallest_mean_free_path = 0;  ///< over the channels that scatter, mm
-  double spacing = 0;                  ///< sqrt(area / samples), mm
+  std::string reason_against_method = {};  ///< why not that of the settings; empty: it is that
+  double smallest_mean_free_path = 0;      ///< over the channels that scatter, mm
+  double spacing = 0;                      ///< sqrt(area / samples), mm
   std::size_t samples = 0;
   std::string reason;  ///< why this many
   double cell = 0;     ///< volume_diffusion: edge of its cells at the surface, mm

@@ -147,8 +147,8 @@ std::vector<Exitance> SampleField::summed(const SurfaceHits& hits, std::span<con
   for (const SurfacePoint& point : hits.points) queries.push_back({point.position, point.normal});
   const Settings& settings = input_.scene.settings;
   return evaluate({state_.octree(), state_.kernel(), queries, irradiance, settings.evaluator,
-                   settings.tolerance, settings.laboratory.max_solid_angle, settings.laboratory.instruction_set, state_.cloud,
-                   nullptr, packets});
+                   settings.tolerance, settings.laboratory.max_solid_angle,
+                   settings.laboratory.instruction_set, state_.cloud, nullptr, packets});
 }
 
 std::vector<Exitance> SampleField::looked_up(const SurfaceHits& hits,
