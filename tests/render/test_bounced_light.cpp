@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "methods/volume/volume_state.h"
-#include "methods/volume_diffusion/volume_diffusion_state.h"
 #include "opaline/core/error.h"
 #include "opaline/render/direct.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
+#include "support/cell_exitance.h"
 #include "support/scene_picture.h"
 #include "support/scenes.h"
 
@@ -265,16 +264,6 @@ TEST(BouncedLight, IsThatOfDirect) {
       const double truth = sums_over(direct, fast, ball)[c];
       EXPECT_NEAR(sums_over(fast, fast, ball)[c], truth, .015 * truth) << ball << ' ' << c;
     }
-}
-
-/// Exitance of the samples' cells.
-std::vector<RgbF> cell_exitance(const Body& body) {
-  if (body.plan.method == Method::volume) return volume_state(body).exitance.value.exitance;
-  const VolumeDiffusionState& state = volume_diffusion_state(body);
-  std::vector<RgbF> exitance = state.direct.value.exitance;
-  for (std::size_t i = 0; i < state.bounced.value.exitance.size(); ++i)
-    exitance[i] += state.bounced.value.exitance[i];
-  return exitance;
 }
 
 /// Mean exitance of a body on the parts that face to the left and lie right of the middle.
