@@ -7,6 +7,7 @@
 #include "opaline/transport/half_space.h"
 #include "opaline/volume/cell_fit.h"
 #include "opaline/volume/volume_diffusion.h"
+#include "support/cell_exitance.h"
 #include "volume/diffused_body.h"
 
 namespace opaline {
@@ -93,9 +94,10 @@ double mean_left(const Scene& scene) {
   session.edit(scene);
   session.prepare();
   const Body& body = session.bodies()[0];
+  const std::vector<RgbF> exitance = cell_exitance(body);
   double left = 0;
   for (std::size_t i = 0; i < body.surface.samples.size(); ++i)
-    left += double(body.surface.samples[i].area) * double(body.volume->exitance[i].z);
+    left += double(body.surface.samples[i].area) * double(exitance[i].z);
   return left / body.surface.area;
 }
 
