@@ -28,11 +28,11 @@ TEST(ErrorBudget, OneSettingApart) {
     EXPECT_EQ(a.light_samples != b.light_samples, part.name == "irradiance" || part.name == "sampling")
         << part.name;
     EXPECT_EQ(b.evaluator == EvaluatorKind::brute_force, part.name == "hierarchy") << part.name;
-    EXPECT_EQ(a.near_field != b.near_field, part.name == "near field") << part.name;
+    EXPECT_EQ(a.laboratory.near_field != b.laboratory.near_field, part.name == "near field") << part.name;
     EXPECT_EQ(a.evaluator == EvaluatorKind::surface_cache, part.name == "interpolation") << part.name;
     EXPECT_EQ(a.method != b.method, part.name == "model") << part.name;
     EXPECT_EQ(a.tolerance, b.tolerance) << part.name;
-    EXPECT_EQ(a.near_irradiance, b.near_irradiance) << part.name;
+    EXPECT_EQ(a.laboratory.near_irradiance, b.laboratory.near_irradiance) << part.name;
   }
   EXPECT_EQ(names, (std::set<std::string>{"sampling", "irradiance", "hierarchy", "near field",
                                           "interpolation", "model"}));

@@ -49,7 +49,7 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"draw", scene},
        "unknown command 'draw' (expected one of render, view, precompute, info, import, compare, bench, "
        "profile, "
-       "cache)"},
+       "cache, schema)"},
       {{"cache", "lss", out}, "unknown command 'lss' (did you mean 'ls'?)"},
       {{"render", scene, "-o", out, "--spp", "4", "--spp", "8"}, "--spp: is given more than once"},
       {{"-v"}, "unknown option '-v' (did you mean '--version'?)"},

@@ -110,8 +110,9 @@ TEST(Patch, SmallMeanFreePathIsLambert) {
 TEST(Patch, GivenIrradianceIsUsed) {
   const double spacing = square().surface.spacing();
   const Rgb sigma_s_prime{1 / (.01 * spacing), 1 / (.5 * spacing), 1 / (100 * spacing)};
-  const DiffuseProfile profile = make_diffuse_profile(
-      {"m", PhysicalMedium{Rgb(0), sigma_s_prime}, 1.5, ProfileKind::normalized_diffusion});
+  Medium medium{"m", PhysicalMedium{Rgb(0), sigma_s_prime}, 1.5, ProfileKind::normalized_diffusion};
+  medium.fit = NormalizedDiffusionFit::diffuse_entry;
+  const DiffuseProfile profile = make_diffuse_profile(medium);
   const SplitKernel kernel = square().kernel(profile);
   EXPECT_TRUE(kernel.split);
   EXPECT_NEAR(kernel.own_irradiance[0], 1, .002);

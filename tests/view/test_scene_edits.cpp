@@ -183,7 +183,7 @@ TEST(SceneEdits, FileKeepsComments) {
   edits.set(one("settings.seed", "7"));
   EXPECT_EQ(edits.file_text(), R"(// A ball of stone.
 {
-  "media": {"stone": {"preset": "marble", "eta": 1.4 /* as measured */}},
+  "media": {"stone": {"preset": "marble", "specular_ior": 1.4 /* as measured */}},
   "shapes": [ {"name": "ball", "sphere": {"center": [0,0,0], "radius": 10}, "medium": "stone"} ],
   "lights": [
     // the sun, "key": no {object}
