@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "methods/method.h"
 #include "opaline/core/error.h"
 #include "opaline/core/machine_memory.h"
 #include "opaline/core/units.h"
@@ -17,12 +18,12 @@ void check_memory(const Scene& scene, const Plan& plan, std::size_t more_bytes) 
   // The whole picture has to have an address, empty parts of it as well.
   const Rectangle part = rendered_part(scene.film);
   const std::size_t picture = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0) *
-                              layer_names(scene.settings.method).size() * sizeof(float);
+                              layer_names(method_of(scene.settings.method).layers()).size() * sizeof(float);
   const std::size_t bytes = std::max(plan.bytes + more_bytes, picture), taken = resident_memory(),
                     left = available_memory();
   if (bytes <= taken || bytes - taken <= left) return;
   std::string advice = "a lower film.resolution, or --crop for one part after the other,";
-  if (has_samples(scene.settings.method) && !plan.groups.empty())
+  if (method_of(scene.settings.method).needs_samples() && !plan.groups.empty())
     advice += " or a lower settings.max_samples";
   throw run_failed({},
                    fmt::format("out of memory: the picture needs about {}, and there are {}; {} takes less",

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "cli/report.h"
+#include "methods/method.h"
 #include "opaline/scene/names.h"
 #include "opaline/scene/schema.h"
 
@@ -25,10 +26,7 @@ Json settings_in_use(const Scene& scene, const World& world, std::span<const Bod
                               {"samples", group.surface.samples.size()},
                               {"spacing_mm", group.surface.spacing() * world.unit},
                               {"profile", name_of(model.profile.kind)}});
-    const std::optional<double>& error = group.plan.method == Method::volume_diffusion
-                                             ? model.expected_error_of_diffusion
-                                             : model.expected_error;
-    if (error && scene.settings.method != Method::volume)
+    if (const std::optional<double> error = method_of(group.plan.method).expected_error(model))
       json["groups"].back()["expected_model_error"] = *error;
   }
   return json;

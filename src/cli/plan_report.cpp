@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/report.h"
+#include "methods/method.h"
 #include "opaline/core/units.h"
 #include "opaline/lights/light.h"
 #include "opaline/render/across_air.h"
@@ -63,7 +64,7 @@ std::string lights_text(const std::vector<Light>& lights) {
 
 /// With methods that have one: profile and error, a row each.
 void add_model(Paragraphs& plan, const GroupPlan& group, double across_air) {
-  if (!has_cells(group.method)) add_row(plan, "", "profile " + model_text(group.model));
+  if (method_of(group.method).uses_radial_profile()) add_row(plan, "", "profile " + model_text(group.model));
   const std::string error = model_error_text(group.model, group.method);
   if (!error.empty()) add_row(plan, "", error);
   constexpr double kWorthSaying = .02;
@@ -79,7 +80,7 @@ void add_group(Paragraphs& plan, const Scene& scene, const World& world, const G
           fmt::format("{} in {}: {:.4g} mm^2, {}", group.name, scene.media[group.medium].name, group.area,
                       mean_free_path_text(group)));
   add_model(plan, group, share_across_air(scene, world, group));
-  if (!has_samples(scene.settings.method)) return;
+  if (!method_of(scene.settings.method).needs_samples()) return;
   add_row(plan, "", samples_text(group));
 }
 

@@ -35,7 +35,7 @@ namespace {
 
 void check_precompute(const RenderArguments& arguments, const Scene& scene, const Plan& plan) {
   if (arguments.samples_ply.empty()) return;
-  if (!has_samples(scene.settings.method) || plan.groups.empty())
+  if (!method_of(scene.settings.method).needs_samples() || plan.groups.empty())
     throw bad_file(arguments.samples_ply, "there are no samples to write",
                    "settings.method \"hierarchical\", a translucent shape and a light");
 }

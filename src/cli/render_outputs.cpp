@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "methods/method.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
 #include "opaline/image/texture_file.h"
@@ -62,7 +63,7 @@ void check_writable(const RenderArguments& arguments) {
 
 void check_layers(const LayerChoice& layers, const Scene& scene) {
   const Method method = scene.settings.method;
-  const std::vector<std::string> channels = layer_names(method);
+  const std::vector<std::string> channels = layer_names(method_of(method).layers());
   if (is_named(layers, kLightGroups)) light_groups(scene);
   for (const std::string& layer : layers.names)
     if (layer != kLightGroups && layer != kCryptomatte &&
@@ -81,7 +82,7 @@ std::size_t asked_layer_bytes(const LayerChoice& layers, const Scene& scene) {
   const Rectangle part = rendered_part(scene.film);
   const std::size_t pixels = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0);
   // Beside them the layers of one more picture: by one light, or before the channels were added.
-  return pixels * sizeof(float) * (channels + layer_names(scene.settings.method).size());
+  return pixels * sizeof(float) * (channels + layer_names(method_of(scene.settings.method).layers()).size());
 }
 
 void add_asked_layers(StageRunner& stages, const LayerChoice& layers, Session& session, Image& image) {

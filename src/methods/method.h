@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "methods/body_stages.h"
 #include "methods/planning.h"
 #include "opaline/exitance/evaluate.h"
+#include "opaline/render/layers.h"
 #include "opaline/render/render.h"
 #include "render/fields/field.h"
 
@@ -29,6 +31,16 @@ class SubsurfaceMethod {
   virtual bool needs_transmitted_light() const { return true; }
   /// True if textures of a medium vary it inside the body (TextureMix::medium), not just at the surface.
   virtual bool follows_textures_inside() const { return false; }
+  /// True if light spreads by the radial profile of the medium, or its total reflectance alone is used.
+  virtual bool uses_radial_profile() const { return true; }
+  /// False if light leaves where it enters.
+  virtual bool spreads_light() const { return true; }
+  /// True if the exitance may be evaluated at points of the surface in place of hits (surface_caches.h).
+  virtual bool may_use_surface_cache() const { return false; }
+  /// Layers of an image beside those of every method.
+  virtual MethodLayers layers() const { return {.variance = false, .error = true}; }
+  /// Relative error of the model, against random walks; none: unknown, or no model.
+  virtual std::optional<double> expected_error(const BodyModel& model) const { return model.expected_error; }
   /// False if surfaces cannot light each other.
   virtual bool supports_bounces() const { return true; }
   /// False if the noise of one light's image differs from its contribution to that of all lights.

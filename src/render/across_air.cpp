@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "methods/method.h"
 #include "opaline/core/vec3.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/geometry/surface_point.h"
@@ -33,7 +34,8 @@ std::vector<Place> places_on(const World& world, const std::vector<std::uint32_t
 }  // namespace
 
 double share_across_air(const Scene& scene, const World& world, const GroupPlan& group) {
-  if (group.method != Method::hierarchical && group.method != Method::direct) return 0;
+  const SubsurfaceMethod& method = method_of(group.method);
+  if (!method.uses_radial_profile() || !method.spreads_light()) return 0;
   const DiffuseProfile profile = make_diffuse_profile(scene.media[group.medium]);
   const std::vector<Place> places = places_on(world, group.meshes);
   const double area = group.area / double(kPlaces);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "methods/method.h"
 #include "opaline/core/parallel.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "render/tile_renderer.h"
@@ -64,7 +65,8 @@ class DirectRenderer {
   // All layers; those but the diffuse one from rays of their own, which ask entries for what they see in mirrors alone.
   RenderResult picture(const DirectState& state) const {
     RenderResult result;
-    result.image = empty_image(part_, scene_.film, layer_names(Method::direct));
+    const MethodLayers layers = method_of(Method::direct).layers();
+    result.image = empty_image(part_, scene_.film, layer_names(layers));
     std::atomic<std::size_t> queries{0}, non_finite{0};
     const Pass mirrored = pass_of(state);
     for_each_tile(Pass{.in_mirrors = &mirrored}, [&](std::size_t pixel, PixelSample sum) {
@@ -75,7 +77,7 @@ class DirectRenderer {
       const DirectEstimate passes = direct_estimate(state, pixel);
       sum.diffuse = passes.mean * samples;
       sum.irradiance = RgbF(passes.variance) * sum.coverage;
-      non_finite += store_pixel(sum, scene_.film.samples_per_pixel, Method::direct,
+      non_finite += store_pixel(sum, scene_.film.samples_per_pixel, layers,
                                 result.image.pixels.data() + pixel * result.image.channels.size());
       ++queries;
     });

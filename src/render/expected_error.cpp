@@ -5,13 +5,13 @@
 
 #include <algorithm>
 
+#include "methods/method.h"
 #include "opaline/core/units.h"
 
 namespace opaline {
 
 std::optional<double> expected_error(const BodyModel& model, Method method) {
-  if (method == Method::volume || method == Method::lambert) return {};
-  return method == Method::volume_diffusion ? model.expected_error_of_diffusion : model.expected_error;
+  return method_of(method).expected_error(model);
 }
 
 std::optional<double> expected_model_error(const Plan& plan) {
@@ -29,7 +29,7 @@ std::vector<std::string> model_warnings(const Plan& plan) {
     const std::optional<double> error = expected_error(group.model, group.method);
     if (!error || *error <= kLarge) continue;
     const std::optional<double>& other = group.model.expected_error_of_diffusion;
-    const std::string better = group.method != Method::volume_diffusion && other && *other < kBetter * *error
+    const std::string better = other && *other < kBetter * *error
                                    ? "--method volume_diffusion: " + short_percent(*other)
                                    : "--method volume is the reference";
     warnings.push_back(

@@ -105,7 +105,7 @@ double short_length_of(const Scene& scene, const World& world, const GroupPlan& 
 MediaInside media_inside(const PrecomputeInput& input, const Body& body,
                          std::function<HomogeneousMedium(const ReducedMedium&)> convert) {
   const Medium& medium = input.scene.media[body.plan.medium];
-  if (!varies_inside(medium, input.scene.settings.method)) return {};
+  if (!varies_inside(medium)) return {};
   return [media = std::make_shared<const LocalMedia>(input.scene, input.world, medium),
           surface = NearestSurface(input.rays, body.plan.meshes),
           convert = std::move(convert)](const Vec3d& position, double width) {

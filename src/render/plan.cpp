@@ -42,7 +42,7 @@ constexpr std::size_t kBytesOfBouncePlaces = 12'000'000;
 
 /// Of a medium whose textures could differ inside a body; else empty.
 std::string medium_stage(const Medium& medium, Method method) {
-  if (varies_inside(medium, method))
+  if (varies_inside(medium) && method_of(method).follows_textures_inside())
     return "inside, its medium is at each place that of the nearest place of the surface, by its textures";
   const bool has_color = medium.texture_mix == TextureMix::medium && medium.tint_texture;
   if (!has_color && !medium.radius_texture) return {};
@@ -205,8 +205,9 @@ Plan make_plan(const Scene& scene, const World& world) {
   const BodyPlanning planning{scene, world, lights, fewest_samples(plan.groups.size())};
   for (GroupPlan& group : plan.groups) {
     // Measured for media that are one throughout.
-    if (is_too_thin_for_cells(group) || varies_inside(scene.media[group.medium], scene.settings.method) ||
-        is_too_large_for_cells(scene.settings, group))
+    const bool varies = varies_inside(scene.media[group.medium]) &&
+                        method_of(scene.settings.method).follows_textures_inside();
+    if (is_too_thin_for_cells(group) || varies || is_too_large_for_cells(scene.settings, group))
       group.model.expected_error_of_diffusion.reset();
     group.method = scene.settings.method;
     method_of(group.method).plan(planning, group, plan.warnings);

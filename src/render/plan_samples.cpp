@@ -134,7 +134,7 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
   constexpr double kFewestFaces = 60;  // of cells, on the surface
   const double length = group.smallest_mean_free_path;
   const Medium& medium = scene.media[group.medium];
-  group.cell = scene.settings.cell_size * (varies_inside(medium, scene.settings.method)
+  group.cell = scene.settings.cell_size * (varies_inside(medium)
                                                ? kOfVarying * short_length_of(scene, world, group)
                                                : std::min(length, kPerFading * shortest_fading(medium)));
   if (group.thickness > 0)

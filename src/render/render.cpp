@@ -4,6 +4,7 @@
 #include <atomic>
 #include <optional>
 
+#include "methods/method.h"
 #include "opaline/core/parallel.h"
 #include "render/bounced_light.h"
 #include "render/tile_renderer.h"
@@ -15,6 +16,7 @@ namespace {
 std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, const Scene& scene,
                   RenderResult& result) {
   Image& image = result.image;
+  const MethodLayers layers = method_of(scene.settings.method).layers();
   std::size_t non_finite = 0;
   if (sums.empty()) return non_finite;
   for_each_pixel(tile, rendered_part(scene.film), [&](int x, int y, std::size_t i) {
@@ -22,8 +24,7 @@ std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, c
     const std::size_t row = std::size_t(y - image.crop_y), column = std::size_t(x - image.crop_x);
     const std::size_t pixel = row * std::size_t(image.width) + column, place = pixel * image.channels.size();
     result.translucent[pixel] = 2 * sums[i].translucent > sums[i].coverage ? 1 : 0;
-    non_finite += store_pixel(sums[i], scene.film.samples_per_pixel, scene.settings.method,
-                              image.pixels.data() + place);
+    non_finite += store_pixel(sums[i], scene.film.samples_per_pixel, layers, image.pixels.data() + place);
   });
   return non_finite;
 }
@@ -50,7 +51,8 @@ HeldView* view_of(const RenderInput& input, std::size_t tiles) {
 RenderResult render(const RenderInput& input) {
   const Film& film = input.scene.film;
   RenderResult result;
-  result.image = empty_image(rendered_part(film), film, layer_names(input.scene.settings.method));
+  result.image =
+      empty_image(rendered_part(film), film, layer_names(method_of(input.scene.settings.method).layers()));
   result.translucent.resize(std::size_t(result.image.width) * std::size_t(result.image.height));
   Shader shader(input);
   std::optional<BouncedLight> bounced;

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "methods/hierarchical/hierarchical_state.h"
+#include "methods/method.h"
 #include "render/camera_rays.h"
 #include "render/own_light.h"
 
@@ -67,12 +68,12 @@ std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::sp
   const EvaluatorKind evaluator = input.scene.settings.evaluator;
   std::vector<std::size_t> most(groups.size());
   const auto may_have_one = [&](const Body& body) {
-    return body.plan.method == Method::hierarchical && body.entering.empty();
+    return method_of(body.plan.method).may_use_surface_cache() && body.entering.empty();
   };
   if (evaluator == EvaluatorKind::surface_cache)
     for (std::size_t g = 0; g < groups.size(); ++g)
       if (may_have_one(groups[g])) most[g] = most_wanted_places(groups[g].plan, input.world);
-  if (groups.empty() || evaluator != EvaluatorKind::automatic) return most;
+  if (std::ranges::none_of(groups, may_have_one) || evaluator != EvaluatorKind::automatic) return most;
   const std::vector<double> points = expected_points(input);
   for (std::size_t g = 0; g < groups.size(); ++g)
     if (may_have_one(groups[g]))

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/cancel_check.h"
+#include "methods/method.h"
 #include "opaline/core/error.h"
 #include "opaline/core/random.h"
 #include "opaline/image/texture_file.h"
@@ -136,6 +137,10 @@ TangentFrame level_frame(const Vec3f& normal) {
   return {tangent, cross(normal, tangent)};
 }
 
+bool follows_textures_inside(const Scene& scene) {
+  return method_of(scene.settings.method).follows_textures_inside();
+}
+
 const Texture* pointer_to(const std::optional<Texture>& texture) {
   return texture ? &*texture : nullptr;
 }
@@ -143,6 +148,7 @@ const Texture* pointer_to(const std::optional<Texture>& texture) {
 }  // namespace
 
 SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world_(world) {
+  const bool is_followed = follows_textures_inside(scene);
   for (std::size_t m = 0; m < scene.shapes.size(); ++m) {
     const Shape& shape = scene.shapes[m];
     OfMesh& own = of_mesh_.emplace_back();
@@ -150,9 +156,9 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
     own.heights = pointer_to(shape.bump_map);
     if (shape.medium) {
       const Medium& medium = scene.media[*shape.medium];
-      const bool is_inside = has_color_inside(medium, scene.settings.method);
+      const bool is_inside = is_followed && has_color_inside(medium);
       (is_inside ? own.color_inside : own.tint) = pointer_to(medium.tint_texture);
-      if (varies_inside(medium, scene.settings.method)) own.radius_inside = pointer_to(medium.radius_texture);
+      if (is_followed && varies_inside(medium)) own.radius_inside = pointer_to(medium.radius_texture);
       own.roughness = pointer_to(medium.roughness_texture);
       own.factor = medium.tint;
       if (is_partly_opaque(medium)) {
@@ -304,7 +310,8 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
   const auto has_colors = [&](std::uint32_t m) {
     return uses_vertex_colors(scene, scene.shapes[m], world.meshes[m]);
   };
-  const bool has_texture = medium.tint_texture && !has_color_inside(medium, scene.settings.method);
+  const bool has_texture =
+      medium.tint_texture && !(has_color_inside(medium) && follows_textures_inside(scene));
   const bool has_tint = medium.tint != Rgb(1) || has_texture || medium.weight_texture ||
                         std::ranges::any_of(meshes, has_colors);
   if (medium.texture_mix == TextureMix::post || !has_tint) return {};
@@ -320,14 +327,13 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
   return key.key();
 }
 
-StageKey medium_key(const Medium& medium, Method method, const World& world,
-                    std::span<const std::uint32_t> meshes) {
-  if (!varies_inside(medium, method)) return {};
+StageKey medium_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes) {
+  if (!varies_inside(medium)) return {};
   const auto& mean = std::get<ArtistMedium>(medium.coefficients);
   KeyBuilder key("medium inside", 2);
   key.add(mean.subsurface_color).add(mean.subsurface_radius).add(mean.anisotropy).add(medium.eta);
   key.add(profile_kind(medium)).add(profile_thickness(medium));
-  if (has_color_inside(medium, method)) add_to_key(key.add(std::string("color")), *medium.tint_texture);
+  if (has_color_inside(medium)) add_to_key(key.add(std::string("color")), *medium.tint_texture);
   if (medium.radius_texture) add_to_key(key.add(std::string("radius")), *medium.radius_texture);
   for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
   return key.key();

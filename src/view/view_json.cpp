@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/log.h"
+#include "methods/method.h"
 #include "opaline/core/units.h"
 #include "opaline/render/expected_error.h"
 #include "opaline/render/plan_texts.h"
@@ -82,7 +83,7 @@ Json preset_json(std::string_view name) {
 Json group_json(const Scene& scene, const GroupPlan& group) {
   std::string text = fmt::format("{} in {}: {:.4g} mm², {}", group.name, scene.media[group.medium].name,
                                  group.area, mean_free_path_text(group));
-  if (has_samples(scene.settings.method)) text += "; " + samples_text(group);
+  if (method_of(scene.settings.method).needs_samples()) text += "; " + samples_text(group);
   text += "; profile " + model_text(group.model);
   const std::string error = model_error_text(group.model, group.method);
   if (!error.empty()) text += "; " + error;

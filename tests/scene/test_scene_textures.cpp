@@ -84,11 +84,8 @@ TEST(SceneTextures, OfRadiiAreRead) {
   ASSERT_TRUE(medium.radius_texture && medium.tint_texture);
   EXPECT_NEAR(medium.radius_texture->scale.y * 128 / 255. / 2, 1, 1e-12);
   EXPECT_TRUE(needs_uvs(scene, scene.shapes[0]));
-  for (const Method method : {Method::volume, Method::volume_diffusion}) {
-    EXPECT_TRUE(has_color_inside(medium, method));
-    EXPECT_TRUE(varies_inside(medium, method));
-  }
-  EXPECT_FALSE(varies_inside(medium, Method::hierarchical));
+  EXPECT_TRUE(has_color_inside(medium));
+  EXPECT_TRUE(varies_inside(medium));
 }
 
 // Claim: a texture of one colour is read as that colour: the scenes are equal. Fails if it stays a texture.

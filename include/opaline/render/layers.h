@@ -28,10 +28,15 @@ struct PixelSample {
   bool empty() const { return coverage == 0 && emitted == RgbF{}; }
 };
 
-/// In the order in which store_pixel writes them. `hierarchical` and `volume` add their estimated error, `direct`
-/// has the variance of its mean where others have the irradiance, of which `volume` has that of opaque surfaces
+/// Layers that depend on the method.
+struct MethodLayers {
+  bool variance = false;  ///< of the mean, in place of the irradiance
+  bool error = false;     ///< estimated standard error
+};
+
+/// Channel names, in the order in which store_pixel writes them. The irradiance of `volume` is that of opaque surfaces
 /// alone.
-inline std::vector<std::string> layer_names(Method method) {
+inline std::vector<std::string> layer_names(const MethodLayers& layers) {
   std::vector<std::string> names{"R", "G", "B", "A", "Z"};
   const auto add = [&](const std::string& layer, const std::string& parts) {
     for (const char part : parts) names.push_back(layer + "." + part);
@@ -39,8 +44,8 @@ inline std::vector<std::string> layer_names(Method method) {
   for (const char* layer : {"diffuse", "specular", "albedo"}) add(layer, "RGB");
   add("N", "XYZ");
   add("P", "XYZ");
-  add(method == Method::direct ? "variance" : "irradiance", "RGB");
-  if (has_samples(method)) add("error", "RGB");
+  add(layers.variance ? "variance" : "irradiance", "RGB");
+  if (layers.error) add("error", "RGB");
   return names;
 }
 
@@ -58,7 +63,7 @@ inline RgbF pixel_error(const PixelSample& sum, float all) {
 /// Writes the mean of `count` samples to one pixel: radiance and coverage over all of them; albedo, normal,
 /// position, depth and irradiance over those that met a surface. sum.coverage counts these. Returns 1 if the
 /// pixel's radiance is not finite, else 0.
-inline std::size_t store_pixel(const PixelSample& sum, int count, Method method, float* out) {
+inline std::size_t store_pixel(const PixelSample& sum, int count, const MethodLayers& layers, float* out) {
   const float all = 1.0f / float(count), seen = sum.coverage > 0 ? 1.0f / sum.coverage : 0.0f;
   const auto put = [&out](const Vec3f& value, float scale) {
     out[0] = value.x * scale;
@@ -76,7 +81,7 @@ inline std::size_t store_pixel(const PixelSample& sum, int count, Method method,
   put(normalized(sum.normal), 1);
   put(sum.position, seen);
   put(sum.irradiance, seen);
-  if (has_samples(method)) put(pixel_error(sum, all), 1);
+  if (layers.error) put(pixel_error(sum, all), 1);
   return is_finite(radiance) ? 0 : 1;
 }
 

@@ -98,8 +98,7 @@ void add_coordinates(KeyBuilder& key, const Mesh& mesh);
 StageKey tint_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes,
                   const StageKey& samples);
 /// Of how a medium varies inside bodies of these meshes; a key of zeros where it does not.
-StageKey medium_key(const Medium& medium, Method method, const World& world,
-                    std::span<const std::uint32_t> meshes);
+StageKey medium_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes);
 
 /// Where a cone meets a surface.
 /// in    direction: of the ray, of any length; width: of the cone there

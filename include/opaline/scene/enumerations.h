@@ -76,15 +76,6 @@ constexpr NameList names_of(Method) {
   return kMethodNames;
 }
 
-/// Whether translucent bodies get samples.
-constexpr bool has_samples(Method method) {
-  return method != Method::lambert && method != Method::direct;
-}
-/// Whether what leaves a body is known as means over its samples' cells.
-constexpr bool has_cells(Method method) {
-  return method == Method::volume || method == Method::volume_diffusion;
-}
-
 enum class EvaluatorKind {
   automatic,      ///< surface_cache where a picture has many more points than it needs, else dual_tree
   dual_tree,      ///< clusters of points against nodes, to a tolerance

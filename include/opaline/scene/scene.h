@@ -115,13 +115,13 @@ inline bool is_partly_opaque(const Medium& medium) {
   return medium.subsurface_weight < 1 || medium.weight_texture;
 }
 
-/// Whether the colour, or the colour or the radius, of the medium differs from place to place inside its bodies: where light
-/// is followed inside. Radial profiles have one medium everywhere.
-inline bool has_color_inside(const Medium& medium, Method method) {
-  return medium.texture_mix == TextureMix::medium && medium.tint_texture && has_cells(method);
+/// True if textures vary the colour, or the colour or radius, of the medium inside its bodies. Methods that use a radial
+/// profile ignore this (SubsurfaceMethod::follows_textures_inside).
+inline bool has_color_inside(const Medium& medium) {
+  return medium.texture_mix == TextureMix::medium && medium.tint_texture;
 }
-inline bool varies_inside(const Medium& medium, Method method) {
-  return has_color_inside(medium, method) || (medium.radius_texture && has_cells(method));
+inline bool varies_inside(const Medium& medium) {
+  return has_color_inside(medium) || medium.radius_texture;
 }
 
 inline ProfileKind profile_kind(const Medium& medium) {

@@ -9,6 +9,7 @@ namespace opaline {
 class DirectMethod : public SubsurfaceMethod {
  public:
   bool needs_samples() const override { return false; }
+  MethodLayers layers() const override { return {.variance = true, .error = false}; }
   bool separates_lights() const override { return false; }
   double seconds_of_pixel(const Scene& scene, const Lighting& lighting) const override;
   std::string bounces_stage() const override;

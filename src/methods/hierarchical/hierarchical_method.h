@@ -8,6 +8,7 @@ namespace opaline {
 
 class HierarchicalMethod : public SubsurfaceMethod {
  public:
+  bool may_use_surface_cache() const override { return true; }
   void plan(const BodyPlanning& input, GroupPlan& body, std::vector<std::string>& warnings) const override;
   BodyMemory memory(const BodyPlanning& input, const GroupPlan& body) const override;
   double seconds(const Scene& scene, const GroupPlan& body, const Lighting& lighting) const override;

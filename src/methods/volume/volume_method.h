@@ -10,6 +10,8 @@ class VolumeMethod : public SubsurfaceMethod {
  public:
   bool needs_transmitted_light() const override { return false; }
   bool follows_textures_inside() const override { return true; }
+  bool uses_radial_profile() const override { return false; }
+  std::optional<double> expected_error(const BodyModel&) const override { return {}; }
   bool supports_bounces() const override { return false; }
   bool separates_lights() const override { return false; }
   BodyMemory memory(const BodyPlanning& input, const GroupPlan& body) const override;

@@ -14,7 +14,7 @@ namespace opaline {
 namespace {
 
 bool varies(const Scene& scene, const GroupPlan& body) {
-  return varies_inside(scene.media[body.medium], Method::volume_diffusion);
+  return varies_inside(scene.media[body.medium]);
 }
 
 /// Why cells do not suit a body; empty: they do.

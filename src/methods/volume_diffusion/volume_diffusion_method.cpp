@@ -21,8 +21,8 @@ constexpr std::uint64_t kCellsVersion = 5, kDiffusionVersion = 5;
 
 StageKey cells_key(const BodyStages& stages) {
   const Body& body = stages.body;
-  const StageKey medium_inside = medium_key(stages.input.scene.media[body.plan.medium],
-                                            Method::volume_diffusion, stages.input.world, body.plan.meshes);
+  const StageKey medium_inside =
+      medium_key(stages.input.scene.media[body.plan.medium], stages.input.world, body.plan.meshes);
   KeyBuilder key("diffusion cells", kCellsVersion);
   key.add(stages.keys.samples_key).add(body.profile.eta).add(body.plan.cell);
   key.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
@@ -43,7 +43,7 @@ const VolumeDiffusion& update_cells(BodyStages& stages) {
 /// Diffuse reflectance of the channels without a mean free path, which cells do not resolve.
 RgbF local_reflectance(const Scene& scene, const Body& body) {
   RgbF local;
-  if (varies_inside(scene.media[body.plan.medium], Method::volume_diffusion)) return local;
+  if (varies_inside(scene.media[body.plan.medium])) return local;
   for (std::size_t c = 0; c < 3; ++c)
     if (is_local(body.profile, c)) local[c] = float(body.profile.total[c]);
   return local;

@@ -9,6 +9,10 @@ namespace opaline {
 class VolumeDiffusionMethod : public SubsurfaceMethod {
  public:
   bool follows_textures_inside() const override { return true; }
+  bool uses_radial_profile() const override { return false; }
+  std::optional<double> expected_error(const BodyModel& model) const override {
+    return model.expected_error_of_diffusion;
+  }
   void plan(const BodyPlanning& input, GroupPlan& body, std::vector<std::string>& warnings) const override;
   BodyMemory memory(const BodyPlanning& input, const GroupPlan& body) const override;
   double seconds(const Scene& scene, const GroupPlan& body, const Lighting& lighting) const override;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/fields/local_field.h"
 
+#include "methods/method.h"
 #include "render/fields/make_fields.h"
 
 namespace opaline {
@@ -8,7 +9,7 @@ namespace opaline {
 LocalField::LocalField(const RenderInput& input, std::span<const RgbF> albedos, float eta)
     : albedos_(albedos.begin(), albedos.end()),
       eta_(eta),
-      estimates_error_(has_samples(input.scene.settings.method)),
+      estimates_error_(method_of(input.scene.settings.method).layers().error),
       is_noisy_(has_area_lights(input.scene)),
       samples_per_pixel_(input.scene.film.samples_per_pixel) {}
 

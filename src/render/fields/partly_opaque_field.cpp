@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "methods/method.h"
 #include "render/fields/make_fields.h"
 
 namespace opaline {
@@ -25,7 +26,7 @@ void tint_leaving(std::span<const HitTextures> textures, LeavingLight& light) {
 
 PartlyOpaqueField::PartlyOpaqueField(const RenderInput& input, std::unique_ptr<Field> inside)
     : inside_(std::move(inside)),
-      is_noisy_(has_samples(input.scene.settings.method) && has_area_lights(input.scene)),
+      is_noisy_(method_of(input.scene.settings.method).layers().error && has_area_lights(input.scene)),
       samples_per_pixel_(input.scene.film.samples_per_pixel) {}
 
 LeavingLight PartlyOpaqueField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
