@@ -36,7 +36,9 @@ TEST(CliDirect, InterruptedAndResumedIsTheSameAsInOneGo) {
   const Outcome stopped = child.wait(20);
   EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
   const std::string said = event_of(events_of(stopped.out), "error")["message"];
-  EXPECT_TRUE(contains(said, "entry samples a pixel are in " + sums + "; go on by ")) << said;
+  EXPECT_TRUE(contains(said, sums + " stores the sums of ") &&
+              contains(said, " entry samples per pixel; resume with "))
+      << said;
   EXPECT_TRUE(said.ends_with("--entry-samples 100000000 --resume " + sums + " --log json")) << said;
   EXPECT_EQ(bytes_of(folder.file("a.exr")), "old");
   const std::size_t passes = passes_in(sums);

@@ -105,7 +105,7 @@ TEST(CliProgress, FitsTheTerminal) {
     EXPECT_FALSE(contains(text, " 0.0 s left"));
   }
   terminal.interrupt();
-  EXPECT_TRUE(contains(terminal.read_until("--resume FILE"), "interrupted; nothing was kept"));
+  EXPECT_TRUE(contains(terminal.read_until("--resume FILE"), "interrupted; no sums are stored"));
 }
 
 // Claim: where no terminal is, short stages print nothing to standard error, so that a range of frames in a

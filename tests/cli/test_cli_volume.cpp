@@ -39,7 +39,9 @@ TEST(CliVolume, InterruptedAndResumedIsTheSameAsInOneGo) {
   const Outcome stopped = child.wait(60);
   EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
   const std::string said = event_of(events_of(stopped.out), "error")["message"];
-  EXPECT_TRUE(contains(said, "passes of random walks are in " + sums + "; go on by ")) << said;
+  EXPECT_TRUE(contains(said, sums + " stores the sums of ") &&
+              contains(said, " passes of random walks; resume with "))
+      << said;
   EXPECT_TRUE(said.ends_with("--until-error .01% --resume " + sums + " --log json")) << said;
   EXPECT_EQ(bytes_of(folder.file("a.exr")), "old");
   const std::size_t passes = walked_passes(sums);
