@@ -88,23 +88,22 @@ RgbF unshadowed(const EnvironmentLight& light, const Vec3f& normal) {
 template <>
 std::vector<KeyInfo> LightReader<EnvironmentLight>::rows() {
   using enum ValueType;
-  return {{.key = "type", .type = choice, .meaning = "`\"environment\"`: a picture of the room, all around"},
+  return {{.key = "type", .type = choice, .meaning = "`\"environment\"`: an environment map"},
           {.key = "file",
            .type = file,
-           .meaning = "a lat-long EXR, HDR or PNG picture, twice as wide as high, +y up, +z in its middle; "
-                      "relative to the "
-                      "scene file"},
+           .meaning = "lat-long EXR, HDR or PNG image, twice as wide as high, +y up, +z at the centre; "
+                      "relative to the scene file"},
           {.key = "strength",
            .type = color,
            .range = kNonNegative,
            .default_value = "1",
-           .meaning = "times the picture, whose values are then radiance, W/(mm² sr)"},
+           .meaning = "factor of the image; the product is radiance, W/(mm² sr)"},
           {.key = "rotation",
            .type = number,
            .unit = "degrees",
            .range = {-360, 360},
            .default_value = "0",
-           .meaning = "about +y, counterclockwise seen from above"}};
+           .meaning = "rotation about +y, counter-clockwise seen from above"}};
 }
 
 template <>

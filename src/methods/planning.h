@@ -38,7 +38,7 @@ struct BodyMemory {
 /// grid of its own.
 double needle_fraction(const World& world, const GroupPlan& body);
 
-/// "irradiance: 2 light(s), ..."
+/// "irradiance: 2 lights, ..."
 std::string irradiance_stage(const Scene& scene, std::span<const Light> lights);
 
 }  // namespace opaline

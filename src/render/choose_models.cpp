@@ -90,14 +90,14 @@ bool BodyShape::is_flat() const {
 BodyModel choose_model(const Medium& medium, const BodyShape& shape) {
   BodyModel model{{kOfBodies}, true, {}, {}, {}};
   if (!(shape.thickness > 0)) {
-    model.reason = "its mesh is open: how thick it is, and the error, are unknown";
+    model.reason = "open mesh, so thickness and error are unknown";
     return model;
   }
   const bool is_flat = shape.is_flat();
   const double thickness = is_flat ? shape.plate_thickness() : shape.thickness;
   const MediumExtremes extremes = extremes_of(medium);
   if (!(extremes.mean_free_path > 0)) {
-    model.reason = "no mean free path: diffuse reflection";
+    model.reason = "no mean free path, diffuse reflection";
     return model;
   }
   const double mean_free_paths = thickness / extremes.mean_free_path;
@@ -137,7 +137,7 @@ BodyModel planned_model(const Scene& scene, const GroupPlan& group) {
   BodyModel model = choose_model(medium, shape_of(group));
   if (medium.profile) {
     model.is_chosen = false;
-    model.reason = "named by the scene";
+    model.reason = "set by the scene";
     model.expected_error = {};
   } else if (model.profile != medium.chosen) {
     model.reason = "as in the reference frame";

@@ -134,7 +134,7 @@ Scene lit_by(Scene scene, const LightGroup& group) {
 std::vector<LightGroup> light_groups(const Scene& scene) {
   const Method method = scene.settings.method;
   if (!method_of(method).separates_lights())
-    throw refused({scene.file}, "the method's noise is another for each light",
+    throw refused({scene.file}, "noise differs between lights with this method",
                   "--method hierarchical, lambert or volume_diffusion", std::string(name_of(method)));
   if (scene.lights.empty()) throw refused({scene.file}, "the scene has no lights", "a light");
   std::vector<LightGroup> groups;

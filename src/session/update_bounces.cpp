@@ -63,7 +63,7 @@ void Session::State::update_bounces(std::span<BodyStages> bodies) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     tint_bounced(bodies_[b], bounced[b]);
     method_of(bodies_[b].plan.method).add_bounced(bodies[b], bounced[b], wanted[b]);
-    note_decision(bodies_[b], "light of other surfaces gathered");
+    note_decision(bodies_[b], "light from other surfaces gathered");
   }
 }
 

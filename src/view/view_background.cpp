@@ -135,7 +135,7 @@ void ViewBackground::choose(const Job& job, double target_error) {
   const bool is_volume = settings.method == Method::volume_diffusion;
   if (!is_volume && (settings.method != Method::hierarchical || settings.evaluator == EvaluatorKind::classic))
     throw Error(ErrorKind::bad_input, {}, 0, 0,
-                "settings for an error are how light under the surface is summed",
+                "a target error requires hierarchical evaluation or volume_diffusion",
                 "the method volume_diffusion, or hierarchical with an evaluator other than classic");
   const auto reach = is_volume ? reach_volume_error : reach_error;
   ChosenSettings chosen{job.shown->revision, reach(*session_, job.scene, target_error, &monitor_), {}};

@@ -50,12 +50,12 @@ std::string path_beside(const std::string& scene, const std::string& name,
   const bool is_plain = file.filename() == file && !name.starts_with('.') && name.size() <= kLongestName &&
                         std::ranges::none_of(name, [](char c) { return (unsigned char)(c) < ' '; });
   if (!is_plain || std::ranges::find(extensions, file.extension().string()) == extensions.end())
-    throw bad_file("", "this is no name for the file",
+    throw bad_file("", "invalid file name",
                    fmt::format("a name without a folder that ends in {}", fmt::join(extensions, " or ")),
                    "'" + printable(name) + "'");
   const std::string path = (std::filesystem::path(scene).parent_path() / file).string();
   if (std::filesystem::exists(std::filesystem::symlink_status(path)) && !written.contains(path))
-    throw bad_file(path, "is there already, and not from this view", "another name");
+    throw bad_file(path, "exists, and was not written by this view", "another name");
   return path;
 }
 
@@ -283,7 +283,7 @@ void ViewServer::State::after_edit() {
 
 /// What files hold where that is not what the view shows.
 std::string ViewServer::State::by_scene_camera() const {
-  return edits.own_camera() ? ", by the scene's camera, not the view's" : "";
+  return edits.own_camera() ? ", with the scene camera" : "";
 }
 
 void ViewServer::State::save(PageConnection& page, const std::string& name) {
@@ -301,7 +301,7 @@ void ViewServer::State::render_file(PageConnection& page, const std::string& nam
   const std::string path =
       path_beside(edits.file(), frame ? with_frame(numbered, *frame) : name, {".exr", ".png"}, written);
   const std::string pattern = frame ? (std::filesystem::path(path).parent_path() / numbered).string() : path;
-  if (renders_file) throw bad_file(path, "another file is being rendered", "one after the other");
+  if (renders_file) throw bad_file(path, "another file is being rendered", "one render at a time");
   file_thread = std::jthread([this, path, pattern, frame, overrides = edits.overrides()] {
     std::string failure;
     try {

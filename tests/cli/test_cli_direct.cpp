@@ -75,7 +75,7 @@ TEST(CliDirect, SumsOfAnotherSceneAreAnError) {
                                                 {"--set", "lights.key.intensity=3"}}) {
     const Outcome outcome = run(other);
     EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_TRUE(contains(outcome.err, sums + ": the sums are of another scene")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, sums + ": the sums belong to another scene")) << outcome.err;
   }
   EXPECT_TRUE(bytes_of(sums) == before);
   put_bytes(sums, before.substr(0, before.size() / 2));

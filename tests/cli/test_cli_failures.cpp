@@ -133,7 +133,7 @@ TEST(CliFailures, TooLargeForTheMemoryIsSaidBeforeItStarts) {
   };
   const Outcome refused = run({"--resolution", "16384x16384"});
   EXPECT_EQ(refused.exit_code, 3);
-  EXPECT_TRUE(contains(refused.err, "out of memory: the picture needs about ") &&
+  EXPECT_TRUE(contains(refused.err, "out of memory: the image needs about ") &&
               contains(refused.err, "a lower film.resolution"))
       << refused.err;
   EXPECT_EQ(folder.entries(), 1u);
@@ -280,7 +280,7 @@ TEST(CliFailures, HugeShapesAreReported) {
       "camera": {"position": [0, 40, 60], "look_at": [0, 5, 0]}})");
     return run_program({"info", folder.file("scene.json")}).err;
   };
-  EXPECT_TRUE(contains(warnings("40000"), "shape 'floor' reaches ")) << warnings("40000");
+  EXPECT_TRUE(contains(warnings("40000"), "shape 'floor' extends ")) << warnings("40000");
   EXPECT_EQ(warnings("2000"), "");
 }
 

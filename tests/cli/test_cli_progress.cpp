@@ -65,7 +65,7 @@ class Terminal {
   pid_t child_ = -1;
 };
 
-/// The lines that stood in the place of the progress, one after the other.
+/// The lines that stood in the place of the progress, one render at a time.
 std::vector<std::string> progress_lines(const std::string& text) {
   const std::string clear = "\r\x1b[K";
   std::vector<std::string> lines;

@@ -126,7 +126,7 @@ TEST(CliQuality, BudgetStatesWhatWasSpentAndHowToRepeatIt) {
             metadata_of(folder.file("a.exr"), "opaline:scene_hash"));
 
   const Outcome text = folder.render({"--time-budget", "1.5"}, "c.exr");
-  EXPECT_TRUE(contains(closing_line(text.out, "budget"), "s of CPU spent, ")) << text.out;
+  EXPECT_TRUE(contains(closing_line(text.out, "budget"), "s of CPU, ")) << text.out;
   EXPECT_TRUE(contains(closing_line(text.out, "repeat with"), "--set settings.tolerance=")) << text.out;
   EXPECT_TRUE(text.out.starts_with("budget      1.5 s: ")) << text.out;
   EXPECT_EQ(folder.entries(), 4u);  // nothing of the trials
