@@ -96,7 +96,7 @@ TEST(CliAssets, TheApplesOfTheGallery) {
                                       folder.path);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  EXPECT_TRUE(contains(outcome.out, "sampling: 3 translucent group(s)")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "sampling: 3 translucent bodies")) << outcome.out;
   EXPECT_TRUE(contains(outcome.out, "mean free path 0.7 mm")) << outcome.out;
   EXPECT_TRUE(contains(outcome.out, "1 translucent medium, its camera, default lights")) << outcome.out;
 }

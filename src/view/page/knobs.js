@@ -98,7 +98,7 @@ export class Knobs {
       [...("medium" in shape ? ["medium"] : ["reflectance", ...kGloss.filter((key) => key in shape)]), "normals"].map((key) =>
         this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))));
     group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera));
-    group("film", "Picture", this.rowsOf("film", "film", (s) => s.film));
+    group("film", "Image", this.rowsOf("film", "film", (s) => s.film));
     group("settings", "Method", this.rowsOf("settings", "settings", (s) => s.settings, ["laboratory"]));
     group("laboratory", "Laboratory", this.rowsOf("settings.laboratory", "settings.laboratory", (s) => (s.settings || {}).laboratory));
   }
