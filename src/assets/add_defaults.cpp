@@ -70,7 +70,7 @@ ViewFrame view_frame(const AssetScene& scene) {
 }
 
 void add_lights(AssetScene& scene) {
-  if (!scene.lights.empty()) scene.not_carried.push_back("its lights: they are dark");
+  if (!scene.lights.empty()) scene.not_carried.push_back("its lights: ignored, they emit nothing");
   scene.lights = Json::array();
   const auto [right, up, forward] = view_frame(scene);
   for (const DefaultLight& light : kLights) {
@@ -85,7 +85,7 @@ void add_lights(AssetScene& scene) {
          {"radiance", light.white * ratio * ratio},
          {"visible", false}});
   }
-  scene.translated.push_back("no lights: default ones, called key, fill and rim, are put around the asset");
+  scene.translated.push_back("no lights: adds default lights key, fill and rim around the asset");
 }
 
 /// White, facing all lights at the asset's centre, comes out as kWhite in the PNG.
@@ -94,8 +94,9 @@ void add_exposure(AssetScene& scene) {
   const double exposure = std::clamp(std::round(stops * 100) / 100, -100., 100.);
   scene.film["exposure"] = exposure;
   if (exposure < kHalfExposure) scene.film["pixel_type"] = "float";
-  scene.translated.push_back(fmt::format(
-      "exposure {:.2f} stops: a white surface at the asset's centre comes out as {}", exposure, kWhite));
+  scene.translated.push_back(
+      fmt::format("exposure {:.2f} stops: a white surface at the centre of the asset has the value {}",
+                  exposure, kWhite));
 }
 
 }  // namespace

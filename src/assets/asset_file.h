@@ -20,7 +20,7 @@ struct OutsideAsset : Error {
 };
 
 /// Finds a file by the name that an asset gives it: relative to `folder`, with slashes or backslashes. Where nothing is
-/// there, as under a path of another machine, the file of that name beside is taken.
+/// there, as under a path of another machine, the file of that name in the same folder.
 /// in    asset: in whose folder the file must lie; folder: of the file whose text has the name
 /// error OutsideAsset naming the asset and the file: it lies outside, also by way of a link, and
 ///       allow_files_outside_assets was not called

@@ -185,7 +185,7 @@ class SurfaceReader {
     const pugi::xml_node found = input(name);
     if (!found) return {};
     if (!found.attribute("value")) {
-      scene_.not_carried.push_back(label_ + ": what " + name + " is connected to: its default is taken");
+      scene_.not_carried.push_back(label_ + ": connection of " + name + ": ignored, uses the default");
       return {};
     }
     std::vector<double> values;
@@ -304,10 +304,10 @@ SurfaceTranslation translate_materialx(const std::string& file_and_name, const A
     const auto line =
         1 + std::count(bytes.begin(),
                        bytes.begin() + std::min<std::ptrdiff_t>(result.offset, std::ssize(bytes)), '\n');
-    throw Error(ErrorKind::bad_input, file, int(line), 0, std::string("is no XML: ") + result.description());
+    throw Error(ErrorKind::bad_input, file, int(line), 0, std::string("is not XML: ") + result.description());
   }
   const pugi::xml_node root = document.child("materialx");
-  if (!root) throw bad_file(file, "is no MaterialX file", "the element materialx");
+  if (!root) throw bad_file(file, "is not a MaterialX file", "the element materialx");
   const pugi::xml_node surface = find_surface(root, name);
   if (const std::string version = old_version(root); !surface && !version.empty())
     throw bad_file(file, version + " syntax; save it as 1.38");

@@ -82,7 +82,7 @@ ProfileRequest request_of(const ProfileArguments& arguments) {
 void prepare_folder(const std::string& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
-  if (failure) throw run_failed(folder, "cannot make the folder: " + failure.message());
+  if (failure) throw run_failed(folder, "cannot create the folder: " + failure.message());
   check_page_file(folder + "/index.html");
 }
 

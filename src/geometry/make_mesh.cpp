@@ -68,7 +68,8 @@ void place(SourceMesh& mesh, const Transform& to_world, const std::string& name)
   for (Vec3d& p : mesh.positions) {
     p = transform_point(to_world, p);
     if (!is_finite(p) || max_component(component_max(p, -p)) >= 1e18)
-      throw bad_file(name, "a vertex is too far out after the transform", "coordinates below 1e18");
+      throw bad_file(name, "a vertex is too far from the origin after the transform",
+                     "coordinates below 1e18");
   }
   const double side = determinant < 0 ? -1 : 1;
   const double lx = length(to_world.x), ly = length(to_world.y), lz = length(to_world.z);
@@ -103,8 +104,8 @@ void choose_colors(const MeshFile& file, const std::string& name, SourceMesh& me
 SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs) {
   SourceMesh mesh = std::visit(SourceReader{name, uvs}, shape.source);
   if ((uvs == MeshUvs::required || uvs == MeshUvs::with_tangents) && mesh.uvs.empty())
-    throw bad_file(name, "has no UVs, by which its textures would be laid over it",
-                   "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF", "none");
+    throw bad_file(name, "has textures but no UVs", "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF",
+                   "none");
   if (const auto* file = std::get_if<MeshFile>(&shape.source)) {
     if (file->fit_size) fit(mesh, *file->fit_size, name);
     choose_colors(*file, name, mesh);

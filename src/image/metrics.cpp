@@ -43,7 +43,7 @@ std::vector<float> plane_of(const Image& image, const std::string& name) {
 
 void require_alike(const Layer& a, const Layer& b, const std::vector<std::uint8_t>& object) {
   require(a.width == b.width && a.height == b.height && a.channels.size() == b.channels.size(),
-          "pictures are compared that have the same size and channels");
+          "images with the same size and channels");
   require(object.size() == static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height),
           "a flag for each pixel");
 }

@@ -50,9 +50,8 @@ std::optional<ColorMatrix> matrix_to_rec709(const OIIO::ImageSpec& file, const s
   if (are_same(primaries, kAp1Primaries)) return from_acescg();
   const ColorMatrix matrix = color_matrix(primaries, kRec709Primaries);
   if (!is_finite_matrix(matrix))
-    throw bad_file(path, "states chromaticities that span no colour space",
-                   "red, green and blue that do not lie on a line, and a white between them",
-                   text_of(primaries));
+    throw bad_file(path, "has chromaticities that span no colour space",
+                   "red, green and blue not on one line, and white between them", text_of(primaries));
   return matrix;
 }
 

@@ -51,7 +51,7 @@ void read_rows(OIIO::ImageInput& input, const TexelLayout& layout, int begin, in
           ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, begin, end, spec.z, spec.z + 1, layout.begin,
                              layout.end, type, values)
           : input.read_scanlines(0, 0, begin, end, spec.z, layout.begin, layout.end, type, values);
-  if (!good) throw bad_file(path, "the picture is damaged: " + complaint_of(&input));
+  if (!good) throw bad_file(path, "the image is damaged: " + complaint_of(&input));
 }
 
 int rows_at_once(const OIIO::ImageSpec& spec) {
@@ -199,7 +199,7 @@ class OiioPicture : public CachedPicture {
   TextureMemory memory() const override { return memory_; }
   std::string warning() const override {
     if (ignored_ == 0) return {};
-    return source_->path + ": the file does not state the meaning of " +
+    return source_->path + ": the file does not define the meaning of " +
            (ignored_ == 1 ? "a channel beside grey, which is" : "channels beside grey, which are") +
            " not used";
   }
@@ -208,7 +208,7 @@ class OiioPicture : public CachedPicture {
   [[noreturn]] void fail() const {
     std::string complaint = texture_system().geterror();
     complaint = complaint.substr(0, complaint.find('\n'));
-    throw bad_file(source_->path, "the picture is damaged: " + complaint);
+    throw bad_file(source_->path, "the image is damaged: " + complaint);
   }
 
   std::shared_ptr<const PictureSource> source_;

@@ -27,7 +27,7 @@ class KeyedValue {
     const auto twice = std::ranges::adjacent_find(keys_, {}, &Key::frame);
     if (twice != keys_.end()) {
       const Node &first = *twice->value, &second = *std::next(twice)->value;
-      fail(second, "'" + printable(first.key) + "' and '" + printable(second.key) + "' are the same frame",
+      fail(second, "'" + printable(first.key) + "' and '" + printable(second.key) + "' denote the same frame",
            "each frame once");
     }
     for (const Node& member : node.children) {

@@ -42,7 +42,7 @@ void check_channels(const Value& file, const std::optional<Value>& channel, cons
   const std::string expected = "a channel of the image: " + there;
   if (part == TexturePart::number && channel)
     channel->fail("is not in " + printable(texture.file->path()), expected);
-  file.fail("is an image without the channel " + missing.substr(0, 1),
+  file.fail("refers to an image without the channel " + missing.substr(0, 1),
             part == TexturePart::number ? "\"channel\": " + expected
                                         : "the channels R, G and B, or Y, or one alone");
 }
@@ -63,7 +63,7 @@ Texture read_texture(const Value& value, TexturePart part) {
   if (const auto scale = reader.find("scale")) texture.scale = scale->number_or_triple();
   const std::optional<Value> channel = reader.find("channel");
   if (channel && part != TexturePart::number)
-    value.fail(part == TexturePart::color ? "is a colour" : "is three numbers", "no 'channel'");
+    value.fail(part == TexturePart::color ? "is a colour" : "requires three numbers", "no 'channel'");
   if (channel) texture.channel = channel->choice();
   check_channels(file, channel, texture, part);
   if (const auto uv_scale = reader.find("uv_scale")) texture.uv_scale = read_pair(*uv_scale);
@@ -76,7 +76,7 @@ Texture read_texture(const Value& value, TexturePart part) {
 double checked(const Value& value, double number) {
   const Range& range = value.info().range;
   if (!(number >= range.low && number <= range.high))
-    value.fail("is out of range everywhere", "a texture times its scale that suits the key's range");
+    value.fail("is out of range at every texel", "a texture and scale within the range of the key");
   return number;
 }
 

@@ -92,7 +92,7 @@ constexpr double kLeastTolerance = 1e-4;  // asked for 1e-5, the p99 on a sphere
 void read_tolerance(Settings& settings, const Value& value, double) {
   settings.tolerance = value.number({0, 1, true});
   if (settings.tolerance < kLeastTolerance)
-    value.fail("cannot be kept: sums in single precision are off by .006 %",
+    value.fail("is below the limit of single precision: sums have an error of 0.006 %",
                "at least 1e-4; \"evaluator\": \"brute_force\" is exact");
 }
 
@@ -123,7 +123,7 @@ void read_crop(Film& film, const Value& value, double) {
   std::array<int, 4>& crop = film.crop.emplace();
   for (std::size_t i = 0; i < 4; ++i)
     crop[i] = static_cast<int>(ends[i].whole_number(0, static_cast<std::uint64_t>(film.resolution[i % 2])));
-  if (crop[0] >= crop[2] || crop[1] >= crop[3]) value.fail("holds no pixel", "x0 < x1 and y0 < y1");
+  if (crop[0] >= crop[2] || crop[1] >= crop[3]) value.fail("contains no pixels", "x0 < x1 and y0 < y1");
 }
 
 void read_pixel_type(Film& film, const Value& value, double) {

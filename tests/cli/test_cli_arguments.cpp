@@ -74,7 +74,7 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"info", scene, "--set", "resolutoin=[4,4]"}, "(did you mean 'film.resolution'?)"},
       {{"info", scene, "--set", "settings.sampels=4"}, "(did you mean 'samples'?)"},
       {{"info", "bunny.ply"}, "bunny.ply: no such mesh file"},
-      {{"info", "bunny.png"}, "bunny.png: is a picture, not a scene"},
+      {{"info", "bunny.png"}, "bunny.png: is an image, not a scene"},
       {{"render", scene, "-o", out, "--target-error", "1"}, "got 1, which is 100 %; did you mean 1%?"},
       {{"render", scene, "-o", out, "--until-error", "2"}, "did you mean 2%?"},
       {{scene}, "unknown command '"},

@@ -108,7 +108,7 @@ TEST(CliBench, GivenHalves) {
   line.insert(line.end(), opaque.begin(), opaque.end());
   const Outcome outcome = run_program(line);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "nothing is translucent: no rung has samples")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "the scene has no translucent shape")) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path / "references"));
   const CsvTable table = table_of(folder);
   EXPECT_EQ(table.rows.size(), 2u);

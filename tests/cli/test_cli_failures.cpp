@@ -65,7 +65,7 @@ TEST(CliFailures, UnwritableOutputIsSaidAtOnce) {
   EXPECT_TRUE(contains(run_program({"render", folder.scene, "-o", "/proc/a.png"}).err,
                        "cannot write in the folder '/proc'"));
   EXPECT_TRUE(
-      contains(run_program({"render", folder.scene, "-o", "none/a.png"}).err, "there is no folder 'none'"));
+      contains(run_program({"render", folder.scene, "-o", "none/a.png"}).err, "no such folder 'none'"));
   EXPECT_EQ(folder.entries(), 2u);
 }
 

@@ -128,7 +128,7 @@ TEST(CliInfo, ScenesOfTheRepository) {
 TEST(CliInfo, WholePassesOfDirect) {
   const SceneFolder folder;
   const Outcome seven = run_program({"info", folder.scene, "--method", "direct", "--entry-samples", "7"});
-  EXPECT_TRUE(contains(seven.out, "direct, 16 entry samples a pixel")) << seven.out;
+  EXPECT_TRUE(contains(seven.out, "direct, 16 entry samples per pixel")) << seven.out;
 }
 
 // Claim: a plan that nobody can read is a failure. Source: commands.h. Fails if: ferror is not looked at.

@@ -171,7 +171,7 @@ TEST(CliProfile, InterruptLeavesTheOldReport) {
   put_bytes(folder.file("index.html"), "mine");
   const Outcome refused = run_program({"profile", "spectralon", "-o", folder.path.string()});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(contains(refused.err, "is no page of opaline's")) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "is not a page of opaline")) << refused.err;
   put_bytes(folder.file("index.html"), "old, of opaline");
   Child child({"profile", "spectralon", "--walks", "100000000", "-o", folder.path.string()});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));

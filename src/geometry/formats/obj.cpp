@@ -266,15 +266,15 @@ class ObjReader {
     check_range(highest_uv_, uvs_.size(), "texture coordinate");
     cut_faces();
     if (unread_ > 0)
-      mesh_.warnings.push_back(
-          path_ + ":" + std::to_string(first_unread_line_) + ": " + std::to_string(unread_) +
-          " statements that are no part of a polygon mesh are" + " left out, the first is " + first_unread_);
+      mesh_.warnings.push_back(path_ + ":" + std::to_string(first_unread_line_) + ": " +
+                               std::to_string(unread_) + " statements not part of a polygon mesh are" +
+                               " ignored, the first is " + first_unread_);
     if (first_material_line_ > 0 && part_ == nullptr)
       mesh_.warnings.push_back(path_ + ":" + std::to_string(first_material_line_) +
-                               ": materials and textures (mtllib, usemtl) are not read: the scene file says "
-                               "what a shape is made of");
+                               ": materials and textures (mtllib, usemtl) are ignored; the scene file "
+                               "defines the material of a shape");
     if (has_polypaint_)
-      mesh_.warnings.push_back(path_ + ": its polypaint (#MRGB) is left out; save colours at vertices");
+      mesh_.warnings.push_back(path_ + ": polypaint (#MRGB) is ignored; save colours at vertices");
     if (!colors_.empty()) give_vertex_colors(mesh_, colors_.linear(mesh_.positions.size()));
     if (has_groups_) give_smoothing();
     if (!corner_normals_.empty()) give_normals();

@@ -154,7 +154,7 @@ SourceMesh read_stl(const std::string& path, std::string& bytes, MeshUvs) {
   mesh.smoothing.crease_angle = kCreaseAngle;
   if (surplus > 0)
     mesh.warnings.push_back(path + ": " + std::to_string(surplus) +
-                            " bytes after the last triangle are left out");
+                            " bytes after the last triangle are ignored");
   return mesh;
 }
 
