@@ -72,7 +72,7 @@ TEST(SceneErrors, Media) {
        {"'media.m.sigma_s' cannot be combined with 'preset'"}},
       {with_medium(R"({"preset": "cream", @"g": 0})"), {"'media.m.g' has no effect with 'preset'"}},
       {with_medium(R"({"sigma_a": 1, "sigma_s_prime": 1, @"g": 0})"),
-       {"'media.m.g'", "beside 'sigma_s_prime'"}},
+       {"'media.m.g'", "with 'sigma_s_prime'"}},
       {with_medium(R"({"sigma_a": @-0.1, "sigma_s_prime": 1})"), {"'media.m.sigma_a'", "got -0.1"}},
       {with_medium(R"({"sigma_a": [0, 0, @-1], "sigma_s": 1})"), {"'media.m.sigma_a.2'", "got -1"}},
       {with_medium(R"({"sigma_a": 0, "sigma_s_prime": [0, @-1, 0]})"),
