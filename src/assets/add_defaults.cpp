@@ -16,7 +16,7 @@ constexpr double kRadians = std::numbers::pi / 180;
 
 // A three-quarter view: glTF assets face +z.
 constexpr double kAzimuth = 35, kElevation = 20, kFieldOfView = 30;  // degrees
-constexpr double kMargin = 1.05;                                     // of the sphere that the picture holds
+constexpr double kMargin = 1.05;  // margin of the sphere that the picture holds
 constexpr int kSamplesPerPixel = 4;
 
 /// A ball that lights the asset, unseen: where, in units along the picture's right, the world's up and towards the camera;

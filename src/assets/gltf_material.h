@@ -12,7 +12,7 @@ namespace opaline {
 /// Where a material is met.
 struct MaterialUse {
   std::uint32_t index = kNoRecord;  ///< none: glTF's default one, white
-  bool has_uvs = false;             ///< of what it is on
+  bool has_uvs = false;             ///< has uvs of what it is on
   bool has_tangents = false;
   std::string mesh_path{};  ///< how the scene file calls the asset
 };

@@ -176,7 +176,7 @@ void read_buffers(GltfModel& gltf, std::string_view binary, const std::vector<Gl
   }
 }
 
-/// Of all files, read again.
+/// Contents of all files, read again.
 std::string contents_of(const std::vector<std::string>& files, const std::string& first) {
   std::string contents;
   add_hash(contents, first);

@@ -124,7 +124,7 @@ class SkinBlend {
   /// A weighted mean at each vertex; one without weights follows its first joint.
   /// out   uneven: how many have weights that do not sum to 1
   std::vector<Transform> run(std::size_t& uneven) {
-    constexpr double kRounding = .01;  // of weights in bytes
+    constexpr double kRounding = .01;  // rounding of weights in bytes
     for (std::size_t i = 0; i < blended_.size(); ++i) {
       if (std::abs(sums_[i] - 1) > kRounding) ++uneven;
       Transform mean = kZero;

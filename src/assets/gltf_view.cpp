@@ -10,7 +10,7 @@ namespace opaline {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr int kLongerSide = 512;  // of the picture, pixels
+constexpr int kLongerSide = 512;  // longer side of the picture, pixels
 
 std::string label_of(const char* kind, const std::string& name, std::size_t index) {
   return name.empty() ? record_name(kind, index)
@@ -95,7 +95,7 @@ class LightTranslator {
     json["inner_angle"] = inner;
   }
 
-  /// Of a light within the asset as from its surface.
+  /// At center of a light within the asset as from its surface.
   double at_center(const Vec3d& brightness, bool has_place) const {
     if (!has_place) return luminance(brightness);
     const double distance = std::max(length(to_world_.translation - scene_.center), scene_.radius);

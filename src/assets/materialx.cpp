@@ -29,7 +29,7 @@ struct SurfaceModel {
       *metalness, *specular_weight, *specular_anisotropy, *normal;
   Vec3d default_color, default_scale;
   double default_roughness;
-  bool has_rotation;  ///< of the anisotropy, in turns
+  bool has_rotation;  ///< has rotation of the anisotropy, in turns
 };
 
 // OpenPBR 1.1; Autodesk Standard Surface 1.0.1.
@@ -120,7 +120,7 @@ class SurfaceReader {
                                             heights.file, heights.scale * scene_.mm_per_unit));
   }
 
-  /// Of OpenPBR the keys' own meaning. Standard Surface divides and multiplies alpha by the root of the alphas' ratio.
+  /// Add grain of OpenPBR the keys' own meaning. Standard Surface divides and multiplies alpha by the root of the alphas' ratio.
   /// Returns the roughness beside it.
   double add_grain(Json& keys) {
     const double roughness = number("specular_roughness", model_.default_roughness, 0, 1);

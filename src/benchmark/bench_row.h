@@ -65,10 +65,10 @@ struct BenchRow {
 /// What the rows of a scene are measured on and against.
 struct BenchSubject {
   std::string scene;      ///< as in the rows
-  std::string key;        ///< of what the scene's files and the bench's settings of it hold
+  std::string key;        ///< key of what the scene's files and the bench's settings of it hold
   std::string title;      ///< its name without folders
   std::string reference;  ///< in words
-  double half_noise = 0;  ///< of one half of the reference, rms, worst channel
+  double half_noise = 0;  ///< half noise of one half of the reference, rms, worst channel
   std::array<int, 2> resolution{};
   std::string picture;    ///< of the reference, PNG; empty: not kept
   bool is_truth = false;  ///< the reference is random walks, not `direct` on the same model

@@ -29,7 +29,7 @@ constexpr std::array<const char*, 2> kReferenceSeeds{"101", "102"};
 // Random walks end after a time that their noise decides: some ten seconds of CPU a half on a bunny in marble. On fewer
 // cells what they are smoothed over would be seen: of volume_diffusion's error 6.8 % in place of 3.2 % with 2000 cells.
 constexpr std::size_t kWalkedCells = 6000;
-constexpr double kWalkNoise = .2;  // of a cell
+constexpr double kWalkNoise = .2;  // walk noise of a cell
 
 void add_sets(std::vector<std::string>& arguments, const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides) arguments.insert(arguments.end(), {"--set", text});

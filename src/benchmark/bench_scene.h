@@ -20,7 +20,7 @@ struct BenchReference {
   std::array<std::string, 2> halves;  ///< file names
   std::array<std::string, 2> seeds;   ///< "unknown" where a file does not say
   std::string made;                   ///< in words
-  std::size_t cells = 0;              ///< of random walks, on the body with the most; 0: `direct`
+  std::size_t cells = 0;              ///< cells of random walks, on the body with the most; 0: `direct`
 };
 
 struct BenchScene {
@@ -30,7 +30,7 @@ struct BenchScene {
   std::string key;                     ///< scene_hash of what every run renders
   std::vector<std::string> overrides;  ///< of every run, before a rung's own
   Scene scene;                         ///< without its meshes
-  std::size_t planned_samples = 0;     ///< of the group with the most
+  std::size_t planned_samples = 0;     ///< planned samples of the group with the most
   std::vector<Rung> rungs;
   BenchReference reference;
   std::uint64_t direct_seed = 0;  ///< of the direct rungs: not one of the reference's

@@ -24,9 +24,9 @@ std::string name_of(const Rung& rung);
 std::vector<std::string> overrides_of(const Rung& rung, std::span<const std::string> media = {});
 
 struct LadderInput {
-  std::size_t planned_samples = 0;  ///< of the group with the most; 0: nothing is translucent
+  std::size_t planned_samples = 0;  ///< planned samples of the group with the most; 0: nothing is translucent
   bool quick = false;
-  bool bounces = false;  ///< whether the scene has light between things
+  bool bounces = false;  ///< true if the scene has light between things
 };
 
 /// The first rung is `lambert`, what all the others are measured against. Sample counts are a quarter of the

@@ -17,7 +17,7 @@ struct ErrorFigures {
   double signed_mean = 0;  ///< > 0: too bright
   double p99 = 0;          ///< against the mean of the halves (relative_errors), their noise in it
   double p99_noise = 0;    ///< what p99 would be for a picture without error: of half the halves' difference
-  double half_noise = 0;   ///< of one half, rms
+  double half_noise = 0;   ///< half noise of one half, rms
 };
 
 struct PictureError {

@@ -23,7 +23,7 @@ std::string listing_of(const std::vector<BlobPlace>& sets);
 /// hash: of the listing and, behind it, the payload, which is all after the header
 std::string header_text(const EntryName& name, const std::string& listing, std::uint64_t payload,
                         const StageKey& hash);
-/// Whether the header is this text and zeros after it.
+/// True if the header is this text and zeros after it.
 bool is_header(const EntryHeader& header, const std::string& text);
 
 /// What a header states; none of it need be so.

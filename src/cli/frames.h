@@ -38,7 +38,7 @@ std::string frame_hash(const std::string& path, const std::vector<std::string>& 
 /// The command's arguments with the frame's number in the names of its files.
 RenderArguments arguments_of_frame(const RenderArguments& arguments, int frame);
 
-/// Whether all the outputs are there and each picture says that this frame was made by this version from this
+/// True if all the outputs are there and each picture says that this frame was made by this version from this
 /// hash with this command.
 bool is_rendered(const RenderArguments& arguments, const std::string& hash, int frame);
 

@@ -71,7 +71,7 @@ CLI::Validator share_where(const char* such_as, const IsGood& is_good) {
       {});
 }
 
-/// Whether CLI11 made a number of text and unit. What it would say tells of the unit alone.
+/// True if CLI11 made a number of text and unit. What it would say tells of the unit alone.
 bool converts(const CLI::Validator& conversion, std::string& text) {
   try {
     return conversion(text).empty();

@@ -11,7 +11,7 @@ namespace opaline {
 /// with one line and exit code 3, even before main.)
 void prepare_process();
 
-/// Whether standard output came closed.
+/// True if standard output came closed.
 bool was_started_without_output();
 
 }  // namespace opaline

@@ -35,7 +35,7 @@ Plan announced_plan(const RenderArguments& arguments, const Session& session);
 void warn_of_little_time(const RenderArguments& arguments, const Film& film, double spent,
                          const std::optional<DirectResult>& direct);
 
-/// Whether --time-budget or --target-error is given.
+/// True if --time-budget or --target-error is given.
 bool chooses_settings(const RenderArguments& arguments);
 
 /// CPU seconds that --time-budget leaves from now on.

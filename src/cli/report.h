@@ -78,7 +78,7 @@ struct Summary {
   std::size_t peak_memory = 0;  ///< bytes
   std::size_t samples = 0, queries = 0;
   std::vector<LightNoise> noise;
-  double estimated_error = 0;         ///< of `hierarchical`, see estimated_relative_error; 0: there is none
+  double estimated_error = 0;         ///< estimated_relative_error of `hierarchical`; 0: none
   std::optional<double> model_error;  ///< expected_model_error
   KnownErrors errors;
   std::optional<SpentBudget> budget;
@@ -86,9 +86,9 @@ struct Summary {
       again_by;  ///< the command that makes the same picture without choosing; empty: nothing was chosen
   std::size_t walks = 0;          ///< of `volume`, a sample: VolumeExitance::walks, the largest of all bodies
   double walk_noise = 0;          ///< their relative_error, the largest
-  std::size_t entry_samples = 0;  ///< of `direct`, a pixel
+  std::size_t entry_samples = 0;  ///< entry samples of `direct`, a pixel
   double direct_error = 0;        ///< its relative_noise
-  /// Of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.
+  /// Rays of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.
   std::uint64_t rays = 0;
   double shading_seconds = 0, embree_seconds = 0;
   std::vector<std::string> outputs;

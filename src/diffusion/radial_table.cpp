@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kStep = std::numbers::ln10 / RadialTable::kPerDecade;  // of ln r
+constexpr double kStep = std::numbers::ln10 / RadialTable::kPerDecade;  // step of ln r
 // Beyond these the reference is a dipole seen from afar, or nothing.
 constexpr double kManyWidths = 1e5, kManyDecays = 60;
 constexpr double kFarthest = 1400;  // knots: squares of such distances are in double's range

@@ -97,7 +97,7 @@ class SmoothFit {
   // own noise (Tabulated.IsTheLongerWalk).
   static constexpr double kSlope = .12, kBend = .03, kLongestStep = 2;
   static constexpr std::size_t kBand = 2;
-  using Row = std::array<double, kBand + 1>;  // of the symmetric matrix: diagonal, and to its right
+  using Row = std::array<double, kBand + 1>;  // row of the symmetric matrix: diagonal, and to its right
 
   std::vector<double> newton_step(const std::vector<double>& f) const {
     std::vector<Row> matrix(kKnots, Row{});

@@ -97,7 +97,7 @@ std::vector<Trial> draw_trials(const Octree& tree, float radius) {
 struct Face {
   Vec3f normal;
   bool above = false;   // the point's own plane
-  double distance = 0;  // of the point below its plane: weighted sum, then mean
+  double distance = 0;  // distance of the point below its plane: weighted sum, then mean
   double weight = 0;    // area times (1 - r^2/h^2)^2
   std::array<double, 3> flux{};
   double area = 0;

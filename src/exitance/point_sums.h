@@ -21,7 +21,7 @@ template <class F>
 struct PointSums {
   std::array<F, 3> far{};      ///< far kernel times flux
   std::array<F, 3> spread{};   ///< squares of the samples' contributions around the mean of their neighbours
-  std::array<F, 3> squares{};  ///< of the samples' contributions
+  std::array<F, 3> squares{};  ///< squares of the samples' contributions
   std::array<F, 3> sheets{};   ///< of what samples of other sheets within h change by when they move
   std::array<F, 3> hierarchy{};  ///< error of the nodes taken as points
   /// Samples of the same sheet within h, weighted by (1 - r^2/h^2)^2: area, flux, flux^2 / area.
@@ -102,7 +102,7 @@ inline float moved_distance2(const Vec3f& apart, const Vec3f& normal, float near
 /// irradiance; variance: of the irradiance around the point.
 template <class F>
 F estimated_error(const PointSums<F>& sums, std::size_t c, F near, F variance, const CloudError& cloud) {
-  // Of an irradiance that varies around the point, what its mean misses.
+  // Variation of an irradiance that varies around the point, what its mean misses.
   constexpr float kVariation = 0.2f;
   // Of an irradiance that neighbours do not foretell, what its sample says of the whole cell.
   constexpr float kRough = 0.8f;

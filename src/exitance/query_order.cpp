@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-constexpr int kBits = 8;  // of a coordinate in a key: chunks are coarser
+constexpr int kBits = 8;  // bits of a coordinate in a key: chunks are coarser
 
 struct Box {
   Vec3f low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
@@ -177,7 +177,7 @@ std::vector<std::uint32_t> chunk_order(std::span<const Query> queries) {
   std::vector<std::uint32_t> order;
   order.reserve(queries.size());
   Box box, chunk;
-  double squares = 0;  // of the chunks' sides, were they cut from the order given
+  double squares = 0;  // squares of the chunks' sides, were they cut from the order given
   for (std::uint32_t i = 0; i < queries.size(); ++i) {
     if (!is_finite(queries[i].position)) continue;
     order.push_back(i);

@@ -18,7 +18,7 @@ struct alignas(64) SourceBlock {
   float flux[3][kLanes];
   float spread[6][kLanes];                   ///< OctreeNode::spread
   float size[kLanes];                        ///< root of its trace
-  float center[3][kLanes], half[3][kLanes];  ///< of the box
+  float center[3][kLanes], half[3][kLanes];  ///< center of the box
   std::uint32_t node[kLanes];
   bool one_colour = true;  ///< no lane has a channel aside
 };

@@ -29,7 +29,7 @@ struct CheckMemory {
   std::vector<Triangle> mended;  ///< without doubles, and wound
   std::vector<std::uint32_t>
       origins;  ///< of these, twice the number of that given, one more if flipped; where something is given by triangle
-  MeshParts parts;    ///< of these
+  MeshParts parts;    ///< parts of these
   MeshReport report;  ///< warnings do not name the mesh
 };
 

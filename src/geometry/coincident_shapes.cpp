@@ -12,7 +12,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of a shape's diagonal
+constexpr double kRounding = 1e-6;  // rounding of a shape's diagonal
 constexpr std::size_t kPoints = 16;
 
 /// Bounds in steps of the rounding.

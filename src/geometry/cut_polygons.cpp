@@ -15,7 +15,7 @@ constexpr double kLeastOutside = 1e-6;
 // Comparisons of corners with ears in all polygons of a file together: seconds. Ears are not compared beyond it.
 constexpr std::size_t kMostComparisons = std::size_t(1) << 29;
 
-constexpr double kRounding = 1e-12;  // of a polygon whose corners are at most 1 from its first one
+constexpr double kRounding = 1e-12;  // rounding of a polygon whose corners are at most 1 from its first one
 
 struct Point {
   double x = 0, y = 0;

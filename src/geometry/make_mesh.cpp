@@ -26,7 +26,7 @@ struct SourceReader {
   }
 };
 
-/// Of the vertices that triangles use.
+/// Used bounds of the vertices that triangles use.
 Bounds used_bounds(const SourceMesh& mesh) {
   Bounds box;
   for (const Triangle& triangle : mesh.triangles) {
@@ -61,7 +61,7 @@ struct NormalMap {
 
 void place(SourceMesh& mesh, const Transform& to_world, const std::string& name) {
   const Vec3d x = normalized(to_world.x), y = normalized(to_world.y), z = normalized(to_world.z);
-  const double determinant = dot(x, cross(y, z));  // of the directions alone: no matter of scale
+  const double determinant = dot(x, cross(y, z));  // determinant of the directions alone: no matter of scale
   if (!(std::abs(determinant) > 1e-12) || !is_finite(to_world.translation))
     throw bad_file(name, "the transform is singular or not finite", "three independent axes",
                    "relative determinant " + std::to_string(determinant));

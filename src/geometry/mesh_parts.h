@@ -52,7 +52,7 @@ class MeasuredParts {
   /// Triangles of a part, ascending.
   std::span<const std::uint32_t> triangles(std::size_t part) const;
 
-  /// Whether a part, with its holes closed, is around the larger half of some points of another part.
+  /// True if a part, with its holes closed, is around the larger half of some points of another part.
   bool contains(std::size_t outer, std::size_t inner) const;
 
   /// The common volume of parts, with their rims joined to the middle of their area, and its magnitudes.

@@ -63,7 +63,7 @@ class Chooser {
     return is_sheet ? Shape::sheet : Shape::wide;
   }
 
-  /// Whether a part agrees with its normals, 1, or is wound against them, -1; 0 without such.
+  /// True if a part agrees with its normals, 1, or is wound against them, -1; 0 without such.
   int agreement(std::uint32_t i) const {
     const PartMeasures& m = measured_[i];
     const double sum = m.area_for_normals + m.area_against_normals;

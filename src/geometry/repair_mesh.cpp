@@ -81,7 +81,7 @@ class HoleFiller {
 
   std::uint32_t original(OpenMesh::VertexHandle v) const { return original_[std::size_t(v.idx())]; }
 
-  /// Whether every edge of the border is open in the mesh as it was, not cut where three triangles meet.
+  /// True if every edge of the border is open in the mesh as it was, not cut where three triangles meet.
   bool is_hole(Halfedge border, std::size_t& edges) const {
     bool open = true;
     for (const Halfedge h : CGAL::halfedges_around_face(border, mesh_)) {

@@ -29,7 +29,7 @@ class CachedPicture {
 
 struct TextureReader {
   std::unique_ptr<CachedPicture> (*open)(PictureSource source, TextureEncoding encoding);
-  /// Whether it holds floats.
+  /// True if it holds floats.
   bool (*is_float)(const PictureSource& source);
   /// Of the cache, bytes.
   std::size_t (*cache_limit)();

@@ -33,7 +33,7 @@ bool has_color(const ChannelPlaces& places) {
   return std::max({places[0], places[1], places[2]}) >= 0;
 }
 
-/// Of one layer.
+/// Places of one layer.
 ChannelPlaces places_in(std::string_view layer, const std::vector<std::string>& channels) {
   ChannelPlaces places{-1, -1, -1, -1};
   int grey = -1;

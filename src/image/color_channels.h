@@ -33,7 +33,7 @@ ChannelPlaces channel_places(const std::vector<std::string>& channels, const std
 
 /// Of Cryptomatte: names and coverages, not colours.
 bool is_matte_channel(std::string_view channel);
-/// Whether a layer is what one light adds: "diffuse_NAME", "specular_NAME", "emission_NAME".
+/// True if a layer is what one light adds: "diffuse_NAME", "specular_NAME", "emission_NAME".
 bool is_light_group(std::string_view layer);
 
 /// Converts pixels of `step` values each. Standard errors and variances become bounds, which hold however the channels'

@@ -36,7 +36,7 @@ class LinearInput : public OIIO::ImageInput {
   static void forget_source(const std::string& name);
   static OIIO::ImageInput* create() { return new LinearInput; }
 
-  /// Whether an opened picture is held.
+  /// True if an opened picture is held.
   static bool is_held(const OpenPicture& picture, const TexelLayout& layout);
 
   const char* format_name() const override { return "opaline linear"; }

@@ -113,7 +113,7 @@ struct HalvesSums {
 /// The values of one channel in the three pictures, pixel by pixel.
 struct HalvesChannel {
   const std::vector<float>&h, &d1, &d2;
-  double largest = 0, mean = 0;  ///< of d over the compared pixels, > 0
+  double largest = 0, mean = 0;  ///< largest and mean of d over the compared pixels, > 0
 
   bool compared(std::size_t i) const {
     return std::isfinite(h[i]) && std::isfinite(d1[i]) && std::isfinite(d2[i]);

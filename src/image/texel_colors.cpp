@@ -13,7 +13,7 @@ namespace opaline {
 namespace {
 
 bool are_same(const RgbPrimaries& a, const RgbPrimaries& b) {
-  constexpr double kRounding = 1e-4;  // of files that state four digits
+  constexpr double kRounding = 1e-4;  // rounding of files that state four digits
   for (const auto& [x, y] : {std::pair(a.red, b.red), std::pair(a.green, b.green), std::pair(a.blue, b.blue),
                              std::pair(a.white, b.white)})
     if (!(std::abs(x[0] - y[0]) < kRounding && std::abs(x[1] - y[1]) < kRounding)) return false;

@@ -21,7 +21,7 @@
 namespace opaline {
 namespace {
 
-constexpr int kRows = 64;  // of a picture, read at once
+constexpr int kRows = 64;  // rows of a picture, read at once
 
 /// A quarter of the machine, but at least 256 MB and at most 4 GB.
 std::size_t cache_limit() {
@@ -58,7 +58,7 @@ int rows_at_once(const OIIO::ImageSpec& spec) {
   return spec.tile_height > 0 ? spec.tile_height : kRows;
 }
 
-/// Whether all pixels of the data window have the same bytes.
+/// True if all pixels of the data window have the same bytes.
 bool is_even(const PictureSource& source) {
   const OpenPicture opened = open_picture(source, kTextureFormats);
   const OIIO::ImageSpec spec = opened.input->spec();
@@ -214,7 +214,7 @@ class OiioPicture : public CachedPicture {
   std::shared_ptr<const PictureSource> source_;
   TexelColors colors_;
   int ignored_ = 0;   // channels of the file
-  int channels_ = 0;  // of a texel
+  int channels_ = 0;  // channels of a texel
   std::array<bool, 4> has_channel_{};
   bool is_windowed_ = false;
   TextureMemory memory_;

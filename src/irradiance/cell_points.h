@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// Whether a mesh of the world has samples, by its index; meshes beyond the end have none.
+/// True if a mesh of the world has samples, by its index; meshes beyond the end have none.
 std::vector<bool> meshes_of(std::span<const SurfaceSample> samples);
 
 /// Points of the cells of a batch of samples, found together: add the samples, project, read the points.

@@ -134,11 +134,11 @@ class ShadowBatch {
 
  private:
   static constexpr std::size_t kSorted = 256;       // rays that Embree takes at once
-  static constexpr float kMeanCosine = 2.0f / 3;    // of even light
+  static constexpr float kMeanCosine = 2.0f / 3;    // mean cosine of even light
   static constexpr std::size_t kFewestOfRoom = 32;  // rays: a ratio of sums over fewer is biased
   // Of points that lie together, and rays of theirs, that tell what the others may expect.
   static constexpr std::size_t kFewestPools = 4, kFewestOfTogether = 256;
-  static constexpr float kRounding = 1e-4f;  // of a sum of a few floats, less one of them
+  static constexpr float kRounding = 1e-4f;  // rounding of a sum of a few floats, less one of them
 
   void carry(const SurfacePoint& point, const LightSample& sample, const std::array<float, 3>& weights) {
     const float cosine = dot(point.normal, sample.direction);
@@ -395,7 +395,7 @@ class ShadowBatch {
   };
   std::vector<Control> controls_;   // empty: none
   std::vector<RgbF> means_;         // of points that a room lights
-  std::vector<Vec3d> normals_;      // of these, in the room's picture
+  std::vector<Vec3d> normals_;      // normals of these, in the room's picture
   std::vector<std::size_t> pools_;  // the first point of each
   std::uint64_t pooled_ = 0;        // the last point's sequence
   std::vector<Vec3f> directions_;

@@ -11,7 +11,7 @@
 namespace opaline {
 namespace {
 
-// Of smaller discs single precision tells no direction from another, nor holds the radiance.
+// Least angle of smaller discs single precision tells no direction from another, nor holds the radiance.
 constexpr double kLeastAngle = .004;
 
 bool is_parallel(const DirectionalLight& light) {

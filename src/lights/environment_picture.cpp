@@ -30,7 +30,7 @@ constexpr std::size_t kMostColumns = 1024, kBlockColumns = 64, kBrightest = 32;
 // as a cosine.
 constexpr double kBetweenNormals = .15, kLeastCosine = .05;
 
-// Of the unfolded octahedron, both in [-1, 1].
+// Unfolded normal of the unfolded octahedron, both in [-1, 1].
 Vec3d unfolded_normal(double x, double y) {
   const double z = 1 - std::abs(x) - std::abs(y), over = std::max(-z, 0.0);
   return normalized(Vec3d{x + (x < 0 ? over : -over), y + (y < 0 ? over : -over), z});

@@ -34,7 +34,7 @@ struct LightOf {
   /// Of a kind that comes as a light for each channel: the weight of each channel.
   static LightSample sample_channels(const Kind& light, const Vec3f& point, const Vec3f& normal,
                                      std::array<double, 2> unit_square, int samples, RgbF& weights);
-  /// Of directions from the point that `sample` draws, 1/sr; 0 for delta lights.
+  /// Density of directions from the point that `sample` draws, 1/sr; 0 for delta lights.
   static float density(const Kind& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction);
   /// Where a ray meets the light itself before `far`; no hit for lights without an area.
   static EmitterHit intersect(const Kind& light, const Vec3f& origin, const Vec3f& direction, float far);

@@ -23,7 +23,7 @@ struct BodyPlanning {
   const Scene& scene;
   const World& world;
   std::span<const Light> lights;  ///< recentred
-  double fewest_samples;          ///< of a body
+  double fewest_samples;          ///< fewest samples of a body
 };
 
 /// Expected memory of a body, bytes.

@@ -33,7 +33,7 @@ double first_guess(const SettingsSearch& search, double fewest, double target) {
   return std::clamp(guess, fewest, search.most_samples);
 }
 
-/// Of the shadow rays of a small picture, as another one differs.
+/// Noise of the shadow rays of a small picture, as another one differs.
 double noise_of(SettingsSearch& search, const Image& picture) {
   if (std::ranges::all_of(recentred_lights(search.scene, search.session.world()), is_delta)) return 0;
   return probe_difference(search.picture(), picture) / std::sqrt(2);

@@ -18,7 +18,7 @@ namespace opaline {
 namespace {
 
 constexpr double kFewest = 2500;             // samples
-constexpr std::size_t kEnoughPoints = 1000;  // of a small picture
+constexpr std::size_t kEnoughPoints = 1000;  // enough points of a small picture
 constexpr double kFirstTolerance = .01;
 // So many times the most samples of a small picture are planned with: what these cost is a few per cent then.
 constexpr double kBeyond = 8;
@@ -89,7 +89,7 @@ class BudgetSearch {
   std::vector<Tried> tried_;
   int doubled_ = 0;  // times in a row
   std::optional<ShadingCost> shading_;
-  std::optional<double> error_;  // of the last tried
+  std::optional<double> error_;  // error of the last tried
 };
 
 void BudgetSearch::try_first(const FinishPicture& finish) {
@@ -179,7 +179,7 @@ double BudgetSearch::goal() const {
   return std::min(affordable(search_.most_samples).samples / kBeyond, search_.most_samples);
 }
 
-/// Whether a picture is still within the time afterwards, or cheaper than now.
+/// True if a picture is still within the time afterwards, or cheaper than now.
 bool BudgetSearch::is_worth_trying(double samples) const {
   double shading = 0.75 * last().shading;  // near light is dear where samples are few
   if (tried_.size() > 1) {

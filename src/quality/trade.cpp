@@ -28,7 +28,7 @@ double rounded(double value, double digits) {
 struct Trade {
   SettingsSearch search;
   Scene given;
-  Image probe;  ///< of the last point
+  Image probe;  ///< probe of the last point
 
   double prepared_seconds() const {
     double seconds = 0;

@@ -20,11 +20,11 @@ namespace opaline {
 struct Appearance {
   bool translucent = false;
   RgbF albedo{};                       ///< reflectance, or total diffuse reflectance
-  float eta = 1;                       ///< of the boundary, where there is one
+  float eta = 1;                       ///< eta of the boundary, where there is one
   float average_reflectance = 0;       ///< F_bar
   std::optional<RoughBoundary> rough;  ///< none: smooth
   bool has_boundary = false;           ///< translucent things and glossy opaque ones
-  float metalness = 0;                 ///< of an opaque one
+  float metalness = 0;                 ///< metalness of an opaque one
   /// Of a boundary whose roughness is a texture, or that is anisotropic.
   std::shared_ptr<const RoughnessRange> roughnesses = {};
   float roughness = 0;  ///< where it is no texture

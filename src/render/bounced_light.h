@@ -56,7 +56,7 @@ class BouncedPlaces {
 
     Lattice(const Film& film, int pixels);
     std::array<double, 2> in_places(const CameraRays::FilmPlace& seen) const;
-    /// Whether a place around this one is near, and their light varies.
+    /// True if a place around this one is near, and their light varies.
     bool needs_closer_places(const CameraRays::FilmPlace& seen) const;
     std::optional<RgbF> at(const CameraRays::FilmPlace& seen, const SurfacePoint& point, float eta) const;
   };

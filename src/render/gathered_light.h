@@ -22,7 +22,7 @@ struct GatherInput {
   const Shader& shader;
   std::span<const SurfacePoint> points;
   std::span<const std::uint64_t> keys;  ///< one a point: chooses its random numbers
-  float eta = 0;                        ///< of the boundary that light enters through; 0: none
+  float eta = 0;                        ///< eta of the boundary that light enters through; 0: none
   int rays_each = 64;
   std::uint64_t seed = 0;
   /// What rays of the same points, keys, number and seed met, added to while gathered_bytes of the view are few; or null.

@@ -42,7 +42,7 @@ class IrradianceLattice {
   IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta, int light_samples,
                     bool holds_lights);
 
-  /// Whether a new one with these would be the same.
+  /// True if a new one with these would be the same.
   bool is_of(const std::vector<bool>& is_own_mesh, double spacing, double eta, int light_samples) const;
   /// To be called between pictures of other lights, as HeldView::set_lights.
   void set_lights(std::span<const std::optional<std::size_t>> before);

@@ -16,7 +16,7 @@
 
 namespace opaline {
 
-/// Whether the channel is diffuse reflection: the limit of a vanishing mean free path.
+/// True if the channel is diffuse reflection: the limit of a vanishing mean free path.
 inline bool is_local(const DiffuseProfile& profile, std::size_t channel) {
   return profile.total[channel] > 0 && !(profile.mean_free_path[channel] > 0);
 }

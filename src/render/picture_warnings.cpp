@@ -60,7 +60,7 @@ std::vector<float> sampled_brightness(const Image& image) {
   return values.empty() && step > 1 ? brightness(image, 1) : values;
 }
 
-/// Whether most of the pixels full of an object show a surface from behind: opaque ones have no behind.
+/// True if most of the pixels full of an object show a surface from behind: opaque ones have no behind.
 bool is_inside(const Image& image, const Vec3d& camera) {
   const std::size_t stride = image.channels.size(), coverage = channel(image, "A");
   const std::array<std::size_t, 3> normal{channel(image, "N.X"), channel(image, "N.Y"),
@@ -174,7 +174,7 @@ std::string exposure_text(const Scene& scene, double brightest) {
   return fmt::format("; use --exposure {:g}", stops);
 }
 
-/// Of which the plan has said so.
+/// Has black medium of which the plan has said so.
 bool has_black_medium(const Scene& scene) {
   return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
     return shape.medium && !make_diffuse_profile(scene.media[*shape.medium]).translucent;
@@ -244,7 +244,7 @@ double largest_cosine(const Vec3d& a, const Vec3d& b, const Vec3d& axis) {
   return largest;
 }
 
-/// Whether a cone from zero and a triangle meet: an edge is in it, or its axis passes through the triangle.
+/// True if a cone from zero and a triangle meet: an edge is in it, or its axis passes through the triangle.
 bool meets_cone(const Corners& corners, const Vec3d& axis, double least_cosine) {
   const auto& [a, b, c] = corners;
   for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
@@ -256,7 +256,7 @@ bool meets_cone(const Corners& corners, const Vec3d& axis, double least_cosine) 
   return is_within && dot(axis, normal) * dot(a, normal) > 0;
 }
 
-/// Whether the side or the cone that a light shines into has a surface in it, in shadow or not.
+/// True if the side or the cone that a light shines into has a surface in it, in shadow or not.
 bool reaches_a_surface(const Light& light, const World& world) {
   constexpr double kGrazing = 1e-6;  // diagonals
   const LightExtent lamp = extent(light);

@@ -109,7 +109,7 @@ std::vector<const EnvironmentPicture*> environments_of(const Scene& scene) {
   return environments;
 }
 
-/// Of environments, and of all textures at their full sizes: a camera may look at less.
+/// Picture bytes of environments, and of all textures at their full sizes: a camera may look at less.
 std::size_t picture_bytes(const Scene& scene, const std::vector<const EnvironmentPicture*>& environments) {
   std::set<const TextureFile*> files;
   for (const Shape& shape : scene.shapes)

@@ -130,7 +130,7 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
                   std::vector<std::string>& warnings) {
   constexpr double kAcrossThin = 4, kSmallest = .25;
   constexpr double kOfVarying = .5;    // a cell has one medium; light blurs what a mean free path hides
-  constexpr double kFewestFaces = 60;  // of cells, on the surface
+  constexpr double kFewestFaces = 60;  // fewest faces of cells, on the surface
   const double length = group.smallest_mean_free_path;
   const Medium& medium = scene.media[group.medium];
   group.cell = scene.settings.cell_size * (varies_inside(medium, scene.settings.method)

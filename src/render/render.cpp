@@ -28,7 +28,7 @@ std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, c
   return non_finite;
 }
 
-// Whether so much may be held for each camera ray.
+// True if so much may be held for each camera ray.
 bool fits(const Film& film, std::size_t bytes) {
   return std::size_t(film.resolution[0]) * std::size_t(film.resolution[1]) *
              std::size_t(film.samples_per_pixel) * bytes <=

@@ -115,7 +115,7 @@ class Shader {
   std::vector<Light> unit_lights_;       // all, with an emission of 1, where coats can be held
   std::vector<Appearance> appearances_;  // one a mesh
   SurfaceTextures textures_;
-  float pixel_spread_ = 0;  // of camera rays
+  float pixel_spread_ = 0;  // pixel spread of camera rays
   Fields fields_;
   int light_samples_ = 1;  // a camera ray
   const BouncedLight* bounced_ = nullptr;

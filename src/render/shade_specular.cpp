@@ -23,7 +23,7 @@ constexpr int kFewerOfMirrored = 4;
 constexpr int kMostMirrors = 4, kMostCoats = 2;
 // Shadow rays towards a surface that is seen in a mirror, over those where it is seen: a mirror takes most away.
 constexpr int kFewerInMirrors = 4;
-// Of the cones around directions of a lobe, for textures that they meet.
+// Glossy spread of the cones around directions of a lobe, for textures that they meet.
 constexpr float kGlossySpread = .1f;
 
 TracedRay leaving(const SurfacePoint& point, const Vec3f& direction) {
@@ -58,7 +58,7 @@ void add_hit(const SurfaceHits& hits, std::size_t i, SurfaceHits& to) {
   if (!hits.textures.empty()) to.textures.push_back(hits.textures[i]);
 }
 
-// Of a light that has an area; is_free: the ray meets no surface.
+// Seen radiance of a light that has an area; is_free: the ray meets no surface.
 RgbF seen_radiance(const Light& light, const Ray& ray, bool is_free) {
   const EmitterHit emitter = intersect_emitter(light, ray.origin, ray.direction, ray.far);
   return emitter.hit ? emitter.radiance : is_free ? background(light, ray.direction) : RgbF{};
@@ -210,7 +210,7 @@ struct Shader::GlossyHits {
     }
   }
   const RoughBoundary& boundary(std::size_t i) const { return *appearances[i]->rough; }
-  // Of what is mirrored from a direction, local.
+  // Color of what is mirrored from a direction, local.
   RgbF color(std::size_t i, const Vec3f& light) const {
     if (!(appearances[i]->metalness > 0)) return RgbF(1);
     return appearances[i]->mirror_color(dot(frames[i].view, normalized(frames[i].view + light)),
@@ -315,7 +315,7 @@ void Shader::add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) cons
 // By directions of the lobe.
 void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldView::Coat* coat) const {
   struct Met {
-    float weight;  // of all rays that met surfaces
+    float weight;  // weight of all rays that met surfaces
     RgbF share;    // these, each in its colour
     std::uint32_t hit;
   };

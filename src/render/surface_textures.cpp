@@ -115,11 +115,11 @@ void map_normal(const Texture& texture, const SurfaceTextures::Place& place, Sur
       normalized(tangent * x + bitangent * y + point.normal * std::max(2 * texel[2] - 1, 1.0f / 255));
 }
 
-/// Of the height over the surface, mm per world unit.
+/// Height gradient of the height over the surface, mm per world unit.
 Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& place) {
   const auto [along_u, along_v] =
       texture.file->slope(texture_place(texture, *place.uv, place.footprint), texture.channel);
-  // Of the picture's u and v, by the mesh's.
+  // Angle of the picture's u and v, by the mesh's.
   const double angle = texture.uv_rotation * std::numbers::pi / 180;
   const double cosine = std::cos(angle), sine = std::sin(angle);
   const Vec3f x = place.uv->gradient_u * float(texture.uv_scale[0]),

@@ -75,7 +75,7 @@ class KeyedValue {
     return frame;
   }
 
-  /// Of each key's value; they sum to 1.
+  /// Weights of each key's value; they sum to 1.
   std::vector<double> weights_at(double frame) const {
     std::vector<double> weights(keys_.size());
     const auto after = std::ranges::upper_bound(keys_, frame, {}, &Key::frame);

@@ -52,7 +52,7 @@ bool is_json(std::string_view value) {
 /// The next name of a path.
 struct PathName {
   std::string_view name;
-  std::size_t end = 0;  ///< of it in the path, with its quotes
+  std::size_t end = 0;  ///< end of it in the path, with its quotes
 };
 
 class Override {

@@ -76,7 +76,7 @@ Rgb take_mean(Texture& texture) {
   return taken;
 }
 
-/// Of a texture the medium is that of the mean colour, and what its texels are over it a tint.
+/// Take color of a texture the medium is that of the mean colour, and what its texels are over it a tint.
 void take_color(const Value& value, ArtistMedium& coefficients, Medium& medium) {
   ColorReading color = read_color(value);
   coefficients.subsurface_color = color.color;

@@ -24,7 +24,7 @@ bool is_close(double a, double b, double relative) {
   return std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b));
 }
 
-/// Whether all of 0 to below `size` fulfil the condition; by all threads.
+/// True if all of 0 to below `size` fulfil the condition; by all threads.
 template <class Condition>
 bool all_of(std::size_t size, const Condition& condition) {
   std::atomic<bool> holds = true;

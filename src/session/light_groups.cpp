@@ -18,7 +18,7 @@ namespace opaline {
 namespace {
 
 constexpr std::array<std::string_view, 3> kKinds{"diffuse", "specular", "emission"};
-// Of a sum of floats, over what the sum is.
+// Rounding of a sum of floats, over what the sum is.
 constexpr float kRounding = 1e-6f;
 
 std::string layer_name(const std::string& light) {
@@ -36,7 +36,7 @@ Error refused(const SourcePlace& place, const std::string& what, const std::stri
 /// First red channel of each kind that a group has, in a picture's pixels.
 struct GroupPlaces {
   std::array<std::size_t, 3> kinds;
-  std::size_t count;  ///< of kinds; emission is last
+  std::size_t count;  ///< count of kinds; emission is last
 };
 
 std::vector<GroupPlaces> append_layers(Image& picture, std::span<const LightGroup> groups) {

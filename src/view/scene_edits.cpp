@@ -89,12 +89,12 @@ const Json* value_at(const Json& scene, const std::string& path) {
   return value;
 }
 
-/// Whether a value of this path places the scene's camera.
+/// True if a value of this path places the scene's camera.
 bool moves_camera(const std::string& path) {
   return path == "camera" || path.starts_with("camera.position") || path.starts_with("camera.look_at");
 }
 
-/// Whether an override is of the path, or of what is in it.
+/// True if an override is of the path, or of what is in it.
 bool is_within(const std::string& override, const std::string& path) {
   return override.starts_with(path) && (override.at(path.size()) == '=' || override.at(path.size()) == '.');
 }

@@ -136,7 +136,7 @@ class BodyWalks::Walker {
     return numbers_.next() * sigma_t_ < double(local.sigma_t);
   }
 
-  // Whether the flight ends in a collision. Free paths have no memory: one that is longer than `most` goes on from
+  // True if the flight ends in a collision. Free paths have no memory: one that is longer than `most` goes on from
   // there.
   bool fly_free(WalkState& state, double most) {
     const double distance = free_path(numbers_) / sigma_t_;

@@ -53,7 +53,7 @@ class BodyWalks {
 
  private:
   class Walker;
-  /// Of one channel; where the medium varies, that of the densest place.
+  /// Medium of one channel; where the medium varies, that of the densest place.
   const HomogeneousMedium& medium(std::size_t channel) const {
     return voxels_ ? voxels_->densest(channel) : input_.media[channel];
   }

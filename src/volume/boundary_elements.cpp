@@ -56,7 +56,7 @@ class ElementTable {
     return found;
   }
 
-  /// Whether another sheet in the element's cell faces the other way: a thin part, or a fold.
+  /// True if another sheet in the element's cell faces the other way: a thin part, or a fold.
   bool faces_back(std::uint32_t element) const { return sums_[element].faces_back; }
 
   std::vector<BoundaryElement> elements() const {
@@ -69,7 +69,7 @@ class ElementTable {
 
  private:
   bool is_of(const ElementSum& sum, const Vec3d& position, const Vec3d& normal) const {
-    constexpr double kLeastAgreement = .9;  // of normals in one element
+    constexpr double kLeastAgreement = .9;  // least agreement of normals in one element
     constexpr double kFarthest = .3;        // cells, above or below it
     const double along = length(sum.normal);
     if (dot(sum.normal, normal) < kLeastAgreement * along) return false;
@@ -198,7 +198,7 @@ class Cutter {
   }
 
  private:
-  static constexpr double kLeastArea = 1e-9;  // of a cell's face
+  static constexpr double kLeastArea = 1e-9;  // least area of a cell's face
 
   void add(const Polygon& part, const Vec3d& normal, std::uint32_t mesh, std::uint32_t triangle) {
     Vec3d sum{};

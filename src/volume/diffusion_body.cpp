@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kTolerance = 1e-3;  // of the solver; moves the bunny's picture by .03 %
+constexpr double kTolerance = 1e-3;  // tolerance of the solver; moves the bunny's picture by .03 %
 constexpr double kRough = 1e-2;      // of the fluence that tells the oblique flow
 
 DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice,

@@ -11,9 +11,9 @@
 namespace opaline {
 namespace {
 
-constexpr double kLeastVolume = .05;                    // of a lattice cell: what is less belongs to no cell
-constexpr double kLeastDistance = .25;                  // of two centres
-constexpr float kLeastAcross = 1e-6f;                   // squared; less is rounding
+constexpr double kLeastVolume = .05;    // least volume of a lattice cell: what is less belongs to no cell
+constexpr double kLeastDistance = .25;  // least distance of two centres
+constexpr float kLeastAcross = 1e-6f;   // squared; less is rounding
 constexpr std::array<double, 3> kThirds{.25, .5, .25};  // trapezoids through three lines
 
 /// A flag for each cell of one size.
@@ -82,7 +82,7 @@ struct DiffusionGrid::Builder {
     for (Flags& level : levels) level = level.widened();
   }
 
-  /// Of the surface in a cell of size 1.
+  /// Plane of the surface in a cell of size 1.
   struct Plane {
     Vec3d normal{};     // outward
     double height = 0;  // over the cell's middle
@@ -149,7 +149,7 @@ struct DiffusionGrid::Builder {
   // Lines tell how much of a cell is inside to a quarter where the surface runs along them. Where it is one plane, its
   // facets tell it exactly.
   void weigh_by_planes(std::span<const Facet> surface) {
-    constexpr double kLeastAgreement = .97;  // of the facets' normals
+    constexpr double kLeastAgreement = .97;  // least agreement of the facets' normals
     std::vector<Plane> sums(grid.cells_.size());
     std::vector<double> areas(grid.cells_.size());
     for (const auto& [position, normal, area] : surface) {
@@ -179,7 +179,7 @@ struct DiffusionGrid::Builder {
   }
   int size_of(std::uint32_t cell) const { return grid.cells_[cell].size; }
 
-  // Of a lattice face between two cells, how much is inside: behind the planes of both, if they have one.
+  // Aperture of a lattice face between two cells, how much is inside: behind the planes of both, if they have one.
   // in    corner: of the lattice cell above the face
   double aperture(std::uint32_t below, std::uint32_t above, const std::array<int, 3>& corner,
                   std::size_t axis) const {
@@ -300,7 +300,7 @@ struct DiffusionGrid::Builder {
   std::vector<Flags> levels;                 // of sizes 2, 4, 8: what must be divided
   std::size_t brick = 0;                     // under way
   std::vector<std::array<int, 3>> corners;   // of the cells
-  std::vector<std::optional<Plane>> planes;  // of the cells that have just one
+  std::vector<std::optional<Plane>> planes;  // planes of the cells that have just one
 };
 
 DiffusionGrid::DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Facet> surface)

@@ -19,9 +19,9 @@ class DiffusionGrid {
   static constexpr int kLargest = 8;
 
   struct Cell {
-    Vec3f centre;      ///< of what is inside, lattice units, as all here
+    Vec3f centre;      ///< centre of what is inside, lattice units, as all here
     float volume = 0;  ///< that loses light as its centre does
-    int size = 1;      ///< of its edge
+    int size = 1;      ///< size of its edge
   };
   /// To a neighbour. Both cells have one.
   struct Link {
@@ -36,7 +36,7 @@ class DiffusionGrid {
     Vec3f across;  ///< from a's centre to b's, along their common face
   };
 
-  /// Of the surface in one cell: its middle, its normal, outward, and its area, of any unit.
+  /// Facet of the surface in one cell: its middle, its normal, outward, and its area, of any unit.
   struct Facet {
     Vec3f position, normal;
     float area;

@@ -14,9 +14,9 @@
 namespace opaline {
 namespace {
 
-constexpr double kLeastCosine = 1e-3;   // of light inside: against division by 0 where eta < 1
+constexpr double kLeastCosine = 1e-3;   // least cosine of light inside: against division by 0 where eta < 1
 constexpr double kSpread = 1.2;         // cells around an exit
-constexpr double kLeastAgreement = .5;  // of normals of one sheet
+constexpr double kLeastAgreement = .5;  // least agreement of normals of one sheet
 constexpr double kFarthest = 5;         // free paths; what goes farther ends there
 constexpr double kStep = .4;            // cells
 

@@ -44,7 +44,7 @@ class FreeDistance {
   /// To any side.
   double around(const Place& place) const { return distances_[steps_[place.voxel]]; }
 
-  /// Whether it is at least the planes' reach in this direction.
+  /// True if it is at least the planes' reach in this direction.
   bool is_free(const Place& place, const Vec3d& direction) const {
     const Plane& plane = planes_[place.voxel];
     const Vec3d normal(double(plane.x), double(plane.y), double(plane.z));

@@ -13,7 +13,7 @@ struct StageCost {
   double wall_seconds = 0;
   double cpu_seconds = 0;       ///< user and system, all threads
   double system_seconds = 0;    ///< the system's part of it; the kernel tells the two apart by its ticks
-  std::size_t peak_memory = 0;  ///< of the process up to the end of the stage, bytes
+  std::size_t peak_memory = 0;  ///< peak memory of the process up to the end of the stage, bytes
 };
 
 /// Starts at construction.

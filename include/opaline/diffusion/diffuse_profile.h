@@ -50,7 +50,7 @@ double sample_chord_sphere_radius(const ChannelProfile& profile, double u, doubl
 /// The rate, 1/mm, at which the profile decays at its far end.
 double slowest_decay(const ChannelProfile& profile);
 
-/// Whether the profile knows the other face of a plate (Multipole). To the others a point of the far face is one
+/// True if the profile knows the other face of a plate (Multipole). To the others a point of the far face is one
 /// at its straight distance.
 bool has_far_side(const ChannelProfile& profile);
 /// What leaves on the other face of the medium's thickness, 1/mm^2, per flux that entered on the one; by the straight
@@ -78,7 +78,7 @@ struct DiffuseProfile {
   double eta = 1;
   double average_reflectance = 0;  ///< F_bar, from outside
   bool translucent = false;        ///< some channel scatters
-  bool has_far_side = false;       ///< of some channel
+  bool has_far_side = false;       ///< has far side of some channel
 };
 
 /// unit: of all its lengths, mm.

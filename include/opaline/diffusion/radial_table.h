@@ -51,7 +51,7 @@ class RadialTable {
 
   RadialReference reference_;
   std::vector<double> logarithms_, curvature_;  // at the knots; second derivatives by knot^2
-  double scale_ = 1;                            // of the reference
+  double scale_ = 1;                            // scale of the reference
   std::vector<double> within_, beyond_;         // at the knots and beyond them, as far as there is light
 };
 

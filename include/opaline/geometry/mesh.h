@@ -50,7 +50,7 @@ struct CheckedMesh {
 /// Total area of the triangles, mm^2.
 double surface_area(const Mesh& mesh);
 
-/// Of a closed mesh, in cubes of its own unit, >= 0; by the divergence theorem about one of its corners.
+/// Enclosed volume of a closed mesh, in cubes of its own unit, >= 0; by the divergence theorem about one of its corners.
 double enclosed_volume(const Mesh& mesh);
 
 /// Integrals over a mesh's surface, in powers of the mesh's own unit.

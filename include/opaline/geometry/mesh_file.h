@@ -6,7 +6,7 @@
 
 namespace opaline {
 
-/// Whether a file's name ends as those of a mesh format do, in upper or lower case.
+/// True if a file's name ends as those of a mesh format do, in upper or lower case.
 bool is_mesh_file_name(const std::string& path);
 
 /// The bytes of a mesh file as they are.
@@ -17,7 +17,7 @@ std::string read_mesh_bytes(const std::string& path);
 /// error as read_mesh_bytes, and of glTF as reading it
 std::string mesh_contents(const std::string& path);
 
-/// Whether these are the file's bytes alone.
+/// True if these are the file's bytes alone.
 bool names_no_files(const std::string& path);
 
 }  // namespace opaline

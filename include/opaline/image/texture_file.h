@@ -79,9 +79,9 @@ class TextureFile {
   TextureMemory memory() const;
   /// Of the cache that all textures share, bytes.
   static std::size_t cache_limit();
-  /// Whether there is a picture for the tile that v upwards and u count; a plain picture is everywhere.
+  /// True if there is a picture for the tile that v upwards and u count; a plain picture is everywhere.
   bool has_tile(int column, int row) const;
-  /// Of the file's bytes and its colour space.
+  /// Hash of the file's bytes and its colour space.
   std::uint64_t hash() const { return hash_; }
 
  private:

@@ -65,7 +65,7 @@ struct PointIrradianceInput {
   std::span<Rgb> variance = {};
   /// If not empty: one a point, what other surfaces send there. Known already: irradiance_at does not add it.
   std::span<const RgbF> bounced = {};
-  /// Whether points that follow each other lie together: what hides a room from some then tells of others.
+  /// True if points that follow each other lie together: what hides a room from some then tells of others.
   bool is_together = false;
 };
 

@@ -26,7 +26,7 @@ class EnvironmentPicture {
   /// somebody holds it. Negative radiance counts as 0, see warning().
   /// error Error{bad_input}: as read_image; the shape is not that of an environment; a value is not finite
   static std::shared_ptr<const EnvironmentPicture> read(const std::string& path);
-  const std::string& path() const { return path_; }  ///< of the file that was read; empty: none
+  const std::string& path() const { return path_; }  ///< path of the file that was read; empty: none
 
   /// in    direction: unit
   RgbF radiance(const Vec3d& direction) const;
@@ -63,7 +63,7 @@ class EnvironmentPicture {
   static std::size_t nearest_normal(const Vec3d& normal);
   std::size_t block_count() const { return block_flux_.size(); }
   std::size_t block_columns() const { return block_columns_; }
-  /// Of sample(), 1/sr.
+  /// Density of sample(), 1/sr.
   float density(const Vec3d& direction, const Vec3d& normal) const;
 
   /// The blocks that a lobe mirrors, and the brightest of all, by brightness and lobe: cumulative shares. None: the lobe is so wide that
@@ -84,7 +84,7 @@ class EnvironmentPicture {
   bool is_grey() const { return is_grey_; }
   /// At most, while it is read: four channels of the file beside the pixels and their tables; bytes.
   std::size_t memory() const;
-  /// Of the pixels.
+  /// Hash of the pixels.
   std::uint64_t hash() const { return hash_; }
 
  private:
@@ -128,7 +128,7 @@ class EnvironmentPicture {
   std::string warning_;
   // Cells: means over pixels, where there are many.
   std::size_t step_ = 1, columns_ = 0, rows_ = 0;
-  std::vector<double> row_cosines_;  ///< of the angles from +y at the rows' borders
+  std::vector<double> row_cosines_;  ///< row cosines of the angles from +y at the rows' borders
   struct Cell {
     RgbF mean;
     float importance = 0;  ///< its brightness and a little of its neighbours'
@@ -143,7 +143,7 @@ class EnvironmentPicture {
   std::vector<float>
       assumed_cosines_;  ///< of blocks, for each normal; 0: the sample's own; < 0: none is drawn
   std::vector<BlockIntegral> integrals_;
-  std::vector<Vec3f> middles_;            ///< of blocks
+  std::vector<Vec3f> middles_;            ///< middles of blocks
   std::vector<std::uint16_t> brightest_;  ///< of blocks, some
   std::vector<Unshadowed> unshadowed_;
 };

@@ -34,7 +34,7 @@ bool is_delta(const Light& light);
 /// delta lights (ManyLights) a third.
 int shadow_rays(const Light& light, int light_samples);
 
-/// Whether the light has an area or is all around: rays see it.
+/// True if the light has an area or is all around: rays see it.
 bool is_visible(const Light& light);
 
 struct RoomLobe;
@@ -89,8 +89,8 @@ RgbF background(const Light& light, const Vec3f& direction);
 
 /// Where a light is. A light with neither centre nor direction is all around.
 struct LightExtent {
-  std::optional<Vec3d> center{};   ///< of a ball around it; none: infinitely far
-  double radius = 0;               ///< of that ball
+  std::optional<Vec3d> center{};   ///< center of a ball around it; none: infinitely far
+  double radius = 0;               ///< radius of that ball
   double width = 0;                ///< along its shorter side
   Vec3d along{};                   ///< from end to end of its middle line, which `center` is the middle of
   std::optional<Vec3d> facing{};   ///< unit; it shines on this side only

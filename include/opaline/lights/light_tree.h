@@ -33,7 +33,7 @@ class LightTree {
   /// Emission of a light; over the common one, if there is one.
   const RgbF& colour(std::uint32_t light) const { return colours_[light]; }
   bool has_area() const { return has_area_; }
-  /// Of all that the lights are.
+  /// Hash of all that the lights are.
   std::uint64_t hash() const { return hash_; }
   /// A ball around them.
   LightExtent extent() const;
@@ -65,8 +65,8 @@ class LightTree {
 
   struct Node {
     Vec3f center{};
-    float radius = 0;  ///< of a ball around its lights
-    /// Of a cone around the ways its lights face; a half angle of pi: they shine all around.
+    float radius = 0;  ///< radius of a ball around its lights
+    /// Axis of a cone around the ways its lights face; a half angle of pi: they shine all around.
     Vec3f axis{};
     float cos_half = -1, sin_half = 0;
     /// Off their way its lights shine fully within an angle, and not at all beyond another. Between them they fade with
@@ -107,7 +107,7 @@ class LightTree {
 /// So many lights without an area, and so many with one, are traced one by one.
 inline constexpr std::size_t kMostTraced = 16;
 
-/// Whether with_trees changes the lights.
+/// True if with_trees changes the lights.
 bool are_many(std::span<const Light> lights);
 
 /// The lights with those that are more than kMostTraced replaced by a tree of them (ManyLights), as one light where all

@@ -13,9 +13,9 @@ namespace opaline {
 struct MeasuredError {
   double error = 0;               ///< what the reference's own noise explains is taken out
   double standard_error = 0;      ///< of it: the points are a few, the reference noisy
-  double noise = 0;               ///< of the reference, rms of its standard error
+  double noise = 0;               ///< noise of the reference, rms of its standard error
   std::size_t points = 0;         ///< 0: nothing translucent is seen
-  std::size_t entry_samples = 0;  ///< of the reference, a point
+  std::size_t entry_samples = 0;  ///< entry samples of the reference, a point
 };
 
 /// Measures the samples, trees and surface caches of a prepared session at some 200 points of the picture

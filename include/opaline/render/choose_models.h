@@ -21,7 +21,7 @@ struct BodyShape {
   /// sphere or a cube.
   double alignment = 0;
 
-  /// Of a square plate of this area and mean thickness, mm: its rim is part of the area.
+  /// Plate thickness of a square plate of this area and mean thickness, mm: its rim is part of the area.
   double plate_thickness() const;
   bool is_flat() const;
 };

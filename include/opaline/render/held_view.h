@@ -45,7 +45,7 @@ struct HeldView {
   struct Batch {
     bool is_traced = false;
     std::vector<CameraHit> hits;       ///< empty: all missed
-    std::vector<SurfacePoint> points;  ///< of those that hit, in their order; empty: to be found
+    std::vector<SurfacePoint> points;  ///< points of those that hit, in their order; empty: to be found
     std::vector<Surface> surfaces;     ///< by kind; empty: not known
 
     /// But for what coats in it mirror, and what is gathered for it.
@@ -66,8 +66,8 @@ struct HeldView {
     };
     std::vector<OfLight> lights;
     std::vector<TracedRay> mirrored;  ///< rays that met surfaces
-    std::vector<std::uint32_t> rays;  ///< of the camera, one a mirrored ray
-    std::vector<RgbF> shares;         ///< of what it sees
+    std::vector<std::uint32_t> rays;  ///< rays of the camera, one a mirrored ray
+    std::vector<RgbF> shares;         ///< shares of what it sees
     std::vector<std::uint64_t> keys;  ///< for its light samples
     Batch seen;                       ///< where the mirrored rays met surfaces; its hits are theirs
 
@@ -100,7 +100,7 @@ struct HeldView {
   };
   struct Gathering {
     std::vector<std::uint32_t> points;  ///< which of their batch gather
-    std::vector<Gathered> parts;        ///< of a few points each, in their order
+    std::vector<Gathered> parts;        ///< parts of a few points each, in their order
   };
   std::vector<std::vector<Batch>> tiles;  ///< in the order of their batches
   bool has_room = false;                  ///< for the points

@@ -22,7 +22,7 @@ struct CarryInput {
   Monitor* monitor = nullptr;
 };
 
-/// Whether the meshes have the same triangles, so that samples can be carried.
+/// True if the meshes have the same triangles, so that samples can be carried.
 bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, const World& to,
                std::span<const std::uint32_t> to_meshes);
 

@@ -76,11 +76,11 @@ constexpr NameList names_of(Method) {
   return kMethodNames;
 }
 
-/// Whether translucent bodies get samples.
+/// True if translucent bodies get samples.
 constexpr bool has_samples(Method method) {
   return method != Method::lambert && method != Method::direct;
 }
-/// Whether what leaves a body is known as means over its samples' cells.
+/// True if what leaves a body is known as means over its samples' cells.
 constexpr bool has_cells(Method method) {
   return method == Method::volume || method == Method::volume_diffusion;
 }

@@ -53,7 +53,7 @@ struct Texture {
 /// the level one, at right angles to +y.
 struct Grain {
   double anisotropy = 0;  ///< [0, 1], specular_roughness_anisotropy of OpenPBR: 0 is the same all around
-  double rotation = 0;    ///< of the tangent about the normal, counterclockwise, degrees
+  double rotation = 0;    ///< rotation of the tangent about the normal, counterclockwise, degrees
   friend bool operator==(const Grain&, const Grain&) = default;
 };
 
@@ -90,9 +90,9 @@ struct Medium {
   /// Mean cosine g of the scattering angle, (-1, 1), where the coefficients are reduced ones. Random walks alone
   /// follow it; diffusion knows no more than (1 - g) sigma_s.
   double scatter_anisotropy = 0;
-  /// Of the plates and bodies made of it, mm, > 0; infinite: thick. ProfileKind::multipole alone asks.
+  /// Thickness of the plates and bodies made of it, mm, > 0; infinite: thick. ProfileKind::multipole alone asks.
   double thickness = std::numeric_limits<double>::infinity();
-  double specular_roughness = 0;  ///< of the boundary as it mirrors, [0, 1]; its square is GGX's alpha
+  double specular_roughness = 0;  ///< roughness of the dielectric boundary, [0, 1]; GGX's alpha is its square
   /// What colours its light besides: t = tint x texture, [0, 1] but for textures whose mean is 1.
   Rgb tint{1, 1, 1};
   std::optional<Texture> tint_texture{}, roughness_texture{};
@@ -106,16 +106,16 @@ struct Medium {
   ChosenProfile chosen{};                                   ///< where profile is none
   NormalizedDiffusionFit fit =
       NormalizedDiffusionFit::refit;  ///< ProfileKind::normalized_diffusion alone asks
-  Grain grain{};                      ///< of the boundary
+  Grain grain{};                      ///< grain of the boundary
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
-/// Whether some of its light is reflected diffusely at its surface.
+/// True if some of its light is reflected diffusely at its surface.
 inline bool is_partly_opaque(const Medium& medium) {
   return medium.subsurface_weight < 1 || medium.weight_texture;
 }
 
-/// Whether the colour, or the colour or the radius, of the medium differs from place to place inside its bodies: where light
+/// True if the colour, or the colour or the radius, of the medium differs from place to place inside its bodies: where light
 /// is followed inside. Radial profiles have one medium everywhere.
 inline bool has_color_inside(const Medium& medium, Method method) {
   return medium.texture_mix == TextureMix::medium && medium.tint_texture && has_cells(method);
@@ -152,7 +152,7 @@ struct MeshFile {
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
-/// Of a built-in curved shape: 4^fineness times as many triangles. 6 leaves .00005 of a sphere's area out,
+/// Most fineness of a built-in curved shape: 4^fineness times as many triangles. 6 leaves .00005 of a sphere's area out,
 /// and each one less four times that.
 constexpr int kMostFineness = 6, kLeastFineness = 4;
 
@@ -189,7 +189,7 @@ using ShapeSource = std::variant<MeshFile, SphereShape, BoxShape, QuadShape, Sla
 struct Gloss {
   double metalness = 0, roughness = 1;  ///< [0, 1]; the square of the latter is GGX's alpha
   std::optional<Texture> metalness_texture{}, roughness_texture{};
-  double eta = 1.5;  ///< of the dielectric, outside air
+  double eta = 1.5;  ///< eta of the dielectric, outside air
   Grain grain{};
   friend bool operator==(const Gloss&, const Gloss&) = default;
 };
@@ -209,7 +209,7 @@ struct Shape {
   /// Translucent shapes with the same non-empty group blend as one object; others never bleed into each
   /// other.
   std::string group;
-  SourcePlace place{};                           ///< of its source
+  SourcePlace place{};                           ///< place of its source
   std::optional<Texture> reflectance_texture{};  ///< times the reflectance
   std::optional<Texture> normal_map{};           ///< its scale is of the slopes
   std::optional<Texture> bump_map{};             ///< heights; its scale is mm
@@ -314,7 +314,7 @@ struct Film {
   friend bool operator==(const Film&, const Film&) = default;
 };
 
-/// Of `direct`, where neither Settings::entry_samples nor Settings::until_error says.
+/// Default entry samples of `direct`, where neither Settings::entry_samples nor Settings::until_error says.
 inline constexpr std::size_t kDefaultEntrySamples = 256;
 
 /// Switches for experiments with the methods themselves (docs/laboratory.md).
@@ -371,9 +371,9 @@ struct Scene {
 int bounces_of(const Scene& scene);
 /// The textures of a shape and of its medium.
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
-/// Whether a shape's mesh has to have UVs.
+/// True if a shape's mesh has to have UVs.
 bool needs_uvs(const Scene& scene, const Shape& shape);
-/// Of a shape whose boundary is rough and has one; else null.
+/// Grain of a shape whose boundary is rough and has one; else null.
 const Grain* grain_of(const Scene& scene, const Shape& shape);
 
 /// What a mesh is read with, by which its surface is described: UVs, and tangents where the file has them.

@@ -46,7 +46,7 @@ struct KeyInfo {
   std::string_view key = {};
   ValueType type = ValueType::object;
   std::string_view unit = {};      ///< as documented; empty: none
-  Range range = kFiniteNumber;     ///< of each number
+  Range range = kFiniteNumber;     ///< range of each number
   std::string default_value = {};  ///< as documented; empty: the key must be given, or has no default
   std::string_view meaning = {};   ///< one line of Markdown
   std::span<const std::string_view> choices = {};

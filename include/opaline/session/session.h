@@ -71,7 +71,7 @@ class Session {
   /// nothing is textured or a metal; what smooth boundaries mirror is. Costs memory (HeldView). Off by default.
   void hold_view(bool hold);
 
-  /// Whether each picture has the bits of a new session's. Samples are then placed anew wherever a new session
+  /// True if each picture has the bits of a new session's. Samples are then placed anew wherever a new session
   /// would have others, neither carried along nor left denser than needed. Default: false.
   void match_new_session(bool matches);
 
@@ -105,9 +105,9 @@ class Session {
   const RayScene& rays() const;  ///< after prepare
   /// After prepare; none where the method or the plan has none.
   std::span<const Body> bodies() const;
-  /// Of the last picture in which light bounced, of whichever view and light; null: none of these shapes.
+  /// Bounced places of the last picture in which light bounced, of whichever view and light; null: none of these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
-  const SessionWork& work() const;  ///< of the last edit and since
+  const SessionWork& work() const;  ///< work of the last edit and since
   /// What was kept, and what not; a line each.
   const std::vector<std::string>& decisions() const;
   /// Rays, sampling, irradiance, octree, and exitance where there are surface caches.

@@ -25,7 +25,7 @@ class HalfSpace {
   double absorbed_;
   double diffuse_share_ = 0;
   struct Source {
-    double cosine, strength;  // of light that falls back from the boundary or enters, through the H function
+    double cosine, strength;  // light reflected by the boundary or transmitted, through the H function
   };
   std::vector<Source> sources_;
 };

@@ -24,7 +24,7 @@ struct Slab {
 /// How light arrives from outside.
 struct SlabEntry {
   bool is_diffuse = false;  ///< from everywhere, equal radiance
-  double cosine = 1;        ///< of a beam with the inward normal, in (0, 1]; not used where it is diffuse
+  double cosine = 1;  ///< cosine of a beam with the inward normal, in (0, 1]; not used where it is diffuse
 };
 inline constexpr SlabEntry kNormalEntry{}, kDiffuseEntry{true, 1};
 
@@ -82,7 +82,7 @@ struct LaboratorySettings {
   /// Of one walk, > 0. Matters where nothing absorbs and nothing bounds the depth: see SlabWalks::unfinished.
   std::uint64_t most_collisions = std::uint64_t(1) << 24;
   std::vector<double> radii;  ///< where rings end, mm, ascending, > 0; empty: default_radii
-  int cosine_bins = 20;       ///< of equal width, from 1 to 10000
+  int cosine_bins = 20;       ///< cosine bins of equal width, from 1 to 10000
   Monitor* monitor = nullptr;
 };
 

@@ -35,7 +35,7 @@ struct BoundaryAhead {
 /// What becomes of the light of a ray on its way to the boundary and there.
 struct Crossing {
   double collided = 0;     ///< share that collides on the way, 1 - exp(-sigma_t distance)
-  double reflectance = 0;  ///< of the boundary, for the rest
+  double reflectance = 0;  ///< reflectance of the boundary, for the rest
 };
 
 inline Crossing cross(const HomogeneousMedium& medium, const WalkState& walk, const BoundaryAhead& ahead) {

@@ -65,7 +65,7 @@ class RoughBoundary {
 /// Boundaries of one index seen from any side, whose tables lie between those of a few.
 class RoughnessRange {
  public:
-  /// Of any roughness.
+  /// Roughness range of any roughness.
   explicit RoughnessRange(double eta, float anisotropy = 0)
       : RoughnessRange(eta, anisotropy, kLeast, 1, 17) {}
   /// Of one.

@@ -20,7 +20,7 @@ namespace opaline {
 struct VolumeDiffusionInput {
   const World& world;
   std::span<const std::uint32_t> meshes;   ///< the body's
-  std::span<const SurfaceSample> samples;  ///< of its cut_surface with these cells
+  std::span<const SurfaceSample> samples;  ///< samples of its cut_surface with these cells
   std::span<const Vec3f> normals;          ///< of that, too
   std::array<HomogeneousMedium, 3> media;  ///< R G B, isotropic, in the world's unit of length
   double cell = 1;                         ///< edge of the cells at the surface, world units

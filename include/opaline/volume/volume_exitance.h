@@ -21,8 +21,9 @@ namespace opaline {
 struct VolumeInput {
   const RayScene& rays;  ///< of the world
   const World& world;
-  std::span<const std::uint32_t> meshes;   ///< the body's; all others stop light
-  std::span<const SurfaceSample> samples;  ///< of the body; what leaves is counted on their Voronoi cells
+  std::span<const std::uint32_t> meshes;  ///< the body's; all others stop light
+  std::span<const SurfaceSample>
+      samples;  ///< samples of the body; exitance is counted on their Voronoi cells
   std::array<HomogeneousMedium, 3> media;  ///< R G B, in the world's unit of length
   std::span<const Light> lights;           ///< recentred
   std::optional<double> until_error = {};  ///< of VolumeExitance::relative_error; none: kDefaultWalks
@@ -67,7 +68,7 @@ struct VolumeExitance {
   bool has_inner_sheets = false;  ///< parts of the body overlap or touch, or its surface crosses itself
 };
 
-/// Whether each light is walked alone, so that its colour takes no part: where there are few.
+/// True if each light is walked alone, so that its colour takes no part: where there are few.
 bool walks_by_light(const VolumeInput& input);
 
 /// Goes on from `sums` (empty: from nothing) until there are kDefaultWalks or the error is small enough; `sums`

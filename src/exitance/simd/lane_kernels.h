@@ -21,9 +21,9 @@ struct alignas(64) Packet {
 /// Sums at a packet's points, in flux units per mm^2; channel by channel.
 struct alignas(64) PacketSums {
   float exitance[3][kLanes];  ///< far kernel times flux
-  float spread[3][kLanes];    ///< of the samples of each leaf around their mean, squared
-  float squares[3][kLanes];   ///< of the samples' contributions
-  float sheets[3][kLanes];    ///< of what samples of other sheets within h bring beyond the far kernel
+  float spread[3][kLanes];    ///< spread of the samples of each leaf around their mean, squared
+  float squares[3][kLanes];   ///< squares of the samples' contributions
+  float sheets[3][kLanes];    ///< sheets of what samples of other sheets within h bring beyond the far kernel
   /// Samples of the same sheet within h, weighted by (1 - r^2/h^2)^2: area, flux, and, of all
   /// channels together, flux^2 / area.
   float near_area[kLanes], near_flux[3][kLanes], near_squares[kLanes];
@@ -39,7 +39,7 @@ struct LaneInput {
 
 /// Points near each other, for which nodes are accepted together.
 struct Cluster {
-  Vec3f center{}, half{};  ///< of their box
+  Vec3f center{}, half{};  ///< center of their box
   float radius = 0;        ///< no point is farther from the centre
   RgbF allowed{};          ///< error of one node
 };

@@ -27,7 +27,7 @@ TARGET static inline V smaller(V a, V b) {
 struct Place {
   I segment;
   V t;              // of the way through it
-  V inverse_width;  // of the segment, in q
+  V inverse_width;  // inverse width of the segment, in q
 };
 
 TARGET static inline Place find(V q) {

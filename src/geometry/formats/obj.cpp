@@ -245,7 +245,7 @@ class ObjReader {
     if (!has_hole) corners_.swap(kept_);
   }
 
-  /// Whether the face meets an edge both ways: there it leads to a hole and back.
+  /// True if the face meets an edge both ways: there it leads to a hole and back.
   bool has_bridge() const {
     std::vector<std::array<std::int64_t, 2>> edges;
     for (std::size_t i = 0; i < corners_.size(); ++i)
@@ -332,10 +332,10 @@ class ObjReader {
   VertexCheck check_;
   std::vector<std::size_t> joined_;  // offsets of the newlines taken out
   std::vector<Vec3f> normals_;
-  std::vector<std::array<std::int64_t, 3>> corner_normals_;  // of triangles, up to the last that has one
+  std::vector<std::array<std::int64_t, 3>> corner_normals_;  // per triangle, up to the last with normals
   bool with_uvs_;
   std::vector<std::array<float, 2>> uvs_;
-  std::vector<std::array<std::int64_t, 3>> corner_uvs_;  // of triangles
+  std::vector<std::array<std::int64_t, 3>> corner_uvs_;  // corner uvs of triangles
   std::vector<Corner> corners_, kept_;                   // of the face at hand
   std::vector<Fan> fans_;                                // of faces with more than three corners
   std::unordered_set<std::int64_t> seen_;

@@ -158,7 +158,7 @@ SourceMesh read_stl(const std::string& path, std::string& bytes, MeshUvs) {
   return mesh;
 }
 
-/// Of a binary file.
+/// Announced length of a binary file.
 std::uintmax_t announced_length(std::string_view start) {
   if (start.size() < binary_header) return 0;
   const std::string_view text = start.substr(0, binary_header);

@@ -20,7 +20,7 @@ struct HierarchicalState : MethodState {
   static constexpr Method kMethod = Method::hierarchical;
   std::vector<RgbF> irradiance;  ///< transmitted, one a sample, from lights and other surfaces
   StageResult<Octree> tree;      ///< of that
-  StageKey direct_key;           ///< of the tree before bounced light is added
+  StageKey direct_key;           ///< direct key of the tree before bounced light is added
   StageResult<Kernels> kernels;
   CloudError cloud = {};                    ///< of the tree and the kernel
   StageResult<SurfaceCache> surface_cache;  ///< may be kept though this image does not use it
