@@ -21,7 +21,7 @@ class Stopwatch {
  public:
   /// Starts now.
   Stopwatch();
-  /// What the process has used since the start, for a stage of this name.
+  /// Cost of the process since the start, for a stage of this name.
   StageCost cost(std::string stage) const;
 
  private:

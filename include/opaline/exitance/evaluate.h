@@ -63,7 +63,7 @@ struct Query {
 struct Exitance {
   RgbF exitance;    ///< M_o, W/mm^2
   RgbF irradiance;  ///< E interpolated from the samples within h, W/mm^2
-  RgbF near;        ///< what of the near field's integral the surface around the point leaves
+  RgbF near;        ///< integral of the near field over the surface around the point
   /// Estimated standard error of the exitance against the converged diffusion of the same scene, W/mm^2: from
   /// the spread of neighbouring samples, the variation of E nearby, the roughness and noise of E, samples of
   /// other sheets within h, and the nodes taken as points (CloudError; bench_error_estimate).
@@ -111,7 +111,7 @@ struct EvaluateInput {
   double tolerance = 0.005;                                    ///< dual_tree
   double max_solid_angle = 0.05;                               ///< classic, sr
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
-  CloudError cloud = {};                                       ///< of the samples, for Exitance::error
+  CloudError cloud = {};  ///< error model of the samples, for Exitance::error
   Monitor* monitor = nullptr;
   QueryPackets* packets = nullptr;  ///< dual_tree: of an earlier evaluation of these queries, or to be filled
 };

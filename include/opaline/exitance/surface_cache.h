@@ -33,7 +33,7 @@ struct SurfaceCache {
   };
   /// Nodes at (i, j) / segments of a patch's second and third corner, row after row of constant j.
   struct Lattice {
-    std::uint32_t first = 0;     ///< of its entries of lattice_nodes
+    std::uint32_t first = 0;     ///< first of its entries in lattice_nodes
     std::uint32_t segments = 0;  ///< even
   };
   /// The patches of a triangle: segments^2, row after row between lines of constant third barycentric.
@@ -71,7 +71,7 @@ struct SurfaceCache {
               const RgbF* irradiance = nullptr) const;
 };
 
-/// What of the light at a place a cache should not take at its word.
+/// Uncertainty of the light at a cached point.
 struct PlaceDoubt {
   RgbF noise{};               ///< noise of the exitance, W/mm^2: less is no reason for a finer lattice
   bool beside_edge = false;   ///< a shadow's edge is near, between this place and the next perhaps

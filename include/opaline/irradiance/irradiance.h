@@ -69,7 +69,7 @@ struct PointIrradianceInput {
   bool is_together = false;
 };
 
-/// What reaches points from one light per unit emission.
+/// Irradiance at points from one light, per unit emission.
 struct PointTransfers {
   /// One a point: E per unit emission; >= 0, or of a room's light the mean over the points of a pixel is.
   std::vector<float> weights;

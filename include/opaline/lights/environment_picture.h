@@ -42,7 +42,7 @@ class EnvironmentPicture {
   /// in    normal: unit, of the surface, where some directions below it are drawn, too
   ///       turn: about +y, degrees, from the picture to where the direction is wanted
   Sample sample(std::array<double, 2> unit_square, const Vec3d& normal, double turn = 0) const;
-  /// Of several places: the tables are larger than caches, and are asked for all at once.
+  /// Samples at several points in one batch, because the tables exceed the processor caches.
   void sample(std::span<const std::array<double, 2>> unit_squares, const Vec3d& normal, double turn,
               std::span<Sample> samples) const;
   /// The mean over the unit square of a sample's weight times its assumed cosine: the irradiance of a surface that
@@ -50,7 +50,7 @@ class EnvironmentPicture {
   RgbF unshadowed(const Vec3d& normal) const { return unshadowed_[nearest_normal(normal)].at(normal); }
   /// That mean, for all normals near one of the tables'.
   struct Unshadowed {
-    std::array<Vec3d, 3> above{};  ///< of blocks wholly above: radiance times direction, channel by channel
+    std::array<Vec3d, 3> above{};  ///< blocks wholly above the horizon: radiance times direction, per channel
     Rgb others;                    ///< radiance times the assumed cosine
     RgbF at(const Vec3d& normal) const {
       return RgbF(others + Rgb{dot(normal, above[0]), dot(normal, above[1]), dot(normal, above[2])});
@@ -141,10 +141,10 @@ class EnvironmentPicture {
   std::vector<float> cell_columns_;  ///< cumulative shares of a row's cells within each block
   std::vector<float> block_row_ends_, block_column_ends_;  ///< cumulative shares of blocks, for each normal
   std::vector<float>
-      assumed_cosines_;  ///< of blocks, for each normal; 0: the sample's own; < 0: none is drawn
+      assumed_cosines_;  ///< per block and normal; 0: that of the sample; < 0: the block is not sampled
   std::vector<BlockIntegral> integrals_;
   std::vector<Vec3f> middles_;            ///< middles of blocks
-  std::vector<std::uint16_t> brightest_;  ///< of blocks, some
+  std::vector<std::uint16_t> brightest_;  ///< the brightest blocks
   std::vector<Unshadowed> unshadowed_;
 };
 

@@ -43,10 +43,10 @@ struct RoomLobe;
 struct Lobe {
   Vec3f mirrored;                     ///< unit
   float alpha;                        ///< > 0
-  const RoomLobe* in_room = nullptr;  ///< what it mirrors of a room, if that is known
+  const RoomLobe* in_room = nullptr;  ///< specular reflection of an environment, if cached
 };
 
-/// Of a lobe's light how much comes from an angle off its middle: as many facets as face half of it, over the most.
+/// Relative density of a lobe at an angle from its axis: that of the facets at the half angle, over its maximum.
 float mirrored(const Lobe& lobe, float cosine);
 
 /// Directions that are drawn for each shadow ray that is to show what a lobe mirrors: of a room, whose lamps are many and

@@ -38,7 +38,7 @@ class LightTree {
   /// A ball around them.
   LightExtent extent() const;
 
-  /// What is lit.
+  /// Shading point.
   struct Place {
     Vec3f point, normal;         ///< normal: unit
     const Lobe* lobe = nullptr;  ///< in which it mirrors light; null: its irradiance is wanted
@@ -77,7 +77,7 @@ class LightTree {
     std::uint32_t first = 0, count = 0;  ///< its lights, of those in the leaves' order
     std::uint32_t children = 0;          ///< the first of two nodes that follow each other; 0: a leaf
   };
-  /// What the lights of a node could bring to a place: W/mm^2 of irradiance, or of what it mirrors some measure.
+  /// Bound of the contribution of a node's lights at a point: irradiance, W/mm^2, or a measure of reflected light.
   static double importance(const Node& node, const Place& at);
   /// The root first.
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -104,7 +104,7 @@ class LightTree {
   std::shared_ptr<const LampTable> lamps_;  ///< in the leaves' order; null: nodes are weighed
 };
 
-/// So many lights without an area, and so many with one, are traced one by one.
+/// Maximum number of delta lights, and of area lights, that are all traced.
 inline constexpr std::size_t kMostTraced = 16;
 
 /// True if with_trees changes the lights.

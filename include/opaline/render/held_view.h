@@ -39,7 +39,7 @@ struct HeldView {
     std::vector<PointTransfers> lights;  ///< one a light, without weights where it is to be traced
     QueryPackets packets;
     std::unique_ptr<Coat> coat;            ///< null: what it mirrors is to be found
-    std::unique_ptr<Gathering> gathering;  ///< of hits that gather for themselves (BouncedLight)
+    std::unique_ptr<Gathering> gathering;  ///< gathering of hits without places around them (BouncedLight)
   };
   /// Camera rays that are shaded together.
   struct Batch {
@@ -57,7 +57,7 @@ struct HeldView {
       return sum;
     }
   };
-  /// What a rough coat of one eta and roughness mirrors, but for the colours of lights and of what stands around.
+  /// Specular reflection of a rough boundary of one eta and roughness, without the colours of lights and surfaces.
   struct Coat {
     /// Adds emission of the light * unit * weight to what a camera ray sees.
     struct OfLight {
@@ -84,7 +84,7 @@ struct HeldView {
       float far, cosine;  ///< cosine: with the normal of the point that gathers
       std::uint32_t mesh, triangle;
       float u, v;
-      std::uint32_t point, number;  ///< of the point among those that gather, of the ray among the point's
+      std::uint32_t point, number;  ///< index of the gathering point, and of its ray
     };
     bool is_traced = false;
     std::vector<Met> met;
@@ -115,7 +115,7 @@ struct HeldView {
   std::vector<std::shared_ptr<IrradianceLattice>> lattices;
 
   std::vector<std::size_t> field_of_mesh;  ///< index of HeldView::Batch::surfaces
-  std::vector<float> eta_of_field;         ///< of the boundary that light enters through; 0: none
+  std::vector<float> eta_of_field;         ///< eta of the transmitting boundary; 0: none
 
   /// Takes over other fields: where they shade the same meshes, what was found of those with the same boundary holds.
   void set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<float>& eta);

@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// What one camera ray saw; zero where it saw nothing.
+/// Result of one camera ray; zero if it hit nothing.
 struct PixelSample {
   RgbF diffuse{}, specular{};
   RgbF emitted{};      ///< lights and surroundings seen directly

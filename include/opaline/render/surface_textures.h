@@ -25,7 +25,7 @@ struct SurfaceTint {
   RgbF entering{1, 1, 1}, leaving{1, 1, 1};
 };
 
-/// What a medium that varies inside a body is at a place, over its mean; of what does not vary 1.
+/// Properties of a textured medium at a point, over their means; constant properties are 1.
 struct MediumFactors {
   RgbF color{1, 1, 1}, radius{1, 1, 1};
 };
@@ -86,8 +86,8 @@ class SurfaceTextures {
 /// True if vertex colours multiply the colour of the shape.
 bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh);
 
-/// What colours light that enters a body at its samples: the tint's power, its mean over a sample's share of the
-/// surface; empty where no tint is met there.
+/// Tint of transmitted light at the samples of a body: a power of the tint, averaged over each sample's cell; empty if no
+/// tint applies there.
 std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples);
 
 /// Add to key of a scene's texture: its file's contents and how it is laid; with the UVs of some meshes.

@@ -18,7 +18,7 @@ struct CarryInput {
   const World& to;
   std::span<const std::uint32_t> to_meshes;
   const SurfaceSamples& samples;  ///< on `from`
-  SurfaceCells& cells;            ///< of these; made if they are needed and empty
+  SurfaceCells& cells;            ///< cells of the samples; computed if needed and empty
   Monitor* monitor = nullptr;
 };
 

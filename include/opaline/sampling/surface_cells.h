@@ -7,7 +7,7 @@
 
 namespace opaline {
 
-/// What a sample owns of one triangle. Where the triangle's corners move, its parts keep their share of it.
+/// Part of a triangle that belongs to one sample. Parts keep their fraction of the area if the triangle moves.
 struct CellPart {
   std::uint32_t triangle;  ///< counted through the meshes of the surface in their order
   float share;             ///< share of the triangle's area

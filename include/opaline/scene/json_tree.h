@@ -36,7 +36,7 @@ struct Document {
   std::vector<std::string> overrides;
   Node root;
   int frame = 1;
-  std::vector<std::size_t> line_starts = {};  ///< of the text, see line_starts_of
+  std::vector<std::size_t> line_starts = {};  ///< line starts of the text, see line_starts_of
   std::vector<std::string> warnings = {};     ///< one line each
 };
 

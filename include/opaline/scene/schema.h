@@ -39,9 +39,9 @@ enum class ValueType {
   object
 };
 
-/// What one key of the scene file takes and means.
+/// Type, range and meaning of one key of the scene file.
 struct KeyInfo {
-  /// Of the file: "scene", "medium", "shape.sphere", "light.point", "settings", ...
+  /// Section of the file: "scene", "medium", "shape.sphere", "light.point", "settings", ...
   std::string_view section = {};
   std::string_view key = {};
   ValueType type = ValueType::object;

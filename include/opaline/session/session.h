@@ -66,9 +66,9 @@ class Session {
   /// `automatic` a surface cache is made if it pays for all of them.
   void expect_pictures(std::size_t pictures);
 
-  /// Whether to keep what the camera sees, how the lights reach it, and from where surfaces light it and the samples, for
-  /// later pictures. After an edit of colours or media none of these is then traced again, nor what rough coats mirror where
-  /// nothing is textured or a metal; what smooth boundaries mirror is. Costs memory (HeldView). Off by default.
+  /// Enables the cache of the view: camera hits, their light by source, and gathering rays, reused by later images. An edit
+  /// of colours or media then traces none of them again, and no specular reflection of rough boundaries without textures and
+  /// metals; smooth boundaries are traced again. Costs memory (HeldView). Off by default.
   void hold_view(bool hold);
 
   /// True if each picture has the bits of a new session's. Samples are then placed anew wherever a new session
@@ -100,7 +100,7 @@ class Session {
   const Scene& scene() const;
   /// Its meshes around one origin.
   const World& world() const;
-  /// What the scene requires.
+  /// Stages, samples and memory of the scene.
   const Plan& plan() const;
   const RayScene& rays() const;  ///< after prepare
   /// After prepare; none where the method or the plan has none.
@@ -108,7 +108,7 @@ class Session {
   /// Bounced places of the last picture in which light bounced, of whichever view and light; null: none of these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
   const SessionWork& work() const;  ///< work of the last edit and since
-  /// What was kept, and what not; a line each.
+  /// Decisions on reused and recomputed stages, a line each.
   const std::vector<std::string>& decisions() const;
   /// Rays, sampling, irradiance, octree, and exitance where there are surface caches.
   const std::vector<StageCost>& costs() const;

@@ -23,7 +23,7 @@ struct MeshKeys {
 const char* widest_instructions();
 std::string embree_version();
 
-/// Of one mesh.
+/// Keys of one mesh.
 MeshKeys mesh_keys(const Mesh& mesh);
 /// One a mesh of the world.
 std::vector<MeshKeys> mesh_keys(const World& world);

@@ -6,7 +6,7 @@
 
 namespace opaline {
 
-/// What comes back of light that entered a half space.
+/// Albedo of a half space: diffuse reflection of transmitted light.
 class HalfSpace {
  public:
   /// in    absorbed = 1 - albedo in [0, 1]; eta, inside over outside, > 0
