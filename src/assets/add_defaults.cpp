@@ -31,7 +31,7 @@ struct DefaultLight {
 constexpr std::array<DefaultLight, 3> kLights{
     {{"key", {-.7, .7, .7}, .8, .52}, {"fill", {.9, .2, .8}, 1.2, .16}, {"rim", {.3, 1, -.8}, .6, .35}}};
 constexpr double kLightDistance = 4;  // over the asset's radius
-constexpr double kWhite = .8;         // of a surface under the asset's own lights
+constexpr double kWhite = .8;         // exposure of a white surface under the asset's own lights
 
 // Where the PNG must be darkened by more stops than this, highlights may be beyond the largest half, 65504.
 constexpr double kHalfExposure = -8;
@@ -63,7 +63,7 @@ struct ViewFrame {
 ViewFrame view_frame(const AssetScene& scene) {
   const Vec3d up{0, 1, 0};
   Vec3d towards = vector_of(scene.camera["position"]) - scene.center;
-  constexpr double kNear = .01;  // of the asset's radius, or of a right angle
+  constexpr double kNear = .01;  // fraction of the asset's radius, or of a right angle
   if (!(length(cross(up, towards)) > kNear * std::max(length(towards), scene.radius)))
     towards = default_view();
   return {normalized(cross(up, towards)), up, normalized(towards)};

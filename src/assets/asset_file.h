@@ -11,7 +11,7 @@ namespace opaline {
 
 struct NamedFile {
   std::filesystem::path path;  ///< empty: there is no such file
-  std::string warning;         ///< what was taken in place of a path that leads nowhere; empty: nothing
+  std::string warning;         ///< file used instead of a missing path; empty: none
 };
 
 /// Bad input: an asset names a file outside of its folder.

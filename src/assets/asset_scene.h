@@ -38,10 +38,10 @@ struct AssetScene {
   }
 };
 
-/// What the material of a shape becomes.
+/// Result of a shape's material.
 struct SurfaceTranslation {
   Json medium;                 ///< as in a scene file; null: opaque
-  Json keys = Json::object();  ///< of the shape besides; a reflectance among them is in place of the next
+  Json keys = Json::object();  ///< other keys of the shape; a reflectance among them replaces the next
   Vec3d reflectance{1, 1, 1};
 };
 

@@ -36,7 +36,7 @@ class NodeWalk {
   std::vector<PlacedNode> run(const std::vector<std::uint32_t>& roots) {
     push(roots, 1);
     std::vector<PlacedNode> placed;
-    std::vector<Transform> above{Transform{}};  // of the nodes from the world down to the next one
+    std::vector<Transform> above{Transform{}};  // transforms of the nodes from the world to the current one
     while (!open_.empty()) {
       const auto [index, depth] = open_.back();
       open_.pop_back();
@@ -100,7 +100,7 @@ class GltfImporter {
     Transform to_world;
   };
 
-  /// Of the default scene, or the first; without scenes all nodes that are no other's child.
+  /// Roots of the default scene, or the first; without scenes all nodes without a parent.
   std::vector<std::uint32_t> roots() {
     if (!gltf_.scenes.empty()) {
       const std::size_t chosen = gltf_.scene == kNoRecord ? 0 : gltf_.scene;

@@ -55,7 +55,7 @@ struct NamedFiles {
   std::size_t line = 0;
 };
 
-/// What an OBJ file says beside its faces.
+/// Statements of an OBJ file besides its faces.
 struct ObjOutline {
   bool has_uvs = false, has_colors = false;
   std::vector<Vec3d> vertices;
@@ -108,7 +108,7 @@ class ObjImporter {
 
  private:
   struct Bump {
-    std::string key, keyword;  ///< of the shape, of the library
+    std::string key, keyword;  ///< key of the shape, keyword of the library
     Json texture;
   };
 

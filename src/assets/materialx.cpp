@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kMostSpecularAnisotropy = .98, kMostAnisotropy = .99, kLeastIor = .1, kMostIor = 10;
 
-/// What a surface model calls its values, and those it has where nothing is given.
+/// Input names of a surface model, and their default values.
 struct SurfaceModel {
   const char *node, *base_weight, *base_color, *weight, *color, *radius, *scale, *anisotropy, *ior,
       *metalness, *specular_weight, *specular_anisotropy, *normal;

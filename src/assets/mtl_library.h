@@ -21,7 +21,7 @@ struct MtlStatement {
 
 struct MtlMaterial {
   std::string name, file;
-  std::size_t line = 0;  ///< of its newmtl
+  std::size_t line = 0;  ///< line of its newmtl
   std::vector<MtlStatement> statements;
 };
 

@@ -97,7 +97,7 @@ void add_notes(const BenchArguments& arguments, const std::vector<BenchScene>& s
   for (auto& [key, value] : notes) std::ranges::replace(value, '\n', ' ');
 }
 
-/// What an earlier benchmark found; read before the work.
+/// Results of an earlier benchmark; read before the work.
 std::vector<WatchedRung> read_before(const BenchArguments& arguments) {
   if (arguments.against.empty()) return {};
   return parse_results(InputFile(arguments.against).read_all(), arguments.against);
@@ -144,7 +144,7 @@ int verdict(const BenchArguments& arguments, const std::vector<WatchedRung>& bef
 int run_bench(const BenchArguments& arguments) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not cost the CSV
   const std::vector<WatchedRung> before = read_before(arguments);
-  if (!arguments.csv.empty()) AtomicFile(arguments.csv);  // what cannot be written is said before the work
+  if (!arguments.csv.empty()) AtomicFile(arguments.csv);  // reports an unwritable file before the work
   const BenchFolder folder(arguments.report);
   Monitor monitor;
   const InterruptHandler interrupt(monitor);

@@ -71,7 +71,7 @@ BenchFolder::BenchFolder(const std::string& report) : path_(report), temporary_(
   }
   make_folder(file("pictures"));
   make_folder(file("runs"));
-  check_page_file(file("index.html"));  // what cannot be written at the end is said before the work
+  check_page_file(file("index.html"));  // reports an unwritable file before the work
   AtomicFile(file("runs/check"));
   AtomicFile(file("pictures/check"));
 }

@@ -93,7 +93,7 @@ HalfSettings half_settings(const BenchArguments& arguments, const BenchScene& sc
                       grouped(cells), 100 * kWalkNoise)};
 }
 
-/// What a half took, in words.
+/// Text of the samples and noise of a half.
 std::string told(const BenchReference& reference, const Json& done) {
   if (reference.cells == 0)
     return fmt::format("{:.3g} % with {} entry samples per pixel", 100 * done.value("direct_noise", 0.0),

@@ -34,7 +34,7 @@ struct LadderInput {
 /// all rungs gather and `direct`, their reference, traces from each place at which light enters, one rung is without.
 std::vector<Rung> ladder(const LadderInput& input);
 
-/// What is held against random walks: `lambert` first, then the scene as it is, with each radial profile in turn, and
+/// Runs compared with random walks: `lambert` first, then the scene as given, with each radial profile in turn, and
 /// `volume_diffusion`.
 std::vector<Rung> truth_ladder(bool quick);
 

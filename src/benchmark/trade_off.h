@@ -19,7 +19,7 @@ struct TradePoint {
   double cpu = 0;       ///< s, of the whole job
   double error = 0;     ///< relative, worst channel
   bool below_noise = false;
-  double fixed_cpu = 0;  ///< of it what more random values would not add to: all but the shading, s
+  double fixed_cpu = 0;  ///< CPU time independent of the random values: all but the shading, s
 };
 
 /// Settings that differ in the value of one knob, from cheap to dear.

@@ -273,7 +273,7 @@ std::vector<std::string> words_of(const CLI::App& app, int argc, const char* con
   return words;
 }
 
-/// What each command's options write to.
+/// Targets of the options of each command.
 struct Parsed {
   RenderArguments render;
   InfoArguments info;

@@ -84,7 +84,7 @@ std::vector<Picture> load_all(const CompareArguments& arguments) {
   return pictures;
 }
 
-/// What any of the references shows.
+/// Pixels that show an object in any of the references.
 std::vector<std::uint8_t> object_of(const std::vector<Picture>& pictures) {
   std::vector<std::uint8_t> object = pictures[1].object;
   for (const Picture& reference : pictures)

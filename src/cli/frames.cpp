@@ -78,7 +78,7 @@ void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_
   const auto begin = Clock::now();
   so_far = {frames.size()};
   std::vector<int> failed;
-  Monitor between;  // what comes between two frames
+  Monitor between;  // monitor between two frames
   const InterruptHandler interrupt(between);
   const auto stopped = [&](const std::string& words) {
     return Error(ErrorKind::interrupted, {}, 0, 0,

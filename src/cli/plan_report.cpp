@@ -176,7 +176,7 @@ Json plan_json(const Scene& scene, const World& world, const Plan& plan) {
   return json;
 }
 
-/// Of three channels: "83 79 -"; none where a channel is left out.
+/// Text of three channels: "83 79 -"; "-" for an empty channel.
 template <class Figure>
 std::string three(const PlateModel& plate, const Figure& figure) {
   std::string text;

@@ -26,7 +26,7 @@
 namespace opaline {
 namespace {
 
-constexpr const char* kGiven = "MEDIUM";  // what messages call the argument, as --help does
+constexpr const char* kGiven = "MEDIUM";  // name of the argument in messages, as in --help
 
 bool is_object(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");

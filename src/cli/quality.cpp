@@ -20,7 +20,7 @@ Error bad_usage(const std::string& message, const std::string& expected, const s
   return Error(ErrorKind::bad_input, {}, 0, 0, message, expected, got);
 }
 
-/// What is chosen is written down as settings: several groups have a spacing in common.
+/// Requires that settings can express the choice: several bodies share one spacing.
 void check_groups(const Session& session, const char* option) {
   if (session.scene().settings.samples && session.plan().groups.size() > 1)
     throw bad_usage(fmt::format("{} chooses the sample spacing, and so the samples of each body", option),

@@ -49,7 +49,7 @@ struct Shading {
 
 constexpr const char* kNothingKept = "no sums are stored; --resume FILE stores the sums of direct and volume";
 
-/// What Ctrl-C has not lost.
+/// Message about the stored sums after Ctrl-C.
 std::string how_to_go_on(const RenderArguments& arguments, const Session& session,
                          const ResumableState& resumable) {
   if (arguments.resume.empty()) return kNothingKept;
@@ -163,7 +163,7 @@ RenderArguments repeating(const RenderArguments& arguments, const Session& sessi
   return repeated;
 }
 
-/// What is shared by all pictures of the command; null where there is none.
+/// State shared by all images of the command; null: none.
 struct Shared {
   const StageCache* cache = nullptr;
   std::vector<std::string>* last_plan = nullptr;
@@ -221,7 +221,7 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   KnownErrors errors = choose_settings(stages, arguments, session);
   if (shared.last_plan->empty()) warn_of_unused_media(arguments.log, arguments.overrides, scene);
   print_plan(arguments.log, scene, session.world(), announced_plan(arguments, session), shared.last_plan);
-  check_memory(scene, session.plan(), layer_bytes);  // of the settings that were chosen
+  check_memory(scene, session.plan(), layer_bytes);  // with the chosen settings
   return errors;
 }
 

@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// What cannot be written at the end is said before the work.
+/// Reports an unwritable output before the work.
 /// error Error{run_failed} naming the file
 void check_writable(const RenderArguments& arguments);
 

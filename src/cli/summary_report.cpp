@@ -32,7 +32,7 @@ bool is_nothing(const StageCost& cost) {
   return cost.wall_seconds < kShown && cost.cpu_seconds < kShown;
 }
 
-/// What the trials left to the picture, of the stages between, is among what choosing cost, and named there.
+/// Prints the cost of each stage. Stages computed by the trials belong to the cost of choosing and are named there.
 void print_costs(const Summary& summary) {
   std::vector<StageCost> shown = summary.costs;
   const auto choosing = std::ranges::find(shown, "choosing", &StageCost::stage);

@@ -16,7 +16,7 @@ double ring_radius(int i) {
   return std::pow(double(i) / kRings, 4);
 }
 
-// What each ring around the point gives, over the sum of all, from the cumulative integral up to each ring's
+// Weight of each ring around the point over the sum of all, from the cumulative integral up to each ring's
 // border.
 std::vector<double> ring_shares(const std::vector<double>& within) {
   std::vector<double> shares;

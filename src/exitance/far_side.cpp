@@ -16,7 +16,7 @@
 namespace opaline {
 namespace {
 
-// Of what leaves on both sides: so much of their difference may lie beyond the reach.
+// Fraction of the exitance on both sides beyond the reach that is neglected.
 constexpr double kNeglected = 3e-4;
 // Area over squared distance of a node that stands as a point.
 constexpr float kSolidAngle = 0.06f;
@@ -68,7 +68,7 @@ enum class Sheets { same, other, both };  // both: or not known
 // angles together, and beyond 120 degrees it is another sheet (same_sheet).
 Sheets sheets_of(const QueryBounds& queries, const Vec3f& axis, float cosine, float sine) {
   if (cosine == 0 || queries.cosine == 0) return Sheets::both;
-  const float c = cosine * queries.cosine - sine * queries.sine,  // of the two angles together
+  const float c = cosine * queries.cosine - sine * queries.sine,  // of the sum of the two angles
       s = sine * queries.cosine + cosine * queries.sine;
   constexpr float kCosine = -0.5f, kSine = 0.8660254f;  // cosine and sine of 120 degrees
   const float between = dot(axis, queries.axis);
@@ -78,7 +78,7 @@ Sheets sheets_of(const QueryBounds& queries, const Vec3f& axis, float cosine, fl
   return Sheets::both;
 }
 
-// What neighbouring queries add up: nodes of other sheets that stand as points, and samples.
+// Sum over neighbouring queries: nodes of other sheets taken as points, and samples.
 class CrossingLight {
  public:
   CrossingLight(const EvaluateInput& input, std::span<const Query> queries)

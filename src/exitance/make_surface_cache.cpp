@@ -255,7 +255,7 @@ class Builder {
         normalized(normals_[a] * w + normals_[b] * u + normals_[c] * v)};
   }
 
-  // What the patch would give at an odd node of its lattice without it.
+  // Prediction of the patch at an odd node of its lattice, without that node.
   RgbF predicted(const Refined& r, std::uint32_t i, std::uint32_t j) const {
     const float u = float(i) / float(r.segments), v = float(j) / float(r.segments);
     if (r.segments == 2) return between_vertices(cache_, cache_.patches[r.patch], u, v).exitance;

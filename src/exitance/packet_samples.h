@@ -16,7 +16,7 @@ void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneK
                  const std::vector<std::uint32_t>& leaves, const Packet& packet, PacketSums& sums,
                  std::vector<std::uint32_t>& room);
 
-/// Of the queries that stand in a packet's lanes.
+/// Sets the exitance of the queries in a packet's lanes.
 void set_exitance(const EvaluateInput& input, const PacketSums& sums, std::span<const std::uint32_t> queries,
                   std::span<Exitance> result);
 

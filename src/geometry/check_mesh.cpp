@@ -236,7 +236,7 @@ class MeshChecker {
     warn_of(report_.duplicates_dropped, " duplicate triangles were removed");
   }
 
-  /// Of the triangles that are left; those that fill holes have none. given: of the source's, or empty
+  /// Corner data of the remaining triangles; those that fill holes have none. given: data of the source, or empty
   template <class Corners>
   std::vector<Corners> mended(const std::vector<Corners>& given) const {
     std::vector<Corners> corners;
@@ -299,7 +299,7 @@ class MeshChecker {
     return mesh;
   }
 
-  static constexpr std::uint32_t kNew = ~0u;  // of a triangle that fills a hole
+  static constexpr std::uint32_t kNew = ~0u;  // index of a triangle that fills a hole
 
   const CheckSettings& settings_;
   SourceMesh source_;

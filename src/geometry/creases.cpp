@@ -84,7 +84,7 @@ void average_between_creases(Mesh& mesh, const std::vector<bool>& missing, const
   for_each_corner([&](std::uint32_t t, std::uint32_t k, std::uint32_t fan) {
     sum[fan] += fans.normal(t) * corner_angle(mesh, mesh.triangles[t], k);
   });
-  std::vector<std::uint32_t> vertex(sum.size(), none);  // of fans
+  std::vector<std::uint32_t> vertex(sum.size(), none);  // vertex of each fan
   std::vector<bool> is_taken(missing.size());
   for_each_corner([&](std::uint32_t t, std::uint32_t k, std::uint32_t fan) {
     std::uint32_t& own = mesh.triangles[t][k];

@@ -74,7 +74,7 @@ class CornerGrid {
   Point low_, high_;
   double side_ = 1;
   std::size_t columns_ = 1;
-  std::vector<std::uint32_t> start_, corners_;  // of each square, row by row; corners_ in their order
+  std::vector<std::uint32_t> start_, corners_;  // corners of each square, row by row, in order
 };
 
 /// Clips the ears of a polygon in the plane, counter-clockwise as a whole.

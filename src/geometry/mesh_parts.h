@@ -37,7 +37,7 @@ struct PartMeasures {
   Bounds box;
   double volume = 0;      ///< signed; holes closed by triangles to the middles of their rims
   double magnitudes = 0;  ///< sum of the absolute values that add up to the volume
-  // Of open parts alone:
+  // Open parts only:
   double area = 0, hole_area = 0;
   Vec3d area_vector;  ///< sum of the triangles' normals times their areas
   double area_for_normals = 0, area_against_normals = 0;

@@ -21,7 +21,7 @@ using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 using HalfedgeMesh = OpenMesh::TriMesh;  // coordinates in double
 using Halfedge = OpenMesh::HalfedgeHandle;
 
-// Of a hole up to this many edges all triangulations are compared, in time cubic in their number. Of those within a
+// Up to this many edges of a hole, all triangulations are compared, in time cubic in their number. Among those within a
 // Delaunay tetrahedrization, which take less, the one that is found hangs on addresses where some are as good.
 constexpr std::size_t largest_cubic_hole = 500;
 
@@ -126,7 +126,7 @@ class HoleFiller {
 
   const std::vector<Vec3d>& positions_;
   const std::vector<Edge>& open_edges_;
-  std::vector<std::uint32_t> original_;  // of each vertex of mesh_
+  std::vector<std::uint32_t> original_;  // source vertex of each vertex of mesh_
   HalfedgeMesh mesh_;
   HoleFilling result_;
 };

@@ -23,7 +23,7 @@ class CachedPicture {
   /// Which of red, green, blue and alpha the picture has.
   virtual std::array<bool, 4> channels() const = 0;
   virtual TextureMemory memory() const = 0;
-  /// What is left out of the file; empty: nothing.
+  /// Ignored parts of the file; empty: none.
   virtual std::string warning() const = 0;
 };
 
@@ -31,11 +31,11 @@ struct TextureReader {
   std::unique_ptr<CachedPicture> (*open)(PictureSource source, TextureEncoding encoding);
   /// True if it holds floats.
   bool (*is_float)(const PictureSource& source);
-  /// Of the cache, bytes.
+  /// Size limit of the cache, bytes.
   std::size_t (*cache_limit)();
 };
 
 }  // namespace opaline
 
-/// What the module gives.
+/// Entry point of the module.
 extern "C" opaline::TextureReader opaline_texture_reader();

@@ -31,7 +31,7 @@ using ChannelPlaces = std::array<int, 4>;
 /// error Error{bad_input} naming the file: no such channels, several layers, luminance and chroma (RY, BY)
 ChannelPlaces channel_places(const std::vector<std::string>& channels, const std::string& path);
 
-/// Of Cryptomatte: names and coverages, not colours.
+/// True for channels of Cryptomatte: names and coverages, not colours.
 bool is_matte_channel(std::string_view channel);
 /// True if a layer is what one light adds: "diffuse_NAME", "specular_NAME", "emission_NAME".
 bool is_light_group(std::string_view layer);

@@ -85,7 +85,7 @@ class Moments {
   double mean_ = 0, squares_ = 0;
 };
 
-/// What a pixel adds to the means of HalvesEstimate.
+/// Contribution of a pixel to the means of HalvesEstimate.
 struct Terms {
   double squared_error = 0, relative_error = 0, squared_noise = 0;
 };

@@ -29,7 +29,7 @@ struct TexelLayout {
 
   /// True if the channels from begin to end are a texel's as they stand.
   bool is_plain() const;
-  /// Of texels. file: at any size
+  /// Specification of texels. file: at any size
   OIIO::ImageSpec spec(const OIIO::ImageSpec& file) const;
   /// in    values: the channels from begin to end of pixels in a row, of `bytes` each
   void take(const unsigned char* values, std::size_t pixels, std::size_t bytes, unsigned char* texels) const;

@@ -136,7 +136,7 @@ class ShadowBatch {
   static constexpr std::size_t kSorted = 256;       // rays that Embree takes at once
   static constexpr float kMeanCosine = 2.0f / 3;    // mean cosine of even light
   static constexpr std::size_t kFewestOfRoom = 32;  // rays: a ratio of sums over fewer is biased
-  // Of points that lie together, and rays of theirs, that tell what the others may expect.
+  // Minimum pools of neighbouring points, and rays of a pool, for a prediction of visibility.
   static constexpr std::size_t kFewestPools = 4, kFewestOfTogether = 256;
   static constexpr float kRounding = 1e-4f;  // rounding of a sum of a few floats, less one of them
 
@@ -193,10 +193,10 @@ class ShadowBatch {
         lights_[light].source);
   }
 
-  // Of a few directions one is traced, by how much of it the lobe mirrors, and stands for all.
+  // Traces one of a few directions, sampled by the reflected light of the lobe, as the estimate of all.
   void add_mirrored(const SurfacePoint& point, std::uint64_t index, const std::array<double, 2>& shift,
                     std::uint64_t first, const Lobe& lobe) {
-    constexpr float kEven = .1f;  // of the choice: the lobe of a grazing view is another
+    constexpr float kEven = .1f;  // uniform part of the choice, for the different lobe of a grazing view
     constexpr std::size_t draws = kLobeDraws;
     std::array<std::array<double, 2>, draws> squares;
     std::array<EnvironmentSample, draws> drawn;
@@ -390,11 +390,11 @@ class ShadowBatch {
   struct Control {
     RgbF here, mean;
     float expected;
-    std::uint32_t block;  // of a room
+    std::uint32_t block;  // block of an environment map
     bool lit;
   };
   std::vector<Control> controls_;   // empty: none
-  std::vector<RgbF> means_;         // of points that a room lights
+  std::vector<RgbF> means_;         // means of points lit by an environment
   std::vector<Vec3d> normals_;      // normals of these, in the room's picture
   std::vector<std::size_t> pools_;  // the first point of each
   std::uint64_t pooled_ = 0;        // the last point's sequence

@@ -18,7 +18,7 @@ struct Turn {
 
 /// Counterclockwise about +y, seen from above; degrees.
 Vec3d turned(const Vec3d& direction, double degrees) {
-  thread_local Turn turn;  // of one light after another, millions of directions each
+  thread_local Turn turn;  // rotation of the current light, for millions of directions
   if (degrees != turn.degrees) {
     const double angle = degrees * std::numbers::pi / 180;
     turn = {degrees, std::cos(angle), std::sin(angle)};
@@ -35,7 +35,7 @@ Vec3d in_picture(const EnvironmentLight& light, const Vec3f& direction) {
 
 namespace {
 
-/// What the light's picture has in a direction. Its channels, lights of their own, are asked one after the other.
+/// Radiance of the environment map in a direction. Its channels are separate lights, evaluated one after the other.
 RgbF radiance_towards(const EnvironmentLight& light, const Vec3f& direction) {
   struct Asked {
     std::uint64_t picture = 0;

@@ -177,7 +177,7 @@ void EnvironmentPicture::make_importance() {
     }
 }
 
-// Of a cell, integrated over its directions.
+// Flux of a cell, integrated over its directions.
 double EnvironmentPicture::flux_of(std::size_t row, std::size_t column) const {
   const auto share = [this](std::size_t cell) {
     return double(std::min(cell * step_, width_)) / double(width_);

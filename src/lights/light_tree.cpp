@@ -74,7 +74,7 @@ bool is_narrow(const LightTree::Node& node, const LightTree::Place& at) {
   return mirrored(*at.lobe, (dot(at.lobe->mirrored, to) + node.radius) * per_d) < kMirrored;
 }
 
-/// Of the brightest light, if all others are multiples of it.
+/// Emission of the brightest light, if all others are multiples of it.
 std::optional<Rgb> common_emission_of(std::span<const Light> lights) {
   Rgb common{};
   for (const Light& light : lights)

@@ -11,7 +11,7 @@ namespace opaline {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
-constexpr double kLeastFade = 1e-3;  // of the cosine, as glTF's recommended implementation has it
+constexpr double kLeastFade = 1e-3;  // minimum falloff range of the cosine, as in glTF
 
 /// From 1 within the inner cone to 0 at the rim: the square of a ramp in the cosine (KHR_lights_punctual).
 double fade(const SpotLight& light, double cosine) {

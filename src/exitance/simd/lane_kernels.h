@@ -76,13 +76,13 @@ struct LaneKernels {
 
 extern const LaneKernels kBaselineKernels, kAvx2Kernels, kAvx512Kernels;
 
-/// What a machine has beyond the baseline.
+/// Instruction sets of a machine beyond the baseline.
 struct MachineSets {
   bool avx2 = false, avx512 = false;  ///< avx2 with fma; avx512f besides
 };
 MachineSets this_machine();
 
-/// Of the instruction set asked for; automatic: the widest that the machine has.
+/// Kernels of the requested instruction set; automatic: the widest of the machine.
 /// error Error{bad_input}: the machine has not got it
 const LaneKernels& lane_kernels(InstructionSet wanted, const MachineSets& machine = this_machine());
 

@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 11> silent{"vt",  "vp",     "g",        "
                                                   "lod", "mtllib", "c_interp", "d_interp", "vc"};
 
 constexpr std::int64_t kNone = -1;  // the index of a normal or UV that a corner has not
-constexpr std::int64_t kMissing = std::numeric_limits<std::int64_t>::max();  // of a normal that is not there
+constexpr std::int64_t kMissing = std::numeric_limits<std::int64_t>::max();  // index of a missing normal
 
 /// Faces give normals to their corners: a vertex met with several gets a copy for each, behind all vertices.
 class VertexVariants {
@@ -51,7 +51,7 @@ class VertexVariants {
   static constexpr std::uint32_t kUnmet = 0xffffffff, kLast = 0xfffffffe;
 
   SourceMesh& mesh_;
-  std::vector<std::uint32_t> next_;  // of a vertex's copies
+  std::vector<std::uint32_t> next_;  // next copy of a vertex
 };
 
 class ObjReader {
@@ -327,7 +327,7 @@ class ObjReader {
   const std::string& path_;
   const std::string* part_;
   std::string& bytes_;
-  std::string material_{kNoMaterial};  // of the faces that follow
+  std::string material_{kNoMaterial};  // material of the following faces
   SourceMesh mesh_;
   VertexCheck check_;
   std::vector<std::size_t> joined_;  // offsets of the newlines taken out
@@ -336,13 +336,13 @@ class ObjReader {
   bool with_uvs_;
   std::vector<std::array<float, 2>> uvs_;
   std::vector<std::array<std::int64_t, 3>> corner_uvs_;  // corner uvs of triangles
-  std::vector<Corner> corners_, kept_;                   // of the face at hand
-  std::vector<Fan> fans_;                                // of faces with more than three corners
+  std::vector<Corner> corners_, kept_;                   // corners of the current face
+  std::vector<Fan> fans_;                                // fans of faces with more than three corners
   std::unordered_set<std::int64_t> seen_;
   FileColors colors_{ColorCoding::srgb};
-  std::uint32_t group_ = 0;  // of the faces that follow
+  std::uint32_t group_ = 0;  // smoothing group of the following faces
   bool has_groups_ = false, has_polypaint_ = false;
-  std::vector<std::uint32_t> groups_;  // of the triangles before the last s
+  std::vector<std::uint32_t> groups_;  // smoothing groups of the triangles before the last s
   std::size_t unread_ = 0;
   Highest highest_vertex_, highest_uv_;
   std::string first_unread_;

@@ -369,15 +369,15 @@ class PlyReader {
   const PlyElement* vertices_ = nullptr;
   const PlyElement* faces_ = nullptr;
   const PlyProperty* indices_ = nullptr;
-  std::vector<std::optional<std::size_t>> slots_;  // of each vertex property, its number in kept_names
+  std::vector<std::optional<std::size_t>> slots_;  // index in kept_names of each vertex property
   bool has_normals_ = false, has_uvs_;
   std::vector<std::array<float, 2>> uvs_;
   std::optional<PlyColors> vertex_colors_, face_colors_;
   const PlyProperty* wedges_ =
       nullptr;  // UVs at the corners of faces; null: there are none, or they are not wanted
-  std::vector<std::uint32_t> polygon_;    // of the face at hand, where it has them
+  std::vector<std::uint32_t> polygon_;    // polygon of the current face, where it has positions
   std::vector<float> wedge_;              // the same
-  std::vector<std::uint32_t> corner_of_;  // of each vertex, in the face at hand
+  std::vector<std::uint32_t> corner_of_;  // corner of each vertex in the current face
   bool has_wedges_ = false;               // a face has given them
   std::int64_t textures_ = 0;
   SourceMesh mesh_;

@@ -43,7 +43,7 @@ Vec3f binary_position(const char* bytes) {
 /// Makes a mesh of corners, three a triangle; triangles with two equal corners are left out.
 SourceMesh join_corners(const std::vector<Vec3f>& corners) {
   SourceMesh mesh;
-  std::vector<std::uint32_t> vertex = weld(corners);  // of each corner; first the earliest equal corner
+  std::vector<std::uint32_t> vertex = weld(corners);  // per corner; first the earliest equal corner
   for (std::size_t corner = 0; corner < corners.size(); ++corner) {
     if (vertex[corner] == corner) {
       vertex[corner] = std::uint32_t(mesh.positions.size());

@@ -30,7 +30,7 @@ class TextCursor {
     return text_.substr(first, offset_ - first);
   }
 
-  /// What stands between here and the end of this line, without blanks around it.
+  /// Rest of the current line, without surrounding blanks.
   std::string_view rest_of_line() {
     std::string_view rest = text_.substr(offset_, line_end() - offset_);
     while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);

@@ -6,7 +6,7 @@
 namespace opaline {
 
 std::vector<std::string> cell_warnings(const Body& body, const VolumeExitance& exitance) {
-  constexpr double kMuch = 1e-3;  // of the light that entered
+  constexpr double kMuch = 1e-3;  // fraction of the transmitted light
   std::vector<std::string> warnings;
   if (const double lost = max_component(exitance.lost); lost > kMuch)
     warnings.push_back(

@@ -126,7 +126,7 @@ bool VolumeDiffusionMethod::finish(BodyStages& stages) const {
 }
 
 std::vector<std::string> VolumeDiffusionMethod::warnings(const Body& body, double unit) const {
-  constexpr double kLeastLeftOut = 1e-4;  // of the area: above rounding
+  constexpr double kLeastLeftOut = 1e-4;  // fraction of the area: above rounding
   std::vector<std::string> warnings;
   const double left_out =
       body.surface.samples.empty() ? 0 : 1 - body.surface.area * unit * unit / body.plan.area;
