@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a glTF node's camera and light become.
+// Conversion of the camera and the light of a glTF node.
 #pragma once
 
 #include "assets/asset_scene.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `opaline profile` measures: each radial profile of a medium beside random walks.
+// Measurements of `opaline profile`: each radial profile of a medium against random walks.
 #pragma once
 
 #include <cstddef>

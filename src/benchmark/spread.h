@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What repeated measurements of one thing amount to.
+// Statistics of repeated measurements.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the texts of options stand for, and what is wrong with them.
+// Conversion and validation of option texts.
 #pragma once
 
 #include <CLI/CLI.hpp>

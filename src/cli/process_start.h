@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a process is given by whoever starts it, made safe before anything else happens.
+// Safe state of inherited descriptors and signals, before anything else.
 #pragma once
 
 namespace opaline {

@@ -36,7 +36,7 @@ class ProgressEstimate {
 /// Content of the progress line.
 struct ProgressState {
   std::string stage;
-  double fraction = -1, seconds_left = -1, seconds = 0;  ///< of the stage, see ProgressEstimate
+  double fraction = -1, seconds_left = -1, seconds = 0;  ///< stage progress, see ProgressEstimate
   std::optional<FramesSoFar> frames = {};  ///< progress of a frame range: the line covers the whole range
   double noise = -1;                       ///< noise of the stage
   std::string trial = {};                  ///< the stage that a search is trying; empty: none

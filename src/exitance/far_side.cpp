@@ -68,7 +68,7 @@ enum class Sheets { same, other, both };  // both: or not known
 // angles together, and beyond 120 degrees it is another sheet (same_sheet).
 Sheets sheets_of(const QueryBounds& queries, const Vec3f& axis, float cosine, float sine) {
   if (cosine == 0 || queries.cosine == 0) return Sheets::both;
-  const float c = cosine * queries.cosine - sine * queries.sine,  // of the sum of the two angles
+  const float c = cosine * queries.cosine - sine * queries.sine,  // cosine and sine of the sum of both angles
       s = sine * queries.cosine + cosine * queries.sine;
   constexpr float kCosine = -0.5f, kSine = 0.8660254f;  // cosine and sine of 120 degrees
   const float between = dot(axis, queries.axis);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is summed sample by sample at a packet, and what its sums come to.
+// Sums over single samples at a packet, and their exitance.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the module of OpenImageIO (image/picture_reader.h) gives textures.
+// Texture interface of the OpenImageIO module (image/picture_reader.h).
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What hides a room from points that lie together, as their shadow rays tell.
+// Visibility of an environment from neighbouring points, estimated by their shadow rays.
 #pragma once
 
 #include <array>

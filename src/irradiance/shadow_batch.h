@@ -251,8 +251,8 @@ class ShadowBatch {
                          draw.expected, 0, false});
   }
 
-  // What nothing shadows is known of all lights together: as far as light reaches the point from the others that are
-  // drawn, it counts for what is drawn. The mean is that of what is drawn, for draws do not depend on each other.
+  // Control variate: the unshadowed sum of all lights is exact, so the shadow rays of the other samples correct a sample. The
+  // mean is unchanged, because samples are independent.
   template <class Use>
   void use_controlled(std::size_t point, const Use& use) const {
     const std::size_t samples = std::size_t(samples_), first = point * samples, lights = lights_.size();
@@ -277,8 +277,8 @@ class ShadowBatch {
     }
   }
 
-  // What a room brings where nothing is in the way is known. The rays of a pool tell, channel by channel, the part of it
-  // that reaches its points: what they bring over what they would. A point's own rays count as far as they differ.
+  // Control variate: the unshadowed irradiance of an environment is exact. The rays of a pool estimate the visible fraction
+  // per channel; the rays of a point add their difference from that estimate.
   template <class Use>
   void use_pool(std::size_t begin, std::size_t end, const Use& use) const {
     const std::size_t samples = std::size_t(samples_), lights = lights_.size();
@@ -385,8 +385,8 @@ class ShadowBatch {
   std::vector<LightTree::Drawn> drawn_;
   bool scattered_ = false, keeps_directions_ = false, shares_shadows_ = false;
   std::vector<float> carried_;
-  /// Of one sample of many lights: what its light would bring were nothing in the way, over how often it is drawn; the mean
-  /// of that over all draws of the sample.
+  /// One sample of many lights: its unshadowed contribution over its probability, and the mean of that over all draws
+  /// of the sample.
   struct Control {
     RgbF here, mean;
     float expected;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of a room's light before a shadow ray is traced.
+// Sample of an environment before its shadow ray.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a kind of light can do. Each kind has a file that defines all of it, and how the scene file gives it
+// Operations of a kind of light. Each kind has a file that defines all of it, and how the scene file gives it
 // (scene/light_reader.h); a kind without one of these does not link.
 #pragma once
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPoints = 200, kCountingPixels = 48 * 48, kMostPixels = 256 * 256;
 constexpr std::size_t kFirstSamples = 512;
-// What stays of noise alone: the mean of sqrt(max(0, x^2 - 1)) of a normal x.
+// Bias from noise alone: the mean of sqrt(max(0, x^2 - 1)) of a normal x.
 constexpr double kLeft = 0.34;
 // Noise of the reference, over the expected error.
 constexpr double kNoise = 0.7;

@@ -16,7 +16,7 @@ namespace {
 // No body of the table of bench_volume_models is farther off than the expected error by more than this factor.
 constexpr double kModelSafety = 1.4;
 constexpr double kThinnest = 3;  // mean free paths: the table has no thinner body
-// What cells, samples and shadow rays may add where the model alone takes all of the target: 4 % of the promise.
+// Minimum fraction for cells, samples and shadow rays if the model error uses all of the target: 4 % of the promise.
 constexpr double kLeastShare = .3;
 constexpr double kCoarsest = 3, kFinest = .25;  // cells, mean free paths
 constexpr double kMargin = .85;  // margin of the error that is aimed at: two steps cost more than one

@@ -21,12 +21,12 @@ namespace {
 
 constexpr ProfileKind kOfBodies = ProfileKind::normalized_diffusion;
 constexpr ProfileKind kOfThickPlates = ProfileKind::dipole;
-// Of a square plate a sixth as thick as wide.
+// Alignment of a square plate with a thickness of a sixth of its width.
 constexpr double kFlatAlignment = .58;
 // Diffuse mean free paths, of the channel where light goes farthest: 2 % of what goes down crosses a thicker plate.
 constexpr double kCrossed = 4;
 
-/// What counts of a medium, over the channels that scatter.
+/// Extremes of a medium over its scattering channels.
 struct MediumExtremes {
   double mean_free_path = 0, diffuse_mean_free_path = 0;  ///< the longest, mm
   std::string channels;  ///< whose mean free path is the longest: "red", "red, green"

@@ -26,7 +26,7 @@ struct Entry {
   SurfacePoint point;
   RgbF weight;                ///< R_d / density per area, per channel
   float inverse_density = 0;  ///< per area; 0: the weight is of light that leaves where it entered
-  std::uint32_t mesh = Hit::kMiss, triangle = 0;  ///< of the point; kMiss: it is the exit itself
+  std::uint32_t mesh = Hit::kMiss, triangle = 0;  ///< mesh and triangle of the point; kMiss: the exit itself
   float u = 0, v = 0;
   RgbF tint{1, 1, 1};  ///< tint of the light that enters
 };

@@ -18,7 +18,7 @@ namespace {
 
 // In units of white, after the exposure: below 16, below 64 and at 255 of a PNG's 255 levels.
 constexpr float kAlmostBlack = 0.005f, kDark = 0.05f, kOverexposed = 1.1f;
-constexpr double kWellExposed = 0.5;  // what the brightest of a picture may be
+constexpr double kWellExposed = 0.5;  // maximum of a well-exposed image
 constexpr double kFarAway = 30;       // diagonals of all shapes
 
 Bounds box_of(const World& world) {
@@ -133,7 +133,7 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
                      point_text(box.high, scene.mm_per_unit), where, advice);
 }
 
-/// What is wrong with single lights, where a picture is too dark.
+/// Problems of single lights, if the image is too dark.
 std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
   const Bounds box = box_of(world);
   const Vec3d middle = .5 * (box.low + box.high);
@@ -277,7 +277,7 @@ bool reaches_a_surface(const Light& light, const World& world) {
   });
 }
 
-/// What to do about a light that reaches no surface.
+/// Advice for a light that reaches no surface.
 std::string way_to_turn(const Scene& scene, const World& world, const Light& light) {
   if (!is_delta(light)) return "it emits on the side of u x v; exchange u and v";
   const Bounds box = box_of(world);

@@ -39,7 +39,7 @@ void check_bounces(const Scene& scene) {
 // Measured: places of the image where bounced light is gathered, and more in corners.
 constexpr std::size_t kBytesOfBouncePlaces = 12'000'000;
 
-/// Of a medium whose textures could differ inside a body; else empty.
+/// Text for a medium with textures that could vary inside a body; else empty.
 std::string medium_stage(const Medium& medium, Method method) {
   if (varies_inside(medium, method))
     return "textured medium: each point inside has the medium of the nearest surface point";
@@ -127,7 +127,7 @@ std::size_t picture_bytes(const Scene& scene, const std::vector<const Environmen
 
 /// Warns where rays start visibly off surfaces, in scenes far larger than their smallest shape.
 void warn_of_large_scene(const Scene& scene, const World& world, std::vector<std::string>& warnings) {
-  constexpr double kVisible = 4e-3;  // of the smallest shape; above it a lit sliver shows in contact shadows
+  constexpr double kVisible = 4e-3;  // fraction of the smallest shape that shows in contact shadows
   if (world.boxes.empty()) return;
   const auto size = [&](std::size_t m) { return length(world.boxes[m].high - world.boxes[m].low); };
   std::size_t smallest = 0, farthest = 0;

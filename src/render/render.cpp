@@ -35,7 +35,7 @@ bool fits(const Film& film, std::size_t bytes) {
          kMostHeldBytes;
 }
 
-// What is held of earlier pictures and to be held of this one, if there is room for it.
+// Cache of earlier images and for this one, if memory allows.
 HeldView* view_of(const RenderInput& input, std::size_t tiles) {
   const std::size_t least = sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) +
                             2 * sizeof(float) * recentred_lights(input.scene, input.world).size();

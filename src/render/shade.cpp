@@ -154,7 +154,7 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
 std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
                                                HeldView::Batch* held) const {
   if (held != nullptr) held->surfaces.resize(fields_.all.size());
-  // Of gathered rays, which are many, the lights alone are held.
+  // Gathered rays are many, so only their lights are cached.
   std::vector<SurfaceHits> all_hits = collect(batch, pass.is_seen ? held : nullptr);
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
     const SurfaceHits& hits = all_hits[f];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the boundaries of translucent things mirror: lights, what is all around, and surfaces as they are lit. A smooth
+// Specular reflection at the boundaries of translucent bodies: of lights, environments, and surfaces as they are lit. A smooth
 // boundary is one ray. A rough one draws directions from its lobe and from the lights, weighted by the power
 // heuristic (Veach & Guibas 1995).
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace opaline {
 namespace {
 
-// Of a camera ray where there is one a pixel: facets drawn, and directions to each light.
+// Facets per camera ray, with one ray per pixel, and directions to each light.
 constexpr int kFacets = 16, kLightSamples = 16;
 // These, too, over those of what is seen in a mirror.
 constexpr int kFewerOfMirrored = 4;
@@ -166,9 +166,9 @@ struct Shader::GlossyHits {
   std::vector<const Appearance*> appearances;
   int facets, to_lights;
   std::uint64_t seed;
-  std::vector<std::uint64_t> keys;  // of directions, in the sequence of the pixel
+  std::vector<std::uint64_t> keys;  // keys of directions, in the sequence of the pixel
   std::vector<Lobe> lobes;
-  std::vector<RoomLobe> rooms;  // what the lobes mirror of a room, where there is one
+  std::vector<RoomLobe> rooms;  // reflections of an environment by the lobes, if any
 
   GlossyHits(const Shader& shader, const SurfaceHits& all, const RayBatch& rays)
       : hits(all),
@@ -323,7 +323,7 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldVie
   const std::vector<GlossyHits::LobeRay> drawn = glossy.draw_from_lobes(rays);
   input_.rays.intersect(rays);
 
-  // Of the surfaces that a hit's rays meet, one stands for all.
+  // One surface represents all surfaces that the rays of a hit meet.
   std::vector<Met> met;
   Cones cones{kGlossySpread, {}};
   std::vector<TracedRay> met_rays;

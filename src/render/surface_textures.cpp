@@ -99,7 +99,7 @@ TangentFrame frame_of(const SurfaceTextures::Place& place, const SurfacePoint& p
   return {tangent, cross(point.normal, tangent) * (side > 0 ? 1.0f : -1.0f)};
 }
 
-/// Of what leans on a surface: 1, or -1 where it is seen from behind.
+/// Orientation of a tilted normal: 1, or -1 if seen from behind.
 float outward(const SurfaceTextures::Place& place) {
   return place.from_behind ? -1.0f : 1.0f;
 }

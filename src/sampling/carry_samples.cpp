@@ -213,7 +213,7 @@ CarriedSamples bent_along(const CarryInput& input, std::span<const PlainTriangle
   return {.surface = std::move(result), .divided = divide};
 }
 
-/// What is needed of a world to carry samples from it, in another unit.
+/// World in another unit, as far as carrying samples requires.
 World in_unit(const World& world, double unit) {
   const double factor = world.unit / unit;
   World scaled;

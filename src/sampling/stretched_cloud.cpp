@@ -117,7 +117,7 @@ class CloseCells {
   static constexpr std::uint32_t kNone = ~0u;
   struct Entry {
     std::uint64_t key = 0;
-    std::uint32_t newest = kNone;  // of the cell's places
+    std::uint32_t newest = kNone;  // newest place of the cell
   };
 
   std::size_t slot_of(std::uint64_t key) const {

@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-/// What a list's element is called: its own name, or the default one ("shape0" in "shapes").
+/// Name of a list's element: its own, or the default one ("shape0" in "shapes").
 std::string element_name(const Node& list, std::size_t i) {
   const Node* name = find_member(list.children[i], "name");
   if (name != nullptr && name->kind == Node::Kind::string) return name->text;

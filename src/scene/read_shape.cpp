@@ -119,7 +119,7 @@ void read_gloss(const ObjectReader& reader, Shape& shape) {
   }
   gloss.grain = read_grain(reader);
   if (ior) gloss.eta = ior->number();
-  constexpr double kTrace = 1e-4;  // of a coat of no weight, so that metals keep a boundary
+  constexpr double kTrace = 1e-4;  // minimum weight of the dielectric, so that metals keep a boundary
   if (weight) gloss.eta = weighted_ior(gloss.eta, std::max(weight->number(), kTrace));
 }
 

@@ -12,7 +12,7 @@ bool is_texture(const Value& value) {
   return value.node().kind == Node::Kind::object;
 }
 
-/// What a value takes of a texel.
+/// Part of a texel used by a value.
 enum class TexturePart { color, triple, number };
 
 std::array<double, 2> read_pair(const Value& value) {
@@ -80,7 +80,7 @@ double checked(const Value& value, double number) {
   return number;
 }
 
-/// Of a texture with red, green and blue, whose texels are all alike; else empty.
+/// Constant value of an RGB texture with equal texels; else empty.
 std::optional<Vec3d> constant_of(const Value& value, const Texture& texture) {
   const std::optional<Texel>& constant = texture.file->constant();
   if (!constant) return {};

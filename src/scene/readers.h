@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// What a shape needs to know about the scene around it.
+/// Properties of the scene that a shape depends on.
 struct ShapeContext {
   double mm_per_unit = 1;
   const std::vector<Medium>* media = nullptr;

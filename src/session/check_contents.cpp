@@ -52,7 +52,7 @@ bool stands_on_its_triangle(const SurfaceSample& s, const World& world) {
   return dot(apart, apart) <= far * far && dot(turned, turned) <= 1e-6f;
 }
 
-/// Of node i and all below it, given that they lie before `end`.
+/// Checks node i and all nodes below it, which lie before `end`.
 struct TreeCheck {
   const Octree& tree;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether what an entry holds can be what its key stands for: every count, index and range that later stages
+// Plausibility of a cache entry for its key: every count, index and range that later stages
 // rely on, and what the surface alone says of the values. It costs a pass over them.
 #pragma once
 

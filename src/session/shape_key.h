@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a shape's mesh is loaded from.
+// Key of the source of a shape's mesh.
 #pragma once
 
 #include <map>

@@ -67,7 +67,7 @@ void Session::State::update_bounces(std::span<BodyStages> bodies) {
   }
 }
 
-/// What is held, with what the bodies' samples as they are now gathered; null: nothing is to be held.
+/// Cached view with the gathering of the bodies' current samples; null: caching is off.
 HeldView* Session::State::held_view_of_samples(const PrecomputeInput& input) {
   HeldView* const view = held_view();
   if (view == nullptr) return nullptr;

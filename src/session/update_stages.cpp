@@ -32,7 +32,7 @@ std::size_t carried_count(const SampleOrigin& origin, const GroupPlan& plan) {
 
 bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings) {
   constexpr double kMore = 2;          // times the number, where the scene allows no more than that
-  constexpr double kFewer = 1.0 / 16;  // of the number: four times as far apart as asked for
+  constexpr double kFewer = 1.0 / 16;  // fraction of the number: spacing four times as large as requested
   if (!(origin.area > 0)) return false;
   const double count = double(origin.count), carried = count * (plan.area / origin.area);
   const bool by_number = origin.count_was_set || origin.count >= settings.max_samples;

@@ -39,7 +39,7 @@ class ControlRegression {
 
   std::vector<Column> columns_;
   std::vector<double> shares_;    ///< shares of each batch in the mean
-  std::vector<double> leverage_;  ///< of each batch on its own prediction
+  std::vector<double> leverage_;  ///< leverage of each batch on its own prediction
 };
 
 }  // namespace opaline

@@ -50,7 +50,7 @@ std::string_view name_of(ValueType type) {
 
 /// Ends of a slider: those of the range, or a thousandth inside where the range is without them.
 Json slider_json(const Range& range) {
-  constexpr double kWidest = 1e6;  // of what a slider is for
+  constexpr double kWidest = 1e6;  // maximum range of a slider
   const double width = range.high - range.low, inside = width < kWidest ? 1e-3 * width : 0;
   return {range.low + (range.without_low ? inside : 0), range.high - (range.without_high ? inside : 0)};
 }

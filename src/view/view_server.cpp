@@ -95,7 +95,7 @@ struct ViewServer::State {
   SharedText schema;
   std::map<PageText, SharedText> texts;  ///< the newest of each kind
   std::shared_ptr<const ViewPicture> picture, reference;
-  std::map<std::string, PackedFrame> packed;  ///< of `picture`, by layer
+  std::map<std::string, PackedFrame> packed;  ///< packed frames of `picture`, by layer
   std::uint32_t frames = 0;
   std::set<PageConnection*> pages;
   std::shared_ptr<std::size_t> connections = std::make_shared<std::size_t>(0);
@@ -105,7 +105,7 @@ struct ViewServer::State {
   std::jthread file_thread;
   std::unique_ptr<ViewRenderer> renderer;
   std::unique_ptr<ViewBackground> background;
-  BackgroundWork asked;  ///< of it
+  BackgroundWork asked;  ///< requested background work
 };
 
 ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, ViewHooks view_hooks)
@@ -253,7 +253,7 @@ void ViewServer::State::work_behind(const WorkBehind& wanted) {
   tell(PageText::behind, behind_text(wanted));
 }
 
-/// What was chosen is an edit as any other, unless the scene is another by now: then it is chosen again.
+/// Applies chosen settings as an edit, unless the scene has changed meanwhile: then they are chosen again.
 void ViewServer::State::take(const ChosenSettings& chosen) {
   if (chosen.revision != edits.revision() || !asked.target_error) return;
   const double target = *std::exchange(asked.target_error, {});
@@ -281,7 +281,7 @@ void ViewServer::State::after_edit() {
   if (!std::exchange(shows_progress, true)) show_progress();
 }
 
-/// What files hold where that is not what the view shows.
+/// Note on written files that differ from the view.
 std::string ViewServer::State::by_scene_camera() const {
   return edits.own_camera() ? ", with the scene camera" : "";
 }

@@ -23,8 +23,8 @@ constexpr std::uint32_t kNone = ~0u;
 struct ElementSum {
   Vec3d position{}, normal{};  // times area
   double area = 0;
-  std::uint32_t next = kNone;  // of the same cell
-  bool faces_back = false;     // of another element of the cell
+  std::uint32_t next = kNone;  // next element of the same cell
+  bool faces_back = false;     // true if it faces another element of the cell
 };
 
 /// The elements of each cell of a lattice.
@@ -134,7 +134,7 @@ void cut(Polygon polygon, std::size_t axis, const Found& found) {
   found(polygon);
 }
 
-/// What a triangle has of an element.
+/// Part of a triangle in an element.
 struct Part {
   Vec3f position;  // mean
   std::uint32_t mesh, triangle, element;
@@ -265,7 +265,7 @@ class Cutter {
   }
 
   void add_pieces(const Polygon& part, const Vec3d& normal, std::uint32_t mesh, std::uint32_t triangle) {
-    constexpr int kSplit = 3;  // of each side of a triangle of the part
+    constexpr int kSplit = 3;  // subdivision of each side of a triangle
     for (std::size_t i = 2; i < part.count; ++i) {
       const Vec3d &a = part.corners[0], b = part.corners[i - 1] - a, c = part.corners[i] - a;
       const double area = .5 * dot(cross(b, c), normal) / (kSplit * kSplit);
@@ -291,8 +291,8 @@ class Cutter {
     parts_.push_back({Vec3f(position), mesh, triangle, element, true, is_turned});
   }
 
-  // Of each element the part next to its middle; the light that enters is found by the triangle's normal, so one that is
-  // turned stands for the element only where there is no other.
+  // Part of each element nearest to its centre; transmitted light uses the triangle's normal, so a flipped triangle
+  // represents the element only without an alternative.
   std::vector<const Part*> middles_of(std::span<const BoundaryElement> elements) const {
     std::vector<const Part*> middles(elements.size());
     std::vector<float> distances(elements.size(), INFINITY);

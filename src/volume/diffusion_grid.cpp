@@ -114,7 +114,7 @@ struct DiffusionGrid::Builder {
         const int column = 2 * i + x, row = 2 * j + y;
         const double covered = lines.covered(column, row, k, k + 1);
         if (!(covered > 0)) continue;
-        // What is covered lies against one end of the cell or, where it is whole, in its middle.
+        // The covered part touches one end of the cell or, if whole, its centre.
         const bool low = lines.contains(column, row, k);
         const bool high = lines.contains(column, row, k + 1);
         const double z = low == high ? .5 : low ? .5 * covered : 1 - .5 * covered;
@@ -172,7 +172,7 @@ struct DiffusionGrid::Builder {
     }
   }
 
-  // Of a cell of size 1.
+  // Middle of a cell of size 1.
   Vec3d middle_of(std::uint32_t cell) const {
     const auto& [i, j, k] = corners[cell];
     return {i + .5, j + .5, k + .5};
@@ -195,7 +195,7 @@ struct DiffusionGrid::Builder {
     return aperture_by_lines(corner[0], corner[1], corner[2], int(axis));
   }
 
-  // Of the lattice face below (i, j, k) along an axis, how much is inside.
+  // Fraction of the lattice face below (i, j, k) along an axis that is inside.
   double aperture_by_lines(int i, int j, int k, int axis) const {
     double sum = 0;
     for (std::size_t n = 0; n < 3; ++n) {
@@ -297,9 +297,9 @@ struct DiffusionGrid::Builder {
   const CancelCheck check;
   DiffusionGrid& grid;
   const InsideLines& lines;
-  std::vector<Flags> levels;                 // of sizes 2, 4, 8: what must be divided
+  std::vector<Flags> levels;                 // cells of sizes 2, 4, 8 to divide
   std::size_t brick = 0;                     // under way
-  std::vector<std::array<int, 3>> corners;   // of the cells
+  std::vector<std::array<int, 3>> corners;   // corners of the cells
   std::vector<std::optional<Plane>> planes;  // planes of the cells that have just one
 };
 

@@ -50,7 +50,7 @@ class DiffusionGrid {
   std::span<const Link> links(std::size_t cell) const {
     return std::span(links_).subspan(first_link_[cell], first_link_[cell + 1] - first_link_[cell]);
   }
-  /// Of a cell's links among all; of the number of cells their end.
+  /// Index of the first link of a cell; for the number of cells, the end of all links.
   std::size_t first_link(std::size_t cell) const { return first_link_[cell]; }
   std::span<const ObliqueLink> oblique() const { return oblique_; }
   /// The cell around a point; kNone outside the body.

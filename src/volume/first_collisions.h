@@ -16,7 +16,7 @@
 
 namespace opaline {
 
-/// What enters at the samples, of lights or from all around.
+/// Transmitted light at the samples, from lights or uniform.
 struct EnteringLight {
   std::span<const Light> lights;             ///< recentred
   std::span<const LightTransfer> transfers;  ///< one a light

@@ -94,7 +94,7 @@ class FreeDistance {
   double edge_, inverse_edge_, reach_, reach_steps_;
   std::size_t nx_, ny_, nz_;
   std::vector<std::uint8_t> steps_;      ///< squared distance to a voxel that a triangle crosses, in edges
-  std::array<double, 256> distances_{};  ///< of the squared distances
+  std::array<double, 256> distances_{};  ///< distances by their squares
   std::vector<Plane> planes_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an entry of the cache holds: named arrays of numbers, or of structs whose members are described.
+// Content of a cache entry: named arrays of numbers, or of structs with described members.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a stage cost.
+// Cost of a stage.
 #pragma once
 
 #include <chrono>

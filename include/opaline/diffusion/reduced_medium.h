@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a radial profile is made from.
+// Input of a radial profile.
 #pragma once
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What more time buys: the error of a scene's picture against its cost, at several settings.
+// Error of an image against its cost, at several settings.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a picture found out that depends on the camera, the surfaces and where the lights are, but on no
-// colour and no medium.
+// Cached results of an image that depend on the camera, the surfaces and the positions of lights, but not on
+// colours and media.
 #pragma once
 
 #include <atomic>

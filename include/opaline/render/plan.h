@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene requires, before any work is done for it.
+// Plan of a scene before any work: stages, samples, memory.
 #pragma once
 
 #include <cstdint>

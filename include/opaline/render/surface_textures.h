@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the textures of a scene say at points of its surfaces.
+// Textures of a scene at points of its surfaces.
 #pragma once
 
 #include <cstdint>

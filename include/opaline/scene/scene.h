@@ -353,7 +353,7 @@ struct Scene {
   /// Deprecated spellings in the file, and deviations from an asset that change the image, one line each.
   std::vector<std::string> warnings;
   std::size_t asset_bytes = 0;  ///< memory of an asset's records
-  double mm_per_unit = 1;       ///< of the file, for what is written in its units; nothing here is
+  double mm_per_unit = 1;       ///< unit of the file, for output in its units; all lengths here are mm
   std::vector<Medium> media;
   std::vector<Shape> shapes;
   std::vector<Light> lights;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tells one scene with its meshes and overrides from another.
+// Hash of a scene with its meshes and overrides.
 #pragma once
 
 #include <string>

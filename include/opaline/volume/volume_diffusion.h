@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What leaves a body by the diffusion equation solved inside of it: the price of a preview, no kernel's shape.
+// Exitance of a body by the diffusion equation solved inside it: fast, and independent of a kernel's assumptions.
 #pragma once
 
 #include <array>

@@ -66,7 +66,7 @@ class Field {
 std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, int samples_per_pixel,
                                      HeldView::Surface* held);
 
-/// What of it enters, and its variance: tinted.
+/// Transmitted irradiance and its variance: tinted.
 void tint_entering(std::span<const HitTextures> textures, std::span<RgbF> irradiance,
                    std::span<Rgb> variance);
 

@@ -70,7 +70,7 @@ function showReference() {
   redraw();
 }
 
-// What the method's pictures have.
+// Layers of the method's images.
 function offerLayers() {
   const method = state.scene.settings?.method || "hierarchical";
   const names = ["", "R", "G", "B", "A", "diffuse", "specular", "albedo", "N", "P", "Z", method === "direct" ? "variance" : "irradiance"];
@@ -194,7 +194,7 @@ function chooseChannel() {
   redraw();
 }
 
-// What is on the left of the wipe: a picture that is kept, or a reference.
+// Image on the left of the wipe: a pinned image, or a reference.
 function compare(picture, method) {
   pinned = picture;
   one("pin").setAttribute("aria-pressed", String(Boolean(pinned)));
@@ -317,7 +317,7 @@ const takes = {
     one("compared").textContent = `${message.method}: ${message.samples} ${each}, noise ${message.noise ? percent(message.noise) : "unknown"}; ` +
       `the final image differs by ${percent(message.difference)} (rms of the diffuse light over translucent pixels, without this noise)`;
   },
-  // What was refused counts no longer: the scene as it is follows.
+  // A refused edit is dropped: the scene message follows.
   told: (message) => {
     if (!message.good) ahead.clear();
     tell(message.text, message.good);
