@@ -16,7 +16,7 @@ constexpr double kRadians = std::numbers::pi / 180;
 
 // A three-quarter view: glTF assets face +z.
 constexpr double kAzimuth = 35, kElevation = 20, kFieldOfView = 30;  // degrees
-constexpr double kMargin = 1.05;                                     // of the sphere that the picture holds
+constexpr double kMargin = 1.05;  // margin of the sphere that the picture holds
 constexpr int kSamplesPerPixel = 4;
 
 /// A ball that lights the asset, unseen: where, in units along the picture's right, the world's up and towards the camera;
@@ -31,7 +31,7 @@ struct DefaultLight {
 constexpr std::array<DefaultLight, 3> kLights{
     {{"key", {-.7, .7, .7}, .8, .52}, {"fill", {.9, .2, .8}, 1.2, .16}, {"rim", {.3, 1, -.8}, .6, .35}}};
 constexpr double kLightDistance = 4;  // over the asset's radius
-constexpr double kWhite = .8;         // of a surface under the asset's own lights
+constexpr double kWhite = .8;         // exposure of a white surface under the asset's own lights
 
 // Where the PNG must be darkened by more stops than this, highlights may be beyond the largest half, 65504.
 constexpr double kHalfExposure = -8;
@@ -63,14 +63,14 @@ struct ViewFrame {
 ViewFrame view_frame(const AssetScene& scene) {
   const Vec3d up{0, 1, 0};
   Vec3d towards = vector_of(scene.camera["position"]) - scene.center;
-  constexpr double kNear = .01;  // of the asset's radius, or of a right angle
+  constexpr double kNear = .01;  // fraction of the asset's radius, or of a right angle
   if (!(length(cross(up, towards)) > kNear * std::max(length(towards), scene.radius)))
     towards = default_view();
   return {normalized(cross(up, towards)), up, normalized(towards)};
 }
 
 void add_lights(AssetScene& scene) {
-  if (!scene.lights.empty()) scene.not_carried.push_back("its lights: they are dark");
+  if (!scene.lights.empty()) scene.not_carried.push_back("its lights: ignored, they emit nothing");
   scene.lights = Json::array();
   const auto [right, up, forward] = view_frame(scene);
   for (const DefaultLight& light : kLights) {
@@ -85,7 +85,7 @@ void add_lights(AssetScene& scene) {
          {"radiance", light.white * ratio * ratio},
          {"visible", false}});
   }
-  scene.translated.push_back("no lights: default ones, called key, fill and rim, are put around the asset");
+  scene.translated.push_back("no lights: adds default lights key, fill and rim around the asset");
 }
 
 /// White, facing all lights at the asset's centre, comes out as kWhite in the PNG.
@@ -94,8 +94,9 @@ void add_exposure(AssetScene& scene) {
   const double exposure = std::clamp(std::round(stops * 100) / 100, -100., 100.);
   scene.film["exposure"] = exposure;
   if (exposure < kHalfExposure) scene.film["pixel_type"] = "float";
-  scene.translated.push_back(fmt::format(
-      "exposure {:.2f} stops: a white surface at the asset's centre comes out as {}", exposure, kWhite));
+  scene.translated.push_back(
+      fmt::format("exposure {:.2f} stops: a white surface at the centre of the asset has the value {}",
+                  exposure, kWhite));
 }
 
 }  // namespace

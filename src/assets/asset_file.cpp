@@ -66,8 +66,8 @@ NamedFile find_named_file(const std::string& name, const std::string& asset, con
   for (const fs::path& other : {beside(slashes, folder), beside(slashes, folder_of(asset))})
     if (is_there(other)) {
       check_is_inside(name, asset, other);
-      return {other, in_quotes(name) + ": there is no such file; " + in_quotes(other.filename().string()) +
-                         " beside is taken"};
+      return {other, in_quotes(name) + ": no such file; uses " + in_quotes(other.filename().string()) +
+                         " in the same folder"};
     }
   return {};
 }

@@ -11,7 +11,7 @@ namespace opaline {
 
 struct NamedFile {
   std::filesystem::path path;  ///< empty: there is no such file
-  std::string warning;         ///< what was taken in place of a path that leads nowhere; empty: nothing
+  std::string warning;         ///< file used instead of a missing path; empty: none
 };
 
 /// Bad input: an asset names a file outside of its folder.
@@ -20,7 +20,7 @@ struct OutsideAsset : Error {
 };
 
 /// Finds a file by the name that an asset gives it: relative to `folder`, with slashes or backslashes. Where nothing is
-/// there, as under a path of another machine, the file of that name beside is taken.
+/// there, as under a path of another machine, the file of that name in the same folder.
 /// in    asset: in whose folder the file must lie; folder: of the file whose text has the name
 /// error OutsideAsset naming the asset and the file: it lies outside, also by way of a link, and
 ///       allow_files_outside_assets was not called

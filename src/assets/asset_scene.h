@@ -22,13 +22,13 @@ using Json = nlohmann::ordered_json;
 struct AssetScene {
   double mm_per_unit = 1;
   Json media = Json::object(), shapes = Json::array(), lights = Json::array(), camera, film = Json::object();
-  Vec3d center;                  ///< of the box around the shapes
+  Vec3d center;                  ///< center of the box around the shapes
   double radius = 1;             ///< from there to the outermost vertex
   double center_irradiance = 0;  ///< that its lights bring to a surface there that faces them
   bool is_one_mesh = false;      ///< its shapes are parts of one body
   bool has_vertex_colors = false;
   std::vector<std::string> translated, not_carried;
-  std::vector<std::string> warnings;  ///< of what changes the image
+  std::vector<std::string> warnings;  ///< warnings of what changes the image
   std::size_t bytes = 0;              ///< as ImportedAsset's
 
   /// Something of a file or a record in it that is lost and changes the image.
@@ -38,10 +38,10 @@ struct AssetScene {
   }
 };
 
-/// What the material of a shape becomes.
+/// Result of a shape's material.
 struct SurfaceTranslation {
   Json medium;                 ///< as in a scene file; null: opaque
-  Json keys = Json::object();  ///< of the shape besides; a reflectance among them is in place of the next
+  Json keys = Json::object();  ///< other keys of the shape; a reflectance among them replaces the next
   Vec3d reflectance{1, 1, 1};
 };
 

@@ -69,7 +69,7 @@ Transform read_transform(const GltfRecord& record) {
   if (!m.empty()) return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
   Transform t;
   if (!q.empty()) {
-    if (q == std::vector<double>(4)) record.fail("rotation", "is no rotation", "not 0");
+    if (q == std::vector<double>(4)) record.fail("rotation", "is not a rotation", "not 0");
     t = rotation({q[0], q[1], q[2], q[3]});
   }
   if (!s.empty()) t.x *= s[0], t.y *= s[1], t.z *= s[2];
@@ -151,9 +151,8 @@ class GltfBuilder {
     const GltfRecord root(gltf_.path, "", json);
     const std::string version = root.record("asset").text("version");
     if (version.empty())
-      throw bad_file(gltf_.path, "cannot be read as glTF 2.0: its asset has no version", "\"2.0\"");
-    if (!version.starts_with("2."))
-      fail_at(gltf_.path, "asset.version", "is not one that is read", "2.0", version);
+      throw bad_file(gltf_.path, "cannot be read as glTF 2.0: asset.version is missing", "\"2.0\"");
+    if (!version.starts_with("2.")) fail_at(gltf_.path, "asset.version", "is not supported", "2.0", version);
     for (const std::string_view list : kReadLists) root.records(std::string(list).c_str());
     for (const std::string_view list : kLazyLists) root.records(std::string(list).c_str());
     gltf_.scene = root.index("scene");

@@ -148,7 +148,7 @@ class AccessorReader {
   const GltfModel& gltf_;
   const GltfAccessor& accessor_;
   std::string place_;
-  std::size_t size_ = 0;  // of a component, bytes
+  std::size_t size_ = 0;  // size of a component, bytes
 };
 
 }  // namespace

@@ -60,7 +60,7 @@ GltfChunks gltf_chunks(const std::string& path, std::string_view file) {
   if (!file.starts_with("glTF")) return {file, {}};
   if (file.size() < kFirstChunk + kChunkHeader) throw bad_file(path, "its header is cut off");
   if (const std::size_t version = number_at(file, kVersionAt); version != 2)
-    throw bad_file(path, "is not of a version that is read", "binary glTF 2", std::to_string(version));
+    throw bad_file(path, "has an unsupported version", "binary glTF 2", std::to_string(version));
   if (!is_chunk(file, kFirstChunk, kJson)) throw bad_file(path, "does not begin with JSON", "a GLB file");
   GltfChunks chunks;
   chunks.json = chunk_at(path, file, kFirstChunk, "JSON");

@@ -33,7 +33,7 @@ std::string record_name(const std::string& list, std::size_t index) {
 
 GltfRecord::GltfRecord(const std::string& path, std::string place, const Json& json)
     : path_(&path), place_(std::move(place)), json_(&json) {
-  if (!json.is_object()) fail_at(path, place_, "is no record", "an object", shown(json));
+  if (!json.is_object()) fail_at(path, place_, "is not an object", "an object", shown(json));
 }
 
 void GltfRecord::fail(const std::string& key, const std::string& message, const std::string& expected,
@@ -72,7 +72,7 @@ std::size_t GltfRecord::size_of(const Json& value, const std::string& key) const
 
 std::uint32_t GltfRecord::index_of(const Json& value, const std::string& key) const {
   const std::size_t index = size_of(value, key);
-  if (index >= kNoRecord) fail(key, "points at nothing", "the index of a record", shown(value));
+  if (index >= kNoRecord) fail(key, "refers to nothing", "the index of a record", shown(value));
   return std::uint32_t(index);
 }
 

@@ -32,7 +32,7 @@ class GltfRecord {
   GltfRecord(const std::string& path, std::string place, const Json& json);
 
   bool has(const char* key) const { return json_->contains(key); }
-  std::uint32_t index(const char* key) const;  ///< of a record, which may not be there; kNoRecord
+  std::uint32_t index(const char* key) const;  ///< index of a record, which may not be there; kNoRecord
   std::vector<std::uint32_t> indices(const char* key) const;
   std::size_t size(const char* key, std::size_t otherwise) const;
   double number(const char* key, double otherwise) const;

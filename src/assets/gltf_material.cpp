@@ -311,13 +311,13 @@ class MaterialTranslator {
     if (!(distance > 0) || !std::isfinite(distance) || color == Vec3d(1) ||
         scatter.multiscatter_color == Vec3d()) {
       not_carried(
-          "its scattering: without attenuationDistance, attenuationColor below 1 and a multiscatter colour "
-          "nothing scatters; taken as opaque");
+          "scattering without attenuationDistance, attenuationColor below 1 and a multiscatter colour has no "
+          "effect; treated as opaque");
       return {};
     }
     if (color != clamped(color))
-      not_carried(fmt::format("attenuationColor {} beyond {} to {}: {} is taken", short_triple(color),
-                              kDarkest, kClearest, short_triple(clamped(color))));
+      not_carried(fmt::format("attenuationColor {} outside {} to {}: uses {}", short_triple(color), kDarkest,
+                              kClearest, short_triple(clamped(color))));
     const double g = std::clamp(scatter.anisotropy, -kMostAnisotropy, kMostAnisotropy);
     Vec3d sigma_a, sigma_s;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -352,10 +352,9 @@ class MaterialTranslator {
   void tell_of_thickness(const GltfRecord& volume) {
     const double thickness = volume.number("thicknessFactor", 0);
     if (thickness > 0)
-      translated(
-          fmt::format("thicknessFactor {:.4g} mm -> the mesh's own thickness", thickness * kMillimetres));
+      translated(fmt::format("thicknessFactor {:.4g} mm -> thickness of the mesh", thickness * kMillimetres));
     else
-      not_carried("thicknessFactor 0 (thin-walled): the mesh is taken as a body");
+      not_carried("thicknessFactor 0 (thin-walled): the mesh is treated as a solid body");
   }
 
   void tell_losses(bool is_translucent) {
@@ -369,7 +368,7 @@ class MaterialTranslator {
         if (key.ends_with("Texture")) add(key);
     const std::vector<double> emissive = material_.numbers("emissiveFactor", 3);
     if (!emissive.empty() && emissive != std::vector<double>{0, 0, 0})
-      not_carried("emissiveFactor: it does not glow");
+      not_carried("emissiveFactor: ignored, no emission");
     tell_alpha();
     tell_extensions(is_translucent);
   }
@@ -381,7 +380,7 @@ class MaterialTranslator {
     const bool may_be_clear =
         base_.color_texture.index("index") != kNoRecord || (!factor.empty() && factor[3] < 1);
     if (mode != "OPAQUE" && may_be_clear)
-      warn("alphaMode " + in_quotes(mode) + ": shown whole, without holes");
+      warn("alphaMode " + in_quotes(mode) + ": ignored, the surface has no holes");
   }
 
   void tell_extensions(bool is_translucent) {
@@ -395,7 +394,7 @@ class MaterialTranslator {
       if (std::ranges::find(of_volume, name) == of_volume.end())
         not_carried(name);
       else if (!is_translucent)
-        not_carried(name + ": nothing scatters in it, and clear bodies are not rendered; taken as opaque");
+        not_carried(name + ": a clear, non-scattering body is not supported; treated as opaque");
     }
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a glTF material becomes: a translucent medium where it scatters light inside, else a coated colour or metal.
+// Conversion of a glTF material: to a translucent medium if it scatters light inside, else to a coated colour or metal.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace opaline {
 /// Where a material is met.
 struct MaterialUse {
   std::uint32_t index = kNoRecord;  ///< none: glTF's default one, white
-  bool has_uvs = false;             ///< of what it is on
+  bool has_uvs = false;             ///< has uvs of what it is on
   bool has_tangents = false;
   std::string mesh_path{};  ///< how the scene file calls the asset
 };

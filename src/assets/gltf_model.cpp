@@ -32,7 +32,7 @@ void add_hash(std::string& contents, std::string_view bytes) {
 void check_compression(const GltfModel& gltf) {
   for (const std::string& name : gltf.extensions_required)
     if (std::ranges::find(compressions, name) != compressions.end())
-      throw bad_file(gltf.path, "its meshes are compressed by " + name + ", which is not read",
+      throw bad_file(gltf.path, "its meshes are compressed by " + name + ", which is not supported",
                      "an asset exported without compression");
 }
 
@@ -55,7 +55,7 @@ class ReferenceCheck {
  private:
   void index(const std::string& place, std::uint32_t value, std::size_t size) const {
     if (value < size) return;
-    fail_at(gltf_.path, place, "points at nothing",
+    fail_at(gltf_.path, place, "refers to nothing",
             size == 0 ? "nothing: there is none" : "0 to " + std::to_string(size - 1), std::to_string(value));
   }
 
@@ -151,7 +151,7 @@ std::string bytes_of_uri(const GltfModel& gltf, std::size_t index, const std::st
   const std::string name = decoded_uri(uri);
   const NamedFile file = find_named_file(name, gltf.path, fs::path(gltf.path).parent_path());
   if (file.path.empty())
-    fail_at(gltf.path, place, "names no such file", "a file in the asset's folder", name);
+    fail_at(gltf.path, place, "refers to a missing file", "a file in the asset's folder", name);
   files.push_back(file.path.string());
   return read_asset_bytes(files.back());
 }
@@ -176,7 +176,7 @@ void read_buffers(GltfModel& gltf, std::string_view binary, const std::vector<Gl
   }
 }
 
-/// Of all files, read again.
+/// Contents of all files, read again.
 std::string contents_of(const std::vector<std::string>& files, const std::string& first) {
   std::string contents;
   add_hash(contents, first);

@@ -51,7 +51,7 @@ inline constexpr std::size_t kGltfTriangles = 4, kGltfTriangleStrip = 5, kGltfTr
 struct GltfMesh {
   std::string name;
   std::vector<GltfPrimitive> primitives;
-  std::vector<double> weights;  ///< of morph targets
+  std::vector<double> weights;  ///< weights of morph targets
 };
 
 struct GltfNode {
@@ -67,7 +67,7 @@ struct GltfNode {
 struct GltfModel {
   std::string path;
   std::string contents;               ///< hash of the file and of the buffers beside it
-  std::vector<std::string> warnings;  ///< of a file that is not as glTF wants it
+  std::vector<std::string> warnings;  ///< warnings of a file that is not as glTF wants it
   std::string file;                   ///< bytes that buffers point into
   std::deque<std::string> own_bytes;  ///< the same of other files and URIs
   std::vector<std::string_view> buffers;

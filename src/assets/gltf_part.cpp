@@ -63,8 +63,7 @@ std::optional<PartIndex> part_index(const GltfModel& gltf, std::string_view part
 
 PartIndex find_part(const GltfModel& gltf, const std::string& part) {
   if (const std::optional<PartIndex> index = part_index(gltf, part)) return *index;
-  throw bad_file(gltf.path,
-                 part.empty() ? "which part of the asset is meant is not said" : "has no such part",
+  throw bad_file(gltf.path, part.empty() ? "requires a part of the asset" : "has no such part",
                  "\"part\" as \"mesh/primitive\": " + known_parts(gltf), '"' + part + '"');
 }
 
@@ -105,7 +104,7 @@ class TriangleList {
       part.triangles.push_back({indices_[i], indices_[i + 1], indices_[i + 2]});
     if (const std::size_t rest = indices_.size() % 3; rest > 0)
       part.warnings.push_back(gltf_.path + ": " + place_ + ": the last " + std::to_string(rest) +
-                              " corners make no triangle and are left out");
+                              " corners form no triangle and are ignored");
   }
 
   /// Every other triangle of a strip is wound the other way.
@@ -133,8 +132,8 @@ void check_positions(const GltfModel& gltf, std::uint32_t accessor, const std::v
       continue;
     char got[160];
     std::snprintf(got, sizeof got, "(%g, %g, %g)", p.x, p.y, p.z);
-    fail_at(gltf.path, record_name("accessors", accessor), "element " + std::to_string(i) + " is no place",
-            "finite coordinates below 1e18", got);
+    fail_at(gltf.path, record_name("accessors", accessor),
+            "element " + std::to_string(i) + " is not a position", "finite coordinates below 1e18", got);
   }
 }
 
@@ -143,7 +142,7 @@ void check_count(const GltfModel& gltf, std::uint32_t accessor, std::size_t coun
                  const char* what) {
   if (count != part.positions.size())
     fail_at(gltf.path, record_name("accessors", accessor),
-            std::string("has a ") + what + " too many or too few",
+            std::string("has the wrong number of ") + what + "s",
             std::to_string(part.positions.size()) + ", as there are positions", std::to_string(count));
 }
 
@@ -182,7 +181,7 @@ void read_tangents(const GltfModel& gltf, const GltfPrimitive& primitive, GltfPa
   }
 }
 
-/// Linear; its opacity is left out.
+/// Linear; its opacity is ignored.
 void read_colors(const GltfModel& gltf, const GltfPrimitive& primitive, GltfPart& part) {
   const auto found = primitive.attributes.find("COLOR_0");
   if (found == primitive.attributes.end()) return;

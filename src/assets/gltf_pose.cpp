@@ -38,7 +38,7 @@ std::vector<Vec3d> target_vectors(const GltfModel& gltf, const GltfAttributes& t
   std::vector<Vec3d> vectors = read_vectors(gltf, found->second);
   if (vectors.size() != vertices)
     fail_at(gltf.path, record_name("accessors", found->second),
-            std::string("has a morphed ") + name + " too many or too few",
+            std::string("has the wrong number of vectors for the morph target ") + name,
             std::to_string(vertices) + ", as there are positions", std::to_string(vectors.size()));
   return vectors;
 }
@@ -73,7 +73,7 @@ std::vector<Transform> joint_matrices(const GltfModel& gltf, std::size_t skin_in
   const std::uint32_t bind = skin.index("inverseBindMatrices");
   if (joints.empty()) skin.fail("joints", "is empty", "the nodes that move the mesh");
   if (bind != kNoRecord && bind >= gltf.accessors.size())
-    skin.fail("inverseBindMatrices", "points at nothing", "one of the accessors", std::to_string(bind));
+    skin.fail("inverseBindMatrices", "refers to nothing", "one of the accessors", std::to_string(bind));
   std::vector<Transform> inverse(joints.size());
   if (bind != kNoRecord) inverse = read_matrices(gltf, bind);
   if (inverse.size() < joints.size())
@@ -82,7 +82,7 @@ std::vector<Transform> joint_matrices(const GltfModel& gltf, std::size_t skin_in
   std::vector<Transform> matrices;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     if (joints[j] >= gltf.nodes.size())
-      skin.fail("joints", "points at nothing", "below " + std::to_string(gltf.nodes.size()),
+      skin.fail("joints", "refers to nothing", "below " + std::to_string(gltf.nodes.size()),
                 std::to_string(joints[j]));
     matrices.push_back(compose(node_to_world(gltf, joints[j]), inverse[j]));
   }
@@ -124,7 +124,7 @@ class SkinBlend {
   /// A weighted mean at each vertex; one without weights follows its first joint.
   /// out   uneven: how many have weights that do not sum to 1
   std::vector<Transform> run(std::size_t& uneven) {
-    constexpr double kRounding = .01;  // of weights in bytes
+    constexpr double kRounding = .01;  // rounding of weights in bytes
     for (std::size_t i = 0; i < blended_.size(); ++i) {
       if (std::abs(sums_[i] - 1) > kRounding) ++uneven;
       Transform mean = kZero;
@@ -147,7 +147,7 @@ class SkinBlend {
   std::vector<std::array<double, 4>> read(std::uint32_t index) const {
     std::vector<std::array<double, 4>> all = read_quadruples(gltf_, index);
     if (all.size() != blended_.size())
-      fail_at(gltf_.path, record_name("accessors", index), "has a vertex of the skin too many or too few",
+      fail_at(gltf_.path, record_name("accessors", index), "has the wrong number of vertices for the skin",
               std::to_string(blended_.size()) + ", as there are positions", std::to_string(all.size()));
     return all;
   }

@@ -17,7 +17,7 @@ bool is_posed(const GltfModel& gltf, std::size_t node, const GltfPrimitive& prim
 /// is skinned.
 /// in    place: of the primitive, for errors; part: as the mesh has it, without triangles
 /// out   whether joints mirror most vertices: triangles then face inwards
-/// error Error{bad_input} naming the accessor: a joint that is not there, weights below 0, too many or too few of either
+/// error Error{bad_input} naming the accessor: a joint that is not there, weights below 0, the wrong number of either
 bool pose(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive, const std::string& place,
           GltfPart& part);
 

@@ -21,7 +21,7 @@ std::size_t image_of(const GltfModel& gltf, std::size_t texture) {
   const GltfRecord record = gltf.record("textures", texture);
   const std::uint32_t image = record.index("source");
   if (image == kNoRecord)
-    fail_at(gltf.path, record.place(), "has no image that is read", "a source, PNG or JPEG");
+    fail_at(gltf.path, record.place(), "has no supported image", "a source, PNG or JPEG");
   return image;
 }
 
@@ -31,7 +31,7 @@ NamedFile file_of(const GltfModel& gltf, const GltfRecord& image) {
   if (uri.empty() || is_data_uri(uri)) return {};
   const std::string name = decoded_uri(uri);
   NamedFile file = find_named_file(name, gltf.path, std::filesystem::path(gltf.path).parent_path());
-  if (file.path.empty()) image.fail("uri", "names no such file", "a file in the asset's folder", name);
+  if (file.path.empty()) image.fail("uri", "refers to a missing file", "a file in the asset's folder", name);
   return file;
 }
 
@@ -39,7 +39,7 @@ std::string view_bytes(const GltfModel& gltf, const GltfRecord& image) {
   if (!image.has("bufferView")) fail_at(gltf.path, image.place(), "has no data", "a uri or a bufferView");
   const std::uint32_t view = image.index("bufferView");
   if (view >= gltf.views.size())
-    image.fail("bufferView", "points at nothing", "below " + std::to_string(gltf.views.size()),
+    image.fail("bufferView", "refers to nothing", "below " + std::to_string(gltf.views.size()),
                std::to_string(view));
   return std::string(bytes_of(gltf, gltf.views[view]));
 }
@@ -60,7 +60,7 @@ void check_image(const GltfModel& gltf, std::size_t index) {
   std::string start = image.bytes.substr(0, 8);
   if (!image.path.empty()) start = InputFile(image.path).read(0, 8);
   if (!start.starts_with("\x89PNG") && !start.starts_with("\xff\xd8\xff"))
-    fail_at(gltf.path, record_name("images", index), "is no picture that is read", "PNG or JPEG");
+    fail_at(gltf.path, record_name("images", index), "is not a supported image", "PNG or JPEG");
 }
 
 Json pair_json(const GltfRecord& transform, const char* key, double otherwise) {
@@ -83,7 +83,7 @@ Json texture_json(const GltfModel& gltf, const GltfRecord& info, const std::stri
   const std::size_t uv_set = transform.size("texCoord", info.size("texCoord", 0)),
                     texture = info.index("index");
   if (uv_set != 0)
-    fail_at(gltf.path, record_name("textures", texture), "is laid by another set of UVs", "TEXCOORD_0",
+    fail_at(gltf.path, record_name("textures", texture), "uses another set of UVs", "TEXCOORD_0",
             "TEXCOORD_" + std::to_string(uv_set));
   const std::size_t image = image_of(gltf, texture);
   check_image(gltf, image);

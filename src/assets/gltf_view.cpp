@@ -10,7 +10,7 @@ namespace opaline {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr int kLongerSide = 512;  // of the picture, pixels
+constexpr int kLongerSide = 512;  // longer side of the picture, pixels
 
 std::string label_of(const char* kind, const std::string& name, std::size_t index) {
   return name.empty() ? record_name(kind, index)
@@ -49,7 +49,7 @@ class LightTranslator {
   void run(const std::string& name, const std::string& label) {
     const Vec3d brightness = color() * intensity_;
     if (!(intensity_ >= 0 && luminance(brightness) <= 1e20))
-      light_.fail("intensity", "is no brightness", "a color and an intensity from 0",
+      light_.fail("intensity", "is not a brightness", "a color and an intensity from 0",
                   fmt::format("{}", intensity_));
     const bool has_place = type_ == "point" || type_ == "spot";
     if (!has_place && type_ != "directional")
@@ -75,7 +75,7 @@ class LightTranslator {
     const std::vector<double> c = light_.numbers("color", 3);
     if (c.empty()) return Vec3d(1);
     if (std::ranges::any_of(c, [](double v) { return !(v >= 0); }))
-      light_.fail("color", "is no colour", "three numbers from 0");
+      light_.fail("color", "is not a colour", "three numbers from 0");
     return {c[0], c[1], c[2]};
   }
 
@@ -88,15 +88,14 @@ class LightTranslator {
     if (inner > kHardRim * outer && inner <= (1 + kRounding) * outer) inner = kHardRim * outer;
     if (!(outer > 0 && outer <= 90 && inner >= 0 && inner < outer)) {
       scene_.not_carried.push_back(
-          label +
-          fmt::format(": cone angles of {:.4g} and {:.4g} degrees; 0 and 45 are taken", inner, outer));
+          label + fmt::format(": cone angles of {:.4g} and {:.4g} degrees; uses 0 and 45", inner, outer));
       outer = 45, inner = 0;
     }
     json["outer_angle"] = outer;
     json["inner_angle"] = inner;
   }
 
-  /// Of a light within the asset as from its surface.
+  /// At center of a light within the asset as from its surface.
   double at_center(const Vec3d& brightness, bool has_place) const {
     if (!has_place) return luminance(brightness);
     const double distance = std::max(length(to_world_.translation - scene_.center), scene_.radius);
@@ -121,12 +120,12 @@ void add_camera(const GltfModel& gltf, std::size_t node, const Transform& to_wor
   const double view = perspective.number("yfov", 0) * kDegrees;
   const Vec3d up = normalized(to_world.y);
   if (!scene.camera.is_null())
-    scene.not_carried.push_back(label + ": the scene has one already");
+    scene.not_carried.push_back(label + ": ignored, the scene already has one");
   else if (camera.text("type") != "perspective")
-    scene.not_carried.push_back(label + ": it is orthographic");
+    scene.not_carried.push_back(label + ": ignored, it is orthographic");
   else if (!(view > 0 && view < 180) || length(cross(forward(to_world), up)) < 1e-6)
-    scene.not_carried.push_back(label +
-                                fmt::format(": its angle of {:.4g} degrees or its node is of no use", view));
+    scene.not_carried.push_back(
+        label + fmt::format(": ignored, its angle of {:.4g} degrees or its node is invalid", view));
   else {
     const double distance = std::max(length(scene.center - to_world.translation), scene.radius);
     scene.camera = {{"position", triple_json(to_world.translation)},

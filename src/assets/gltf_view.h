@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a glTF node's camera and light become.
+// Conversion of the camera and the light of a glTF node.
 #pragma once
 
 #include "assets/asset_scene.h"
@@ -13,7 +13,7 @@ void add_camera(const GltfModel& gltf, std::size_t node, const Transform& to_wor
 
 /// The light of KHR_lights_punctual at a node, where it has one.
 /// in    scene: its center and radius are known
-/// error Error{bad_input} at a reference to nothing or a value that is no brightness
+/// error Error{bad_input} at a reference to nothing or a value that is not a brightness
 void add_light(const GltfModel& gltf, std::size_t node, const Transform& to_world, UniqueNames& names,
                AssetScene& scene);
 

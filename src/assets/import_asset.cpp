@@ -42,7 +42,7 @@ std::string summary_of(const AssetScene& scene, bool own_camera, bool own_lights
   constexpr std::size_t kMostNamed = 4;
   const std::vector<std::string>& lost = scene.not_carried;
   for (std::size_t i = 0; i < std::min(kMostNamed, lost.size()); ++i)
-    text += (i == 0 ? "; not carried over: " : ", ") + lost[i];
+    text += (i == 0 ? "; not imported: " : ", ") + lost[i];
   if (lost.size() > kMostNamed) text += fmt::format(" and {} more", lost.size() - kMostNamed);
   return text;
 }
@@ -52,7 +52,7 @@ void check_extent(const std::string& path, const AssetScene& scene) {
   constexpr double limit = 1e15;
   const double farthest = max_component(component_max(scene.center, -scene.center)) + scene.radius;
   if (!(farthest < limit))
-    throw bad_file(path, "reaches too far out", fmt::format("coordinates below {:.0e}", limit),
+    throw bad_file(path, "extends too far from the origin", fmt::format("coordinates below {:.0e}", limit),
                    fmt::format("{:.3g}", farthest));
 }
 

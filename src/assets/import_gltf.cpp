@@ -36,14 +36,14 @@ class NodeWalk {
   std::vector<PlacedNode> run(const std::vector<std::uint32_t>& roots) {
     push(roots, 1);
     std::vector<PlacedNode> placed;
-    std::vector<Transform> above{Transform{}};  // of the nodes from the world down to the next one
+    std::vector<Transform> above{Transform{}};  // transforms of the nodes from the world to the current one
     while (!open_.empty()) {
       const auto [index, depth] = open_.back();
       open_.pop_back();
       above.resize(depth);
       above.push_back(compose(above.back(), gltf_.nodes[index].to_parent()));
       if (!is_finite(above.back()))
-        fail_at(gltf_.path, record_name("nodes", index), "is placed beyond all numbers");
+        fail_at(gltf_.path, record_name("nodes", index), "has a position that is not finite");
       const GltfNode& node = gltf_.nodes[index];
       if (node.mesh != kNoRecord || node.camera != kNoRecord || node.light != kNoRecord)
         placed.push_back({index, 0, above.back()});
@@ -84,7 +84,8 @@ class GltfImporter {
     const std::vector<PlacedNode> nodes = NodeWalk(gltf_).run(roots());
     for (const PlacedNode& node : nodes) add_meshes(node);
     if (scene_.shapes.empty())
-      throw bad_file(gltf_.path, "shows nothing", "a scene with a node that has a mesh of triangles",
+      throw bad_file(gltf_.path, "contains no visible mesh",
+                     "a scene with a node that has a mesh of triangles",
                      scene_.warnings.empty() ? "" : scene_.not_carried.back());
     enclose(scene_, [&](const auto& visit) { for_each_point(visit); });
     for (const PlacedNode& node : nodes) add_camera(gltf_, node.index, node.to_world, scene_);
@@ -99,12 +100,12 @@ class GltfImporter {
     Transform to_world;
   };
 
-  /// Of the default scene, or the first; without scenes all nodes that are no other's child.
+  /// Roots of the default scene, or the first; without scenes all nodes without a parent.
   std::vector<std::uint32_t> roots() {
     if (!gltf_.scenes.empty()) {
       const std::size_t chosen = gltf_.scene == kNoRecord ? 0 : gltf_.scene;
       if (gltf_.scenes.size() > 1)
-        scene_.not_carried.push_back(fmt::format("{} of its {} scenes: {} is taken", gltf_.scenes.size() - 1,
+        scene_.not_carried.push_back(fmt::format("{} of its {} scenes: uses {}", gltf_.scenes.size() - 1,
                                                  gltf_.scenes.size(), record_name("scenes", chosen)));
       return gltf_.scenes[chosen];
     }
@@ -142,9 +143,8 @@ class GltfImporter {
                 std::to_string(gltf_.accessors[attribute->second].count));
       const auto values = read(gltf_, attribute->second);
       if (!all.empty() && values.size() != all.size())
-        fail_at(gltf_.path, record_name("accessors", attribute->second),
-                "has an instance too many or too few", std::to_string(all.size()),
-                std::to_string(values.size()));
+        fail_at(gltf_.path, record_name("accessors", attribute->second), "has the wrong number of instances",
+                std::to_string(all.size()), std::to_string(values.size()));
       all.resize(values.size());
       for (std::size_t i = 0; i < values.size(); ++i) use(all[i], values[i]);
     };
@@ -171,7 +171,7 @@ class GltfImporter {
     const Transform t = skinned ? Transform{} : placed.to_world;
     if (!(std::abs(dot(normalized(t.x), cross(normalized(t.y), normalized(t.z)))) > 1e-12)) {
       if (const std::string lost =
-              label + ": its transform flattens the mesh, which is left out" + zero_scale_text(placed.index);
+              label + ": its transform is singular; the mesh is ignored" + zero_scale_text(placed.index);
           !is_told(lost))
         scene_.warn(gltf_.path, lost);
       return;
@@ -276,7 +276,8 @@ class GltfImporter {
 
   void tell_losses() {
     if (gltf_.animations > 0)
-      scene_.not_carried.push_back(fmt::format("animations ({}): the asset stands still", gltf_.animations));
+      scene_.not_carried.push_back(
+          fmt::format("animations ({}): ignored; the asset is static", gltf_.animations));
     constexpr std::array<std::string_view, 4> read{"KHR_lights_punctual", "KHR_mesh_quantization",
                                                    "KHR_texture_transform", "EXT_mesh_gpu_instancing"};
     const std::set<std::string> required(gltf_.extensions_required.begin(), gltf_.extensions_required.end());

@@ -12,7 +12,7 @@ namespace opaline {
 
 AssetScene import_mesh(const std::string& path, const std::string& mesh_path) {
   const SourceMesh mesh = read_mesh(path);
-  if (mesh.triangles.empty()) throw bad_file(path, "shows nothing", "a mesh with faces");
+  if (mesh.triangles.empty()) throw bad_file(path, "contains no visible mesh", "a mesh with faces");
   AssetScene scene;
   enclose(scene, [&](const auto& visit) {
     for (const auto& triangle : mesh.triangles)
@@ -21,7 +21,7 @@ AssetScene import_mesh(const std::string& path, const std::string& mesh_path) {
   const std::filesystem::path file(path);
   std::string format = file.extension().string().substr(1);
   for (char& c : format) c = char(std::toupper(static_cast<unsigned char>(c)));
-  scene.translated.push_back(format + " has no unit: lengths are taken for millimetres");
+  scene.translated.push_back(format + " has no unit: lengths are read as millimetres");
   scene.has_vertex_colors = !mesh.colors.empty();
   Json shape{{"name", file.stem().string()}, {"file", mesh_path}};
   if (scene.has_vertex_colors) {

@@ -55,7 +55,7 @@ struct NamedFiles {
   std::size_t line = 0;
 };
 
-/// What an OBJ file says beside its faces.
+/// Statements of an OBJ file besides its faces.
 struct ObjOutline {
   bool has_uvs = false, has_colors = false;
   std::vector<Vec3d> vertices;
@@ -95,12 +95,12 @@ class ObjImporter {
 
   AssetScene run() {
     const ObjOutline outline = read_outline(read_asset_text(path_));
-    if (outline.materials.empty()) throw bad_file(path_, "shows nothing", "a mesh with faces");
+    if (outline.materials.empty()) throw bad_file(path_, "contains no visible mesh", "a mesh with faces");
     enclose(scene_, [&](const auto& visit) { std::ranges::for_each(outline.vertices, visit); });
     scene_.is_one_mesh = true;
     has_uvs_ = outline.has_uvs;
     scene_.has_vertex_colors = outline.has_colors;
-    scene_.translated.push_back("OBJ has no unit: lengths are taken for millimetres");
+    scene_.translated.push_back("OBJ has no unit: lengths are read as millimetres");
     for (const NamedFiles& library : outline.libraries) read_libraries(library);
     for (const std::string& material : outline.materials) add_shape(material);
     return std::move(scene_);
@@ -108,7 +108,7 @@ class ObjImporter {
 
  private:
   struct Bump {
-    std::string key, keyword;  ///< of the shape, of the library
+    std::string key, keyword;  ///< key of the shape, keyword of the library
     Json texture;
   };
 
@@ -157,8 +157,7 @@ class ObjImporter {
     const MtlLibrary library = read_mtl_library(path, read_asset_text(path));
     for (const MtlStatement& statement : library.unassigned)
       warn(path, statement.line,
-           "the statement " + in_quotes(statement.keyword) +
-               " stands before the first newmtl and is not used");
+           "the statement " + in_quotes(statement.keyword) + " precedes the first newmtl and is ignored");
     for (const MtlMaterial& material : library.materials) {
       const auto [known, is_new] = materials_.try_emplace(material.name, material);
       if (is_new) continue;
@@ -195,7 +194,7 @@ class ObjImporter {
       else if (use == MtlUse::unknown)
         warn(material.file, statement.line,
              "the statement " + in_quotes(statement.keyword) + " of material " + in_quotes(material.name) +
-                 " is unknown and not used" + mtl_suggestion(statement.keyword));
+                 " is unknown and ignored" + mtl_suggestion(statement.keyword));
     }
     return surface;
   }
@@ -221,7 +220,7 @@ class ObjImporter {
       return {};
     }
     for (const std::string& option : texture.not_carried)
-      warn(material.file, statement.line, label + ": the option " + in_quotes(option) + " is left out");
+      warn(material.file, statement.line, label + ": the option " + in_quotes(option) + " is ignored");
     Json json{{"texture", scene_name_of(file, path_, mesh_path_)}};
     const auto& [scale_u, scale_v] = texture.scale;
     const std::array<double, 2> offset{texture.offset[0], 1 - scale_v - texture.offset[1]};
@@ -283,7 +282,7 @@ class ObjImporter {
     if (surface.bump) add_bump(material, *surface.bump);
     if (!surface.unused.empty())
       scene_.not_carried.push_back("material " + in_quotes(material) + ": " + in_a_row(surface.unused) +
-                                   (surface.unused.size() == 1 ? " is" : " are") + " not used");
+                                   (surface.unused.size() == 1 ? " is" : " are") + " ignored");
   }
 
   void add_bump(const std::string& material, const Bump& bump) {
@@ -319,7 +318,7 @@ class ObjImporter {
       scene_.translated.push_back(
           fmt::format("{}: Kd -> reflectance {} (opaque)", label, short_triple(reflectance)));
     else if (material != kNoMaterial)
-      scene_.not_carried.push_back(label + ": no library has it; taken as grey");
+      scene_.not_carried.push_back(label + ": not found in any library; uses grey");
     return triple_json(reflectance);
   }
 

@@ -23,13 +23,13 @@ namespace {
 
 constexpr double kMostSpecularAnisotropy = .98, kMostAnisotropy = .99, kLeastIor = .1, kMostIor = 10;
 
-/// What a surface model calls its values, and those it has where nothing is given.
+/// Input names of a surface model, and their default values.
 struct SurfaceModel {
   const char *node, *base_weight, *base_color, *weight, *color, *radius, *scale, *anisotropy, *ior,
       *metalness, *specular_weight, *specular_anisotropy, *normal;
   Vec3d default_color, default_scale;
   double default_roughness;
-  bool has_rotation;  ///< of the anisotropy, in turns
+  bool has_rotation;  ///< has rotation of the anisotropy, in turns
 };
 
 // OpenPBR 1.1; Autodesk Standard Surface 1.0.1.
@@ -120,7 +120,7 @@ class SurfaceReader {
                                             heights.file, heights.scale * scene_.mm_per_unit));
   }
 
-  /// Of OpenPBR the keys' own meaning. Standard Surface divides and multiplies alpha by the root of the alphas' ratio.
+  /// Add grain of OpenPBR the keys' own meaning. Standard Surface divides and multiplies alpha by the root of the alphas' ratio.
   /// Returns the roughness beside it.
   double add_grain(Json& keys) {
     const double roughness = number("specular_roughness", model_.default_roughness, 0, 1);
@@ -185,7 +185,7 @@ class SurfaceReader {
     const pugi::xml_node found = input(name);
     if (!found) return {};
     if (!found.attribute("value")) {
-      scene_.not_carried.push_back(label_ + ": what " + name + " is connected to: its default is taken");
+      scene_.not_carried.push_back(label_ + ": connection of " + name + ": ignored, uses the default");
       return {};
     }
     std::vector<double> values;
@@ -304,10 +304,10 @@ SurfaceTranslation translate_materialx(const std::string& file_and_name, const A
     const auto line =
         1 + std::count(bytes.begin(),
                        bytes.begin() + std::min<std::ptrdiff_t>(result.offset, std::ssize(bytes)), '\n');
-    throw Error(ErrorKind::bad_input, file, int(line), 0, std::string("is no XML: ") + result.description());
+    throw Error(ErrorKind::bad_input, file, int(line), 0, std::string("is not XML: ") + result.description());
   }
   const pugi::xml_node root = document.child("materialx");
-  if (!root) throw bad_file(file, "is no MaterialX file", "the element materialx");
+  if (!root) throw bad_file(file, "is not a MaterialX file", "the element materialx");
   const pugi::xml_node surface = find_surface(root, name);
   if (const std::string version = old_version(root); !surface && !version.empty())
     throw bad_file(file, version + " syntax; save it as 1.38");

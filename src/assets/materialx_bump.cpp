@@ -60,20 +60,20 @@ HeightMap height_map(const pugi::xml_node& normal) {
   if (bump.name() != std::string_view("bump")) return none("it is connected to no bump node");
   const Node image = source_of(input_of(bump, "height"));
   const bool is_tiled = image.name() == std::string_view("tiledimage");
-  if (!is_tiled && image.name() != std::string_view("image")) return none("its heights are no image");
+  if (!is_tiled && image.name() != std::string_view("image")) return none("its heights are not an image");
   if (source_of(input_of(bump, "normal"))) return none("its bump is around another normal");
   const Node coordinates = source_of(input_of(image, "texcoord"));
   if (coordinates && coordinates.name() != std::string_view("texcoord"))
-    return none("its image is laid by other coordinates than the mesh's");
+    return none("its image uses other coordinates than those of the mesh");
   HeightMap map{.file = file_of(image), .problem = "its image has no file"};
   std::array<double, 1> scale{1};
   if (const Node given = input_of(bump, "scale"); given && !(read_numbers(given, scale) && scale[0] >= 0))
-    return none("the scale of its bump is no number of 0 or more");
+    return none("the scale of its bump is not a number of at least 0");
   map.scale = scale[0];
   for (const char* other : {"uvoffset", "realworldimagesize", "realworldtilesize"})
     if (is_tiled && input_of(image, other)) return none(std::string("its image has a ") + other);
   if (const Node given = input_of(image, "uvtiling"); is_tiled && given && !read_numbers(given, map.tiling))
-    return none("the tiling of its image is no pair of numbers");
+    return none("the tiling of its image is not a pair of numbers");
   return map;
 }
 

@@ -16,7 +16,7 @@ struct HeightMap {
   std::string problem;  ///< why there is none
 };
 
-/// What a surface's normal is connected to: bump, of an image or a tiledimage.
+/// Height map of the bump node that drives a surface's normal, from an image or a tiledimage.
 /// in    normal: an input
 HeightMap height_map(const pugi::xml_node& normal);
 

@@ -104,19 +104,18 @@ MtlColor read_mtl_color(std::string_view text) {
   std::vector<double> numbers;
   for (std::string_view word = next_word(text); !word.empty() && word[0] != '#'; word = next_word(text)) {
     const std::optional<double> number = number_of(word);
-    if (!number) return {{}, "is not a colour of one or three numbers from 0 to 1 and is not used"};
+    if (!number) return {{}, "is not a colour of one or three numbers from 0 to 1 and is ignored"};
     numbers.push_back(*number);
   }
   if (numbers.size() != 1 && numbers.size() != 3)
-    return {{},
-            fmt::format("has {} numbers where a colour has one or three, and is not used", numbers.size())};
+    return {{}, fmt::format("has {} numbers instead of one or three and is ignored", numbers.size())};
   const Vec3d given = numbers.size() == 1 ? Vec3d(numbers[0]) : Vec3d(numbers[0], numbers[1], numbers[2]);
   const Vec3d value = component_min(component_max(given, Vec3d(0)), Vec3d(1));
   if (value == given) return {value, {}};
   if (max_component(given) <= 1) return {value, "is below 0 and is clamped to " + rounded(value)};
   std::string complaint = "is above 1 and is clamped to " + rounded(value);
   if (may_count_to_255(given) && max_component(given) > 2)
-    complaint += "; the scale seems to end at 255: for a scale of 0 to 1, write " + rounded(given / 255.);
+    complaint += "; the values seem to range to 255: for a range of 0 to 1, write " + rounded(given / 255.);
   return {value, complaint};
 }
 

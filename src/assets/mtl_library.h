@@ -21,7 +21,7 @@ struct MtlStatement {
 
 struct MtlMaterial {
   std::string name, file;
-  std::size_t line = 0;  ///< of its newmtl
+  std::size_t line = 0;  ///< line of its newmtl
   std::vector<MtlStatement> statements;
 };
 
@@ -53,7 +53,7 @@ std::string mtl_suggestion(const std::string& keyword);
 /// A colour between 0 and 1. One number stands for all three.
 /// from  Wavefront, MTL material format 4.2: "the g and b are optional; if only r is specified, g and b equal r"
 struct MtlColor {
-  std::optional<Vec3d> value;  ///< none: the text is no colour
+  std::optional<Vec3d> value;  ///< none: the text is not a colour
   std::string complaint;       ///< about the text, a verb phrase; empty: none
 };
 MtlColor read_mtl_color(std::string_view text);

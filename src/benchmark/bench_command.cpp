@@ -41,7 +41,7 @@ std::string reference_folder(const BenchArguments& arguments, const BenchFolder&
                  : report.file("references");
   std::error_code failure;
   fs::create_directories(folder, failure);
-  if (failure) throw run_failed(folder, "cannot make the folder of references: " + failure.message());
+  if (failure) throw run_failed(folder, "cannot create the folder of references: " + failure.message());
   return folder;
 }
 
@@ -49,7 +49,7 @@ std::vector<BenchScene> open_scenes(const BenchArguments& arguments, const Bench
                                     Monitor& monitor) {
   std::set<std::string> seen, names;
   for (const std::string& file : arguments.scenes)
-    if (!seen.insert(file).second) throw bad_file(file, "the scene is given twice");
+    if (!seen.insert(file).second) throw bad_file(file, "the same scene is given twice");
   std::vector<BenchScene> scenes;
   for (const std::string& file : arguments.scenes) {
     for (BenchScene& scene : open_bench_scenes(arguments, file, monitor)) {
@@ -83,7 +83,7 @@ void add_notes(const BenchArguments& arguments, const std::vector<BenchScene>& s
   notes.emplace_back("command", "opaline" + arguments.command_line);
   notes.emplace_back("threads", std::to_string(arguments.threads));
   notes.emplace_back("repeats", std::to_string(arguments.repeats));
-  if (kept > 0) notes.emplace_back("kept", fmt::format("{} runs from before, in this folder", kept));
+  if (kept > 0) notes.emplace_back("kept", fmt::format("{} reused runs from this folder", kept));
   for (const BenchScene& scene : scenes) {
     const BenchReference& reference = scene.reference;
     notes.emplace_back("scene", fmt::format("{}, {} x {} pixels, {} a pixel, seed {}, of direct {}", scene.id,
@@ -97,7 +97,7 @@ void add_notes(const BenchArguments& arguments, const std::vector<BenchScene>& s
   for (auto& [key, value] : notes) std::ranges::replace(value, '\n', ' ');
 }
 
-/// What an earlier benchmark found; read before the work.
+/// Results of an earlier benchmark; read before the work.
 std::vector<WatchedRung> read_before(const BenchArguments& arguments) {
   if (arguments.against.empty()) return {};
   return parse_results(InputFile(arguments.against).read_all(), arguments.against);
@@ -125,7 +125,7 @@ int verdict(const BenchArguments& arguments, const std::vector<WatchedRung>& bef
   if (!arguments.against.empty()) {
     const Regression regression = compare_results(before, watched_rungs(report));
     if (regression.compared == 0)
-      throw bad_file(arguments.against, "has no rung in common with this benchmark",
+      throw bad_file(arguments.against, "has no setting in common with this benchmark",
                      "the same scenes, settings and resolution");
     print_regression(regression, arguments.against);
     if (std::ranges::any_of(regression.changes, &Change::is_worse)) code = kWorse;
@@ -134,8 +134,8 @@ int verdict(const BenchArguments& arguments, const std::vector<WatchedRung>& bef
       std::ranges::count_if(report.rows, [](const BenchRow& row) { return !row.failure.empty(); }) +
       std::ranges::count_if(report.budget, [](const BudgetRow& row) { return !row.failure.empty(); });
   if (failed > 0) {
-    write_line(stderr, fmt::format("opaline: error: {} of {} rungs failed; their rows say why", failed,
-                                   report.rows.size() + report.budget.size()));
+    write_line(stderr, fmt::format("opaline: error: {} of {} runs failed; their rows state the reason",
+                                   failed, report.rows.size() + report.budget.size()));
     code = int(ErrorKind::run_failed);
   }
   return code;
@@ -144,7 +144,7 @@ int verdict(const BenchArguments& arguments, const std::vector<WatchedRung>& bef
 int run_bench(const BenchArguments& arguments) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not cost the CSV
   const std::vector<WatchedRung> before = read_before(arguments);
-  if (!arguments.csv.empty()) AtomicFile(arguments.csv);  // what cannot be written is said before the work
+  if (!arguments.csv.empty()) AtomicFile(arguments.csv);  // reports an unwritable file before the work
   const BenchFolder folder(arguments.report);
   Monitor monitor;
   const InterruptHandler interrupt(monitor);
@@ -176,9 +176,9 @@ int bench_command(const BenchArguments& arguments) {
     const bool keeps_references = !arguments.csv.empty() || !arguments.reference_dir.empty();
     throw Error(ErrorKind::interrupted, {}, 0, 0,
                 !arguments.report.empty()
-                    ? "interrupted; references and runs so far are kept, and the same command goes on"
+                    ? "interrupted; finished references and runs are stored; repeat the command to continue"
                 : keeps_references
-                    ? "interrupted; references so far are kept, and the same command goes on with them"
+                    ? "interrupted; finished references are stored; repeat the command to continue"
                     : "interrupted");
   }
 }

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 void make_folder(const std::string& path) {
   std::error_code failure;
   fs::create_directories(path, failure);
-  if (failure) throw run_failed(path, "cannot make the folder: " + failure.message());
+  if (failure) throw run_failed(path, "cannot create the folder: " + failure.message());
 }
 
 Json key_of(const KeptRun& run) {
@@ -51,7 +51,7 @@ std::optional<OwnChild> recall(const BenchFolder& folder, const KeptRun& run) {
 
 void record(const BenchFolder& folder, const KeptRun& run, const OwnChild& child) {
   const Json* done = child.event("done");
-  if (done == nullptr) throw run_failed("", "a child process did not say what it did");
+  if (done == nullptr) throw run_failed("", "a child process returned no result");
   const Json record{{"run", key_of(run)},
                     {"cost",
                      {{"user_seconds", child.cost.user_seconds},
@@ -67,11 +67,11 @@ void record(const BenchFolder& folder, const KeptRun& run, const OwnChild& child
 BenchFolder::BenchFolder(const std::string& report) : path_(report), temporary_(report.empty()) {
   if (temporary_) {
     path_ = (fs::temp_directory_path() / "opaline-bench-XXXXXX").string();
-    if (::mkdtemp(path_.data()) == nullptr) throw run_failed(path_, "cannot make a temporary folder");
+    if (::mkdtemp(path_.data()) == nullptr) throw run_failed(path_, "cannot create a temporary folder");
   }
   make_folder(file("pictures"));
   make_folder(file("runs"));
-  check_page_file(file("index.html"));  // what cannot be written at the end is said before the work
+  check_page_file(file("index.html"));  // reports an unwritable file before the work
   AtomicFile(file("runs/check"));
   AtomicFile(file("pictures/check"));
 }

@@ -30,9 +30,9 @@ class BenchFolder {
 
 /// A render that leaves a picture.
 struct KeptRun {
-  std::string name;                    ///< of its record in runs/
+  std::string name;                    ///< name of its record in runs/
   std::string picture;                 ///< within the folder
-  std::string scene_key;               ///< of what is rendered
+  std::string scene_key;               ///< scene key of what is rendered
   std::vector<std::string> arguments;  ///< without the picture
 };
 

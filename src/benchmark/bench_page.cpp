@@ -18,7 +18,7 @@ namespace opaline {
 namespace {
 
 constexpr double kTarget = .01;
-constexpr std::size_t kColumns = 5;  // of the tables of targets
+constexpr std::size_t kColumns = 5;  // columns of the tables of targets
 
 Json estimate_json(const Estimate& estimate) {
   constexpr std::array<const char*, 4> kinds{"none", "interpolated", "extrapolated", "at_most"};
@@ -58,7 +58,7 @@ void add_trade(const std::vector<TradeSeries>& series, Json& scene) {
   for (const TradeSeries& one : series) points.insert(points.end(), one.points.begin(), one.points.end());
   const std::vector<std::size_t> front = pareto_front(points);
   scene["series"] = scene["cpu_to_one_percent"] = Json::array();
-  std::size_t number = 0;  // of the point in all series
+  std::size_t number = 0;  // number of the point in all series
   for (const TradeSeries& one : series) {
     Json& json = scene["series"].emplace_back(Json{{"name", one.name}, {"method", one.method}});
     for (const TradePoint& point : one.points)

@@ -17,7 +17,7 @@ namespace opaline {
 void add_pictures(const BenchFolder& folder, const std::vector<BenchScene>& scenes,
                   const std::vector<BenchJob>& jobs, BenchReport& report);
 
-/// What each part of the error amounts to, over the pixels that show an object.
+/// Components of the error, over the pixels that show an object.
 std::vector<BudgetRow> budget_rows(const BenchFolder& folder, const std::vector<BudgetJob>& jobs);
 
 }  // namespace opaline

@@ -36,7 +36,7 @@ struct BenchRun {
   Cost job;  ///< the whole process
   std::array<std::optional<Cost>, kBenchStages.size()> stages;
   double samples = 0, queries = 0, entry_samples = 0;
-  double rays = 0, embree_seconds = 0;  ///< of the shading pass; CPU inside Embree alone for the same rays
+  double rays = 0, embree_seconds = 0;  ///< rays of the shading pass, and their CPU time inside Embree
 };
 
 struct CostSpread {
@@ -62,15 +62,15 @@ struct BenchRow {
   std::string picture;  ///< EXR beside the report, relative to its folder; empty: not kept
 };
 
-/// What the rows of a scene are measured on and against.
+/// Scene and reference of the rows.
 struct BenchSubject {
   std::string scene;      ///< as in the rows
-  std::string key;        ///< of what the scene's files and the bench's settings of it hold
+  std::string key;        ///< key of what the scene's files and the bench's settings of it hold
   std::string title;      ///< its name without folders
   std::string reference;  ///< in words
-  double half_noise = 0;  ///< of one half of the reference, rms, worst channel
+  double half_noise = 0;  ///< half noise of one half of the reference, rms, worst channel
   std::array<int, 2> resolution{};
-  std::string picture;    ///< of the reference, PNG; empty: not kept
+  std::string picture;    ///< image of the reference, PNG; empty: not stored
   bool is_truth = false;  ///< the reference is random walks, not `direct` on the same model
 };
 

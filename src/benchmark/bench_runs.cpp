@@ -37,7 +37,7 @@ void run_once(const BenchArguments& arguments, const BenchFolder& folder, BenchJ
 
 std::string outcome(const BenchJob& job, bool is_kept) {
   if (!job.failure.empty()) return "failed: " + job.failure;
-  return short_time(job.runs.back().job.wall_seconds) + (is_kept ? " (kept from before)" : "");
+  return short_time(job.runs.back().job.wall_seconds) + (is_kept ? " (reused)" : "");
 }
 
 /// Pictures of one scene by their overrides.
@@ -61,7 +61,7 @@ class PartPictures {
     write_line(stderr, fmt::format("bench: parts of the error: {} {}: {}{}", scene_.id, part.name,
                                    child.failure.empty() ? short_time(child.cost.wall_seconds)
                                                          : "failed: " + child.failure,
-                                   is_kept ? " (kept from before)" : ""));
+                                   is_kept ? " (reused)" : ""));
     if (child.failure.empty())
       done_[overrides] = picture;
     else

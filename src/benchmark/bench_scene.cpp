@@ -29,7 +29,7 @@ constexpr std::array<const char*, 2> kReferenceSeeds{"101", "102"};
 // Random walks end after a time that their noise decides: some ten seconds of CPU a half on a bunny in marble. On fewer
 // cells what they are smoothed over would be seen: of volume_diffusion's error 6.8 % in place of 3.2 % with 2000 cells.
 constexpr std::size_t kWalkedCells = 6000;
-constexpr double kWalkNoise = .2;  // of a cell
+constexpr double kWalkNoise = .2;  // walk noise of a cell
 
 void add_sets(std::vector<std::string>& arguments, const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides) arguments.insert(arguments.end(), {"--set", text});
@@ -39,7 +39,7 @@ void add_sets(std::vector<std::string>& arguments, const std::vector<std::string
 Json answer_of(const OwnChild& child, const std::string& event) {
   if (!child.failure.empty()) throw Error(ErrorKind(child.exit_code), {}, 0, 0, child.failure);
   const Json* answer = child.event(event);
-  if (answer == nullptr) throw run_failed("", "a child process did not say what it did");
+  if (answer == nullptr) throw run_failed("", "a child process returned no result");
   return *answer;
 }
 
@@ -89,19 +89,17 @@ HalfSettings half_settings(const BenchArguments& arguments, const BenchScene& sc
             fmt::format("direct, until {:.3g} %", 100 * arguments.reference_error)};
   return {{"settings.method=volume", fmt::format("settings.samples={}", cells)},
           kWalkNoise,
-          fmt::format(
-              "random walks on {} cells of the surface, until {:.3g} % of a cell; light that has left does "
-              "not enter again",
-              grouped(cells), 100 * kWalkNoise)};
+          fmt::format("random walks on {} surface cells, until {:.3g} % noise per cell; without re-entry",
+                      grouped(cells), 100 * kWalkNoise)};
 }
 
-/// What a half took, in words.
+/// Text of the samples and noise of a half.
 std::string told(const BenchReference& reference, const Json& done) {
   if (reference.cells == 0)
-    return fmt::format("{:.3g} % with {} entry samples a pixel", 100 * done.value("direct_noise", 0.0),
+    return fmt::format("{:.3g} % with {} entry samples per pixel", 100 * done.value("direct_noise", 0.0),
                        grouped(done.value("entry_samples", std::uint64_t{0})));
-  return fmt::format("{:.3g} % with {} walks a cell, channel and light", 100 * done.value("walk_noise", 0.0),
-                     grouped(done.value("walks", std::uint64_t{0})));
+  return fmt::format("{:.3g} % with {} walks per cell, channel and light",
+                     100 * done.value("walk_noise", 0.0), grouped(done.value("walks", std::uint64_t{0})));
 }
 
 /// Renders a half, or goes on with it where it is not yet good enough; returns its file.
@@ -172,7 +170,7 @@ BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& 
   scene.rungs.insert(scene.rungs.end(), arguments.rungs.begin(), arguments.rungs.end());
   check_rungs(arguments, scene);
   if (scene.planned_samples == 0)
-    print_warning({}, file + ": nothing is translucent: no rung has samples or a tolerance to trade");
+    print_warning({}, file + ": the scene has no translucent shape, so no setting trades error for time");
   return scene;
 }
 

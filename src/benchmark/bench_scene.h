@@ -20,7 +20,7 @@ struct BenchReference {
   std::array<std::string, 2> halves;  ///< file names
   std::array<std::string, 2> seeds;   ///< "unknown" where a file does not say
   std::string made;                   ///< in words
-  std::size_t cells = 0;              ///< of random walks, on the body with the most; 0: `direct`
+  std::size_t cells = 0;              ///< cells of random walks, on the body with the most; 0: `direct`
 };
 
 struct BenchScene {
@@ -28,12 +28,12 @@ struct BenchScene {
   std::string id;                      ///< in rows: the file, and the profile where each has its turn
   std::string name;                    ///< without folders, for files; no two alike
   std::string key;                     ///< scene_hash of what every run renders
-  std::vector<std::string> overrides;  ///< of every run, before a rung's own
+  std::vector<std::string> overrides;  ///< overrides of every run, before those of a setting
   Scene scene;                         ///< without its meshes
-  std::size_t planned_samples = 0;     ///< of the group with the most
+  std::size_t planned_samples = 0;     ///< planned samples of the group with the most
   std::vector<Rung> rungs;
   BenchReference reference;
-  std::uint64_t direct_seed = 0;  ///< of the direct rungs: not one of the reference's
+  std::uint64_t direct_seed = 0;  ///< seed of the direct runs, distinct from those of the reference
 };
 
 /// Its settings and rungs, once, or once for each profile if that is asked for and something is translucent; with
@@ -48,7 +48,7 @@ std::vector<BenchScene> open_bench_scenes(const BenchArguments& arguments, const
 void prepare_reference(const BenchArguments& arguments, const std::string& folder, BenchScene& scene,
                        Monitor& monitor);
 
-/// What a rung's run is rendered with, besides the scene's own overrides.
+/// Overrides of a run, after those of the scene.
 std::vector<std::string> rung_overrides(const BenchScene& scene, const Rung& rung);
 
 /// Command line of a run, for run_own_child; "-o" and the picture are still missing.

@@ -18,7 +18,7 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.7g}", value) : std::string();
 }
 
-/// What a setting does not have is 0 and left empty.
+/// Text of a count; empty for 0, which means not applicable.
 std::string count(double value) {
   return value > 0 ? number(value) : std::string();
 }

@@ -190,7 +190,7 @@ OwnChild run_own_child(const std::vector<std::string>& arguments, Monitor& monit
 
 BenchRun bench_run(const OwnChild& render) {
   const Json* done = render.event("done");
-  if (done == nullptr) throw run_failed("", "a child process did not say what it did");
+  if (done == nullptr) throw run_failed("", "a child process returned no result");
   BenchRun run;
   run.job = render.cost;
   run.samples = done->value("samples", 0.0);

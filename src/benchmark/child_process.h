@@ -12,7 +12,7 @@
 namespace opaline {
 
 struct OwnChild {
-  std::vector<Json> events;  ///< of its log
+  std::vector<Json> events;  ///< events of its log
   std::string failure;       ///< why it did not exit with 0, one line; empty: it did
   int exit_code = 0;         ///< 3 where a signal ended it
   Cost cost;                 ///< the kernel's account of the process (wait4)
@@ -29,7 +29,7 @@ struct OwnChild {
 /// error Error{run_failed}: no process; Error{interrupted}
 OwnChild run_own_child(const std::vector<std::string>& arguments, Monitor& monitor);
 
-/// What a render said about its stages in its event "done".
+/// Stages of a render, from its event "done".
 /// error Error{run_failed}: a stage that kBenchStages does not know, or no such event
 BenchRun bench_run(const OwnChild& render);
 

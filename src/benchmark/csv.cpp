@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-/// Whether a spreadsheet would take the cell for a formula. Figures are none, whatever their sign.
+/// True if a spreadsheet would take the cell for a formula. Figures are none, whatever their sign.
 bool is_formula(std::string_view cell) {
   if (cell.empty() || std::string_view("=+-@\t\r").find(cell[0]) == std::string_view::npos) return false;
   double number = 0;

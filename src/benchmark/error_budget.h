@@ -15,9 +15,9 @@ namespace opaline {
 /// Both pictures are `hierarchical` unless a part's overrides say otherwise; what is not named is as the scene has it.
 struct BudgetPart {
   std::string name;                    ///< "sampling"
-  std::string setting;                 ///< what differs, in words
+  std::string setting;                 ///< text of the difference
   std::vector<std::string> here;       ///< overrides of the picture with this part of the error
-  std::vector<std::string> converged;  ///< of the one without it
+  std::vector<std::string> converged;  ///< overrides of the converged run
 };
 
 /// A part as measured: the figures of `here` against `converged`, two pictures without noise, or why there

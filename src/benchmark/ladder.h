@@ -24,9 +24,9 @@ std::string name_of(const Rung& rung);
 std::vector<std::string> overrides_of(const Rung& rung, std::span<const std::string> media = {});
 
 struct LadderInput {
-  std::size_t planned_samples = 0;  ///< of the group with the most; 0: nothing is translucent
+  std::size_t planned_samples = 0;  ///< planned samples of the group with the most; 0: nothing is translucent
   bool quick = false;
-  bool bounces = false;  ///< whether the scene has light between things
+  bool bounces = false;  ///< true if the scene has light between things
 };
 
 /// The first rung is `lambert`, what all the others are measured against. Sample counts are a quarter of the
@@ -34,7 +34,7 @@ struct LadderInput {
 /// all rungs gather and `direct`, their reference, traces from each place at which light enters, one rung is without.
 std::vector<Rung> ladder(const LadderInput& input);
 
-/// What is held against random walks: `lambert` first, then the scene as it is, with each radial profile in turn, and
+/// Runs compared with random walks: `lambert` first, then the scene as given, with each radial profile in turn, and
 /// `volume_diffusion`.
 std::vector<Rung> truth_ladder(bool quick);
 

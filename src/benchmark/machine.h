@@ -12,7 +12,7 @@ namespace opaline {
 /// system, compiler, build.
 std::vector<std::pair<std::string, std::string>> machine_notes();
 
-/// Of the bytes of the executable that runs; hexadecimal.
+/// Program hash of the bytes of the executable that runs; hexadecimal.
 std::string program_hash();
 
 }  // namespace opaline

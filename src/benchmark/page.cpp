@@ -26,7 +26,7 @@ void check_page_file(const std::string& path) {
   constexpr std::uintmax_t kHead = 4096;  // has the title
   const std::string head = std::filesystem::exists(path) ? InputFile(path).read(0, kHead) : "";
   if (!head.empty() && head.find("opaline") == std::string::npos)
-    throw bad_file(path, "is there already and is no page of opaline's", "another folder");
+    throw bad_file(path, "exists and is not a page of opaline", "another folder");
 }
 
 }  // namespace opaline

@@ -16,13 +16,13 @@ struct ErrorFigures {
   double error_floor = 0;  ///< errors below it say nothing: the root of twice its square's standard error
   double signed_mean = 0;  ///< > 0: too bright
   double p99 = 0;          ///< against the mean of the halves (relative_errors), their noise in it
-  double p99_noise = 0;    ///< what p99 would be for a picture without error: of half the halves' difference
-  double half_noise = 0;   ///< of one half, rms
+  double p99_noise = 0;    ///< p99 of an image without error: from half the difference of the halves
+  double half_noise = 0;   ///< half noise of one half, rms
 };
 
 struct PictureError {
   std::array<ErrorFigures, 3> channels;  ///< R, G, B
-  ErrorFigures worst;                    ///< of each figure the largest in magnitude over the channels
+  ErrorFigures worst;                    ///< for each value, the largest in magnitude over the channels
 };
 
 /// in    R, G, B layers of the same size, linear; halves with independent noise; object: a flag a pixel

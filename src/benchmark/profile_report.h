@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `opaline profile` measures: each radial profile of a medium beside random walks.
+// Measurements of `opaline profile`: each radial profile of a medium against random walks.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 namespace opaline {
 
 struct ProfileRequest {
-  std::string name;  ///< of the medium, to be shown
+  std::string name;  ///< displayed name of the medium
   PhysicalMedium coefficients;
   double eta = 1.3;
   double g = 0;                                                ///< that walks scatter with; sigma_s' stays
@@ -47,7 +47,7 @@ struct ProfileReport {
 /// error as walk_slab
 ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor);
 
-/// What a model says of the light on one face of the slab: a point of the far face is lit through it, in a model
+/// Exitance of a model on one face of the slab: transmission to a point of the far face or, for a model
 /// without two faces (has_far_side) as a point at that distance.
 struct ModelFace {
   const ChannelProfile* profile;

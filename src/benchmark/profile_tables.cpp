@@ -42,7 +42,7 @@ std::vector<Face> faces_of(const ProfileReport& report) {
 CsvTable totals_table(const ProfileReport& report) {
   CsvTable table{report.notes, {}, {}, {}};
   add_columns(table, {"channel", "by", "face"}, "");
-  add_columns(table, {"share", "share_error", "uncollided", "uncollided_error"}, "of entered flux");
+  add_columns(table, {"share", "share_error", "uncollided", "uncollided_error"}, "of transmitted flux");
   add_columns(table, {"shape_difference"}, "share");
   for (const ProfiledChannel& channel : report.channels)
     for (const Face& face : faces_of(report)) {
@@ -70,11 +70,11 @@ CsvTable rings_table(const ProfileReport& report) {
   add_columns(table, {"r_low", "r_high"}, "mm");
   for (const std::string entry : {"diffuse", "normal"}) {
     add_columns(table, {entry + "_profile", entry + "_profile_error"}, "1/mm^2");
-    add_columns(table, {entry + "_within", entry + "_within_error"}, "of entered flux");
+    add_columns(table, {entry + "_within", entry + "_within_error"}, "of transmitted flux");
   }
   for (const std::string_view model : kProfileNames) {
     add_columns(table, {std::string(model) + "_profile"}, "1/mm^2");
-    add_columns(table, {std::string(model) + "_within"}, "of entered flux");
+    add_columns(table, {std::string(model) + "_within"}, "of transmitted flux");
   }
   for (const ProfiledChannel& channel : report.channels)
     for (const Face& face : faces_of(report))
@@ -99,7 +99,7 @@ CsvTable rings_table(const ProfileReport& report) {
 CsvTable angles_table(const ProfileReport& report) {
   CsvTable table{report.notes, {}, {}, {}};
   add_columns(table, {"channel", "cosine_low", "cosine_high"}, "");
-  add_columns(table, {"albedo_by_entry", "albedo_by_entry_error"}, "of flux entered there");
+  add_columns(table, {"albedo_by_entry", "albedo_by_entry_error"}, "of flux transmitted there");
   add_columns(table, {"exit_diffuse", "exit_diffuse_error", "exit_normal", "exit_normal_error"},
               "of Lambert");
   for (const ProfiledChannel& channel : report.channels)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What has changed between two benchmarks, beyond their noise.
+// Significant changes between two benchmarks.
 #pragma once
 
 #include <cstddef>

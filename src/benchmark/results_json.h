@@ -23,7 +23,7 @@ nlohmann::ordered_json rows_json(const CsvTable& table);
 
 /// A rung as far as its cost and error are watched.
 struct WatchedRung {
-  std::string key;  ///< of its scene: BenchSubject
+  std::string key;  ///< key of its scene: BenchSubject
   std::string title, rung;
   Spread job_ratio, shading_ratio;
   double error = 0, error_floor = 0;  ///< relative, worst channel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What repeated measurements of one thing amount to.
+// Statistics of repeated measurements.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace opaline {
 
 struct Spread {
   std::size_t runs = 0;  ///< 0: nothing was measured, and the rest says nothing
-  double median = 0;     ///< of an even number: the mean of the two in the middle
+  double median = 0;     ///< median of an even number: the mean of the two in the middle
   double low = 0, high = 0;
 };
 

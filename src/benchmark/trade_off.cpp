@@ -20,7 +20,7 @@ Estimate::Kind between(const TradePoint& a, const TradePoint& b) {
 
 std::string series_name(const Rung& rung) {
   if (rung.method == "hierarchical" && rung.evaluator.empty() && rung.knob.empty())
-    return "hierarchical, as the scene has it";
+    return "hierarchical, settings of the scene";
   std::string name = rung.method;
   if (!rung.evaluator.empty()) name += ' ' + rung.evaluator;
   if (rung.of_media)  // profiles are no steps of one knob

@@ -15,11 +15,11 @@ namespace opaline {
 /// A measured setting; both > 0. One whose error the reference's noise hides stands at that noise: it is
 /// better than it looks.
 struct TradePoint {
-  std::size_t row = 0;  ///< of the benchmark's rows
+  std::size_t row = 0;  ///< row of the benchmark's rows
   double cpu = 0;       ///< s, of the whole job
   double error = 0;     ///< relative, worst channel
   bool below_noise = false;
-  double fixed_cpu = 0;  ///< of it what more random values would not add to: all but the shading, s
+  double fixed_cpu = 0;  ///< CPU time independent of the random values: all but the shading, s
 };
 
 /// Settings that differ in the value of one knob, from cheap to dear.

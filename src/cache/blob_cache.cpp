@@ -17,9 +17,9 @@ BlobCache::BlobCache(std::string folder, std::uint64_t most_bytes)
   std::error_code making, looking;
   std::filesystem::create_directories(folder_, making);
   const bool is_there = std::filesystem::is_directory(folder_, looking);
-  if (looking) throw run_failed(folder_, "cannot look at the cache's folder: " + looking.message());
+  if (looking) throw run_failed(folder_, "cannot inspect the cache folder: " + looking.message());
   if (!is_there)
-    throw run_failed(folder_, "cannot make the cache's folder" + (making ? ": " + making.message() : ""));
+    throw run_failed(folder_, "cannot create the cache folder" + (making ? ": " + making.message() : ""));
 }
 
 std::optional<BlobReader> BlobCache::find(const char* stage, const StageKey& key, std::uint64_t most_bytes) {
@@ -32,7 +32,7 @@ std::optional<BlobReader> BlobCache::find(const char* stage, const StageKey& key
 }
 
 void BlobCache::reject(const char* stage, const StageKey& key) {
-  unusable_.push_back(file_name({stage, key}) + " holds something else");
+  unusable_.push_back(file_name({stage, key}) + " contains other files");
 }
 
 void BlobCache::keep(const char* stage, const StageKey& key, const std::function<void(BlobWriter&)>& fill) {
@@ -60,15 +60,14 @@ void BlobCache::prune() {
 
 std::string BlobCache::warning() const {
   std::vector<std::string> parts;
-  if (!unusable_.empty())
-    parts.push_back(fmt::format("{}, and was computed again", fmt::join(unusable_, ", ")));
+  if (!unusable_.empty()) parts.push_back(fmt::format("{}; computed again", fmt::join(unusable_, ", ")));
   if (!too_large_.empty())
-    parts.push_back(
-        fmt::format("not all was kept: {}: larger than the whole cache may be", fmt::join(too_large_, ", ")));
-  if (!not_kept_.empty()) parts.push_back("not all was kept: " + not_kept_);
+    parts.push_back(fmt::format("not all results were stored: {}: larger than the maximum cache size",
+                                fmt::join(too_large_, ", ")));
+  if (!not_kept_.empty()) parts.push_back("not all results were stored: " + not_kept_);
   if (is_locked_)
     parts.push_back(
-        "another process holds its lock, so that nothing was removed: it may be larger than its bound");
+        "locked by another process, so nothing was removed; the cache may exceed its maximum size");
   return parts.empty() ? "" : fmt::format("cache {}: {}", folder_, fmt::join(parts, "; "));
 }
 

@@ -94,8 +94,8 @@ std::variant<BlobReader, NoEntry, BadEntry> open_entry(const std::string& folder
   if (const auto* bad = std::get_if<BadEntry>(&opened)) return *bad;
   if (std::holds_alternative<NoEntry>(opened)) return NoEntry{};
   const OpenFile& open = std::get<OpenFile>(opened);
-  if (open.size > most_bytes) return BadEntry{"is larger than its result can be"};
-  if (open.size > available_memory() / 4) return BadEntry{"is too large for the memory that is left"};
+  if (open.size > most_bytes) return BadEntry{"is larger than its result"};
+  if (open.size > available_memory() / 4) return BadEntry{"is too large for the available memory"};
   ZeroedArray<char> bytes(open.size);
   std::ranges::copy(open.header, bytes.begin());
   if (!read_all(open.file.number, std::span(bytes).subspan(kUserBlock))) return BadEntry{"cannot be read"};

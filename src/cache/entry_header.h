@@ -23,10 +23,10 @@ std::string listing_of(const std::vector<BlobPlace>& sets);
 /// hash: of the listing and, behind it, the payload, which is all after the header
 std::string header_text(const EntryName& name, const std::string& listing, std::uint64_t payload,
                         const StageKey& hash);
-/// Whether the header is this text and zeros after it.
+/// True if the header is this text and zeros after it.
 bool is_header(const EntryHeader& header, const std::string& text);
 
-/// What a header states; none of it need be so.
+/// Unchecked content of a header.
 struct StatedEntry {
   std::string listing;
   std::uint64_t payload = 0;
@@ -38,7 +38,7 @@ std::optional<StatedEntry> read_header(const EntryHeader& header, const EntryNam
 /// within file_bytes.
 std::optional<std::vector<BlobPlace>> read_listing(const std::string& listing, std::uint64_t file_bytes);
 
-/// What the header of an entry that is not to be used suggests, to follow its name: "is truncated".
+/// Reason not to use an entry, from its header; it follows the name: "is truncated".
 std::string reason_of(const EntryHeader& header, std::uint64_t payload);
 
 }  // namespace opaline

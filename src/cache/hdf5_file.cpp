@@ -37,7 +37,7 @@ hid_t number_type(BlobNumber number) {
   return -1;
 }
 
-/// Of a number that stands alone, or of an array of them.
+/// Member type of a number that stands alone, or of an array of them.
 Hdf5Handle member_type(const BlobMember& member) {
   const hsize_t count = member.count;
   if (count == 1) return {H5Tcopy(number_type(member.number)), H5Tclose};
@@ -83,7 +83,7 @@ void Hdf5Writer::put_items(const char* name, const BlobType& item, const void* v
 }
 
 std::string_view Hdf5Writer::bytes() {
-  void* memory = nullptr;  // of the core driver's buffer: its address
+  void* memory = nullptr;  // memory of the core driver's buffer: its address
   good_ = good_ && H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) >= 0 &&
           H5Fget_vfd_handle(file_.id(), H5P_DEFAULT, &memory) >= 0;
   const ssize_t size = good_ ? H5Fget_file_image(file_.id(), nullptr, 0) : 0;  // behind the user block

@@ -57,7 +57,7 @@ class Hdf5Writer final : public BlobWriter {
 
   /// The whole file, kUserBlock bytes of nothing in front; empty after a failure. Valid until the next put.
   std::string_view bytes();
-  /// What was put, in that order.
+  /// Arrays in the order of writing.
   const std::vector<BlobPlace>& arrays() const { return arrays_; }
 
  private:

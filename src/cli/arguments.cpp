@@ -66,8 +66,7 @@ Error usage_error(const std::string& message, const std::string& expected = {}, 
 }
 
 Error unknown_format(const std::string& path) {
-  return usage_error("cannot tell the format of the output", "a name that ends in .exr or .png",
-                     "'" + path + "'");
+  return usage_error("unknown output format", "a name that ends in .exr or .png", "'" + path + "'");
 }
 
 /// The one name of a file, however it is written: also of one that is not there yet.
@@ -91,11 +90,11 @@ void check_outputs(const RenderArguments& render) {
     const bool has_place = path.find("##") != std::string::npos;
     if (render.frames.size() > 1 && !has_place)
       throw usage_error(
-          "all frames would be written to '" + path + "'" +
-              (path.find('#') != std::string::npos ? ": a single # is no place for a number" : ""),
-          "## for their number, as in out.####.exr");
+          "all frames have the same output name '" + path + "'" +
+              (path.find('#') != std::string::npos ? ": a single # is not a frame number placeholder" : ""),
+          "## for the frame number, as in out.####.exr");
     if (render.frames.empty() && has_place)
-      throw usage_error("'" + path + "' has a place for the number of a frame, and none is asked for",
+      throw usage_error("'" + path + "' has a frame number placeholder, but no frames are requested",
                         "--frames FIRST-LAST, or a name without ##");
   }
 }
@@ -105,13 +104,12 @@ void check_layers_have_a_file(const RenderArguments& render, const std::string& 
   const bool has_exr = std::ranges::any_of(
       render.outputs, [](const std::string& path) { return output_format(path) == OutputFormat::exr; });
   if (!asked.empty() && asked != "none" && !has_exr)
-    throw usage_error("--layers are written to EXR files, and no output is one", "-o FILE.exr",
-                      "'" + render.outputs.front() + "'");
+    throw usage_error("--layers requires an EXR output", "-o FILE.exr", "'" + render.outputs.front() + "'");
 }
 
 CompareArguments checked(CompareArguments compare, const Options& options) {
   if (compare.reference.empty() == compare.halves.empty())
-    throw usage_error("a picture is compared with a reference B or with --halves D1 D2: give one of them");
+    throw usage_error("compare requires either a reference B or --halves D1 D2");
   if (!compare.error_picture.empty() && output_format(compare.error_picture) == OutputFormat::unknown)
     throw unknown_format(compare.error_picture);
   if (!std::isfinite(compare.exposure.value_or(0)))
@@ -124,10 +122,10 @@ ImportArguments checked(ImportArguments import) {
   if (const std::string unread = unread_format(import.asset); !unread.empty())
     throw bad_file(import.asset, unread);
   if (!is_asset_name(import.asset))
-    throw bad_file(import.asset, "is no asset that can be imported",
+    throw bad_file(import.asset, "is not a supported asset format",
                    "a name that ends in .glb, .gltf, .obj, .ply, .stl or .off");
   if (!import.scene.ends_with(".json"))
-    throw usage_error("a scene file is written", "a name that ends in .json", "'" + import.scene + "'");
+    throw usage_error("the output is a scene file", "a name that ends in .json", "'" + import.scene + "'");
   return import;
 }
 
@@ -135,15 +133,17 @@ constexpr double kReferenceError = .02, kQuickReferenceError = .03;
 
 BenchArguments checked(BenchArguments bench, const Options& options) {
   if (!bench.halves.empty() && bench.scenes.size() > 1)
-    throw usage_error("--halves are the reference of one scene", "a single scene",
+    throw usage_error("--halves requires a single scene", "a single scene",
                       std::to_string(bench.scenes.size()));
   if (!bench.halves.empty() && bench.profiles)
-    throw usage_error("--halves are the reference of one profile: leave --profiles out");
+    throw usage_error(
+        "--halves cannot be combined with --profiles, because each profile has its own reference");
   if (!bench.halves.empty() && !(options.reference_error.empty() && bench.reference_dir.empty()))
     throw usage_error(
-        "with --halves no reference is rendered: leave --reference-error and --reference-dir out");
+        "--halves cannot be combined with --reference-error or --reference-dir, because no reference is "
+        "rendered");
   if (bench.csv.empty() && bench.report.empty() && bench.against.empty())
-    throw usage_error("nothing is asked for", "-o FOLDER, --csv FILE or --against FILE");
+    throw usage_error("no output is requested", "-o FOLDER, --csv FILE or --against FILE");
   bench.reference_error = options.reference_error.empty()
                               ? (bench.quick ? kQuickReferenceError : kReferenceError)
                               : *share_of(options.reference_error);
@@ -248,7 +248,7 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
                           dynamic_cast<const CLI::RequiredError*>(&failure) != nullptr;
   const std::string what = failure.what();
   if (const std::size_t end = what.find(": At Most 1 required but received"); end != std::string::npos)
-    return usage_error(what.substr(0, end) + ": is given more than once" + hint(command));
+    return usage_error(what.substr(0, end) + ": given more than once" + hint(command));
   const bool has_commands = !commands_of(command).empty();
   if (is_unknown && extras.empty() && has_commands) return no_command(command);
   if (!is_unknown || extras.empty()) return usage_error(what + hint(command));
@@ -273,7 +273,7 @@ std::vector<std::string> words_of(const CLI::App& app, int argc, const char* con
   return words;
 }
 
-/// What each command's options write to.
+/// Targets of the options of each command.
 struct Parsed {
   RenderArguments render;
   InfoArguments info;
@@ -294,26 +294,24 @@ void add_commands(CLI::App& app, Parsed& parsed) {
   };
   Options& options = parsed.options;
   add_render_options(command("render", "render a scene to EXR and PNG files"), parsed.render, options);
-  add_view_options(command("view", "show a scene on a page, and what every change makes of it"), parsed.view,
-                   options);
-  add_precompute_options(command("precompute", "fill a cache with what rendering will ask for"),
+  add_view_options(command("view", "edit a scene in the browser, with a live preview"), parsed.view, options);
+  add_precompute_options(command("precompute", "compute the stages of a scene and store them in a cache"),
                          parsed.precompute, options);
-  CLI::App& info = command("info", "print what a scene requires and why; nothing is rendered");
+  CLI::App& info =
+      command("info", "print the plan of a scene: stages, samples, memory, expected errors; renders nothing");
   add_common_options(info, parsed.info.scene, options);
   add_picture_options(info, options);
-  add_import_options(command("import", "write an asset (.glb, .gltf, .obj) as a scene file, to be edited"),
+  add_import_options(command("import", "convert an asset (.glb, .gltf, .obj) to a scene file for editing"),
                      parsed.import);
-  add_compare_options(command("compare", "print how far a picture is from a reference"), parsed.compare,
-                      options);
-  add_bench_options(command("bench", "measure what scenes cost and how far off they are, at many settings"),
-                    parsed.bench, options);
-  add_profile_options(
-      command("profile", "measure how far diffusion models are from random walks, for one medium"),
-      parsed.profile, options);
-  add_cache_commands(command("cache", "look after a folder of stage results (--cache)"), parsed.cache,
-                     options);
+  add_compare_options(command("compare", "compare an image with a reference"), parsed.compare, options);
+  add_bench_options(command("bench", "measure cost and error of scenes at many settings"), parsed.bench,
+                    options);
+  add_profile_options(command("profile", "compare diffusion models with random walks, for one medium"),
+                      parsed.profile, options);
+  add_cache_commands(command("cache", "list, verify or prune a folder of stage results (--cache)"),
+                     parsed.cache, options);
   command("schema", "print a JSON Schema of scene files, for editors");
-  command("completion", "print a script of completion for bash").group("");
+  command("completion", "print a completion script for bash").group("");
 }
 
 RenderArguments checked(RenderArguments render, const Options& options) {
@@ -368,7 +366,7 @@ OutputFormat output_format(const std::string& path) {
 }
 
 Command parse_arguments(int argc, const char* const* argv) {
-  CLI::App app("opaline renders translucent things fast, and says how accurate the picture is.", "opaline");
+  CLI::App app("opaline renders translucent assets fast and reports how accurate each image is.", "opaline");
   app.get_formatter()->column_width(34);
   app.set_version_flag("--version", "opaline " OPALINE_VERSION, "print the version");
   app.set_help_flag("-h,--help", "print this help");

@@ -24,7 +24,7 @@ struct RenderArguments {
   /// For load_scene: what the short options mean, in a fixed order, then every --set in the order given.
   std::vector<std::string> overrides;
   std::vector<std::string> outputs;        ///< at least one; .exr or .png, no two alike
-  LayerChoice layers{false, {"diffuse"}};  ///< of the EXR files, beside R, G, B and A
+  LayerChoice layers{false, {"diffuse"}};  ///< layers of the EXR files, beside R, G, B and A
   std::string samples_ply;                 ///< empty: none
   std::string resume;                      ///< file of a direct rendering's sums to go on from; empty: none
   std::string cache;                       ///< folder of stage results; empty: none
@@ -123,7 +123,7 @@ OutputFormat output_format(const std::string& path);  ///< by extension, upper o
 /// error Error{bad_input}: an unknown option, a value that is not one, an output that is neither EXR nor PNG
 Command parse_arguments(int argc, const char* const* argv);
 
-/// Whether the words ask for a log of JSON, whatever else is wrong with them.
+/// True if the words ask for a log of JSON, whatever else is wrong with them.
 bool asks_for_json(int argc, const char* const* argv);
 
 /// A failure whose place is "--set KEY=VALUE", where the command line has an option in its stead: its place is the option.

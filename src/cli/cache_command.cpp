@@ -51,7 +51,7 @@ void print_text(const std::vector<Checked>& all, const char* what) {
 std::vector<CacheEntry> prune(const CacheArguments& arguments) {
   bool said = false;
   return prune_cache(arguments.folder, arguments.most_bytes, [&] {
-    if (!said) print_warning(arguments.log, "waiting: another process holds the lock of " + arguments.folder);
+    if (!said) print_warning(arguments.log, "waiting for another process to unlock " + arguments.folder);
     return said = true;
   });
 }

@@ -17,7 +17,7 @@ namespace {
 
 void add_frames_option(CLI::App& app, Options& options, const char* meaning) {
   app.add_option("--frames", options.frames,
-                 fmt::format("frames of a range, e.g. 1-24, 1-24x2 or 1,5,7-9; {}", meaning))
+                 fmt::format("frame range, e.g. 1-24, 1-24x2 or 1,5,7-9; {}", meaning))
       ->type_name("FRAMES");
 }
 
@@ -71,14 +71,14 @@ std::string_view key_of_option(std::string_view option) {
 }
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {
-  app.add_option("SCENE", scene, "scene file (JSON with comments), or an asset (.glb, .gltf, .obj)")
+  app.add_option("SCENE", scene, "scene file (JSON with comments) or asset (.glb, .gltf, .obj)")
       ->required()
       ->type_name("FILE");
   add_repeatable(app, "--set", options.sets,
-                 "change any value of the scene, e.g. media.marble.specular_ior=1.4; repeatable")
+                 "override a value of the scene, e.g. media.marble.specular_ior=1.4; repeatable")
       ->type_name("KEY=VALUE");
   add_allow_outside(app);
-  app.add_option("--log", options.log, "text, or json: one object a line on stdout")
+  app.add_option("--log", options.log, "format of the log: text, or json (one object per line on stdout)")
       ->check(log_check())
       ->type_name("text|json");
 }
@@ -92,8 +92,9 @@ void add_picture_options(CLI::App& app, Options& options) {
   option(options.crop, "film.crop", "x0,y0,x1,y1")->check(crop_check());
   option(options.exposure, "film.exposure", "STOPS")->check(number_check());
   option(options.view, "film.view", "NAME");
-  app.add_option("--environment", options.environment,
-                 "a lat-long picture (EXR, HDR, PNG) of a room in place of the scene's lights, at exposure 0")
+  app.add_option(
+         "--environment", options.environment,
+         "lat-long environment map (EXR, HDR, PNG) that replaces the lights of the scene; sets exposure 0")
       ->type_name("FILE")
       ->group("Picture");
   option(options.method, "settings.method", "NAME");
@@ -104,55 +105,52 @@ void add_picture_options(CLI::App& app, Options& options) {
 }
 
 void add_render_options(CLI::App& app, RenderArguments& render, Options& options) {
-  add_repeatable(app, "-o,--output", render.outputs, "picture to write, .exr or .png; repeatable")
+  add_repeatable(app, "-o,--output", render.outputs, "image to write, .exr or .png; repeatable")
       ->required()
       ->type_name("FILE");
   add_common_options(app, render.scene, options);
   app.add_option("--layers", options.layers,
-                 "what the EXR holds beside R, G, B and A: diffuse (default), specular, albedo, N, P, Z, "
-                 "irradiance, error, direct's variance; all (of these) or none; also light_groups, what each "
-                 "light adds, and cryptomatte, mattes of objects and materials")
+                 "layers of the EXR besides R, G, B and A: diffuse (default), specular, albedo, N, P, Z, "
+                 "irradiance, error, variance (of direct); all (of these) or none; also light_groups (the "
+                 "contribution of each light) and cryptomatte (mattes of objects and materials)")
       ->check(layers_check())
       ->type_name("NAME,...");
   app.add_option("--samples-ply", render.samples_ply, "also write the surface samples as a PLY point cloud")
       ->type_name("FILE")
       ->check(extension_check(".ply"));
   app.add_option("--resume", render.resume,
-                 "direct, volume: go on from this file's sums if it is there; they are written to it every "
-                 "minute, at "
-                 "the end and on Ctrl-C")
+                 "direct, volume: resume from the sums in this file if it exists; stores the sums every "
+                 "minute, at the end and on Ctrl-C")
       ->type_name("FILE")
       ->check(extension_check(".exr"));
-  CLI::Option* cache =
-      app.add_option(
-             "--cache", render.cache,
-             "keep samples, irradiance and trees in this folder, and take from it what was computed from "
-             "the same")
-          ->type_name("FOLDER");
-  add_frames_option(
-      app, options,
-      "## in the names of outputs and meshes is their number; frames that are there already, whole "
-      "and of this scene, are left alone");
+  CLI::Option* cache = app.add_option("--cache", render.cache,
+                                      "store samples, irradiance and octrees in this folder, and reuse the "
+                                      "entries with the same input")
+                           ->type_name("FOLDER");
+  add_frames_option(app, options,
+                    "## in output and mesh names stands for the frame number; existing frames of the same "
+                    "scene are skipped");
   add_size(app, "--cache-size", render.cache_bytes,
-           "the least recently used beyond it go, e.g. 20GB (default 8GB)")
+           "maximum cache size, e.g. 20GB (default 8GB); evicts the least recently used entries")
       ->needs(cache);
-  add_threads(app, render.threads, "at most this many; default: one for each core");
+  add_threads(app, render.threads, "maximum number of threads (default: one per core)");
   app.add_flag("--quiet", render.log.quiet, "print warnings and errors only");
   app.add_flag("--timings-in-metadata", render.timings_in_metadata,
-               "store the time of each stage in the EXR; its bytes then differ between runs");
+               "store the time of each stage in the EXR; the file then differs between runs");
   add_picture_options(app, options);
   const char* quality = "Quality";
   app.add_option("--target-error", options.target_error,
-                 "choose samples, tolerance and evaluator for this error at the least cost, e.g. 1%")
+                 "choose samples, tolerance and evaluator for this error at the lowest cost, e.g. 1%")
       ->check(positive_share_check())
       ->type_name("PERCENT")
       ->group(quality);
   app.add_option("--time-budget", options.time_budget,
-                 "choose them for the smallest error within this CPU time of all, e.g. 2s; direct: stop then")
+                 "choose samples, tolerance and evaluator for the lowest error within this total CPU time, "
+                 "e.g. 2s; direct: time to stop")
       ->transform(seconds_of())
       ->type_name("TIME")
       ->group(quality);
-  app.add_flag("--verify", render.verify, "measure the error at some 200 points by --method direct")
+  app.add_flag("--verify", render.verify, "measure the error at some 200 points with --method direct")
       ->group(quality);
   app.footer(kRenderNotes);
 }
@@ -160,21 +158,20 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
 void add_view_options(CLI::App& app, ViewArguments& view, Options& options) {
   add_common_options(app, view.scene, options);
   app.add_option("--listen", view.options.address,
-                 "IP address to listen on (default 127.0.0.1: this machine alone; 0.0.0.0: every network)")
+                 "IP address to listen on (default 127.0.0.1: this machine only; 0.0.0.0: all networks)")
       ->type_name("ADDRESS");
-  app.add_option("--port", view.options.port, "to listen on; default: any that is free")
+  app.add_option("--port", view.options.port, "port to listen on (default: any free port)")
       ->transform(whole_number(kPorts))
       ->type_name("N");
-  app.add_option(
-         "--token", view.options.token,
-         "word in the URL without which nothing is served, of 16 to 64 characters; default: a random one")
+  app.add_option("--token", view.options.token,
+                 "secret token in the URL, 16 to 64 characters (default: random)")
       ->type_name("WORD");
   add_frames_option(
       app, options,
-      "## in the names of meshes is their number; default: from the scene's first key to its last");
-  add_threads(app, view.threads, "at most this many; default: one for each core");
+      "## in mesh names stands for the frame number; default: from the first key of the scene to the last");
+  add_threads(app, view.threads, "maximum number of threads (default: one per core)");
   app.add_flag_callback(
-      "--no-open", [&view] { view.opens_browser = false; }, "do not open the URL in the desktop's browser");
+      "--no-open", [&view] { view.opens_browser = false; }, "do not open the URL in the browser");
   app.add_flag("--quiet", view.log.quiet, "print the URL and errors only");
   add_picture_options(app, options);
   app.footer(kViewNotes);
@@ -182,10 +179,11 @@ void add_view_options(CLI::App& app, ViewArguments& view, Options& options) {
 
 void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options) {
   add_common_options(app, precompute.scene, options);
-  app.add_option("--cache", precompute.cache, "the folder to fill")->required()->type_name("FOLDER");
-  add_size(app, "--cache-size", precompute.cache_bytes, "the least recently used beyond it go (default 8GB)");
-  add_frames_option(app, options, "## in the names of meshes is their number");
-  add_threads(app, precompute.threads, "at most this many; default: one for each core");
+  app.add_option("--cache", precompute.cache, "folder of the cache")->required()->type_name("FOLDER");
+  add_size(app, "--cache-size", precompute.cache_bytes,
+           "maximum cache size (default 8GB); evicts the least recently used entries");
+  add_frames_option(app, options, "## in mesh names stands for the frame number");
+  add_threads(app, precompute.threads, "maximum number of threads (default: one per core)");
   app.add_flag("--quiet", precompute.log.quiet, "print warnings and errors only");
 }
 

@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-/// What options write to whose text means something else, before it does.
+/// Raw texts of options that need conversion.
 struct Options {
   std::string method, evaluator, resolution, crop, environment, view;
   std::string until_error, target_error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the program can do, a function each. That standard output took all of it is main's to ask.
+// Commands of the program, a function each. main checks that standard output accepted everything.
 #pragma once
 
 #include "cli/arguments.h"

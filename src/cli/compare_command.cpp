@@ -56,8 +56,8 @@ void check_comparable(const Picture& picture, const Picture& reference) {
     if (got != expected)
       throw bad_file(picture.path, what, fmt::format("{} as in {}", expected, reference.path), got);
   };
-  check(size, "the pictures differ in size");
-  if (!is_png(picture.path) && !is_png(reference.path)) check(crop, "the pictures show different crops");
+  check(size, "the images differ in size");
+  if (!is_png(picture.path) && !is_png(reference.path)) check(crop, "the images have different crops");
   if (picture.layer.names != reference.layer.names)
     throw bad_file(picture.path, "the layers differ in their channels",
                    fmt::format("{} as in {}", fmt::join(reference.layer.names, " "), reference.path),
@@ -74,7 +74,8 @@ std::vector<Picture> load_all(const CompareArguments& arguments) {
   std::error_code missing;
   for (const std::string& path : paths)
     if (std::filesystem::equivalent(path, arguments.error_picture, missing))
-      throw bad_file(arguments.error_picture, "is compared and would be overwritten", "another output name");
+      throw bad_file(arguments.error_picture, "is an input of the comparison and would be overwritten",
+                     "another output name");
   std::vector<Picture> pictures;
   for (const std::string& path : paths) {
     pictures.push_back(load(path, arguments.layer));
@@ -83,7 +84,7 @@ std::vector<Picture> load_all(const CompareArguments& arguments) {
   return pictures;
 }
 
-/// What any of the references shows.
+/// Pixels that show an object in any of the references.
 std::vector<std::uint8_t> object_of(const std::vector<Picture>& pictures) {
   std::vector<std::uint8_t> object = pictures[1].object;
   for (const Picture& reference : pictures)
@@ -100,9 +101,9 @@ void warn_of_uncovered(const CompareArguments& arguments, const Picture& picture
   std::size_t uncovered = 0;
   for (std::size_t i = 0; i < object.size(); ++i) uncovered += picture.object[i] > object[i] ? 1 : 0;
   if (uncovered > 0)
-    print_warning(arguments.log, fmt::format("{} pixels show an object in {} but not in the reference; they "
-                                             "are not compared",
-                                             grouped(uncovered), picture.path));
+    print_warning(arguments.log,
+                  fmt::format("{} pixels show an object in {} but not in the reference; they are excluded",
+                              grouped(uncovered), picture.path));
 }
 
 CompareReport describe(const std::vector<Picture>& pictures, const std::vector<std::uint8_t>& object) {
@@ -175,7 +176,7 @@ void check_values(const CompareReport& report, const Picture& reference) {
   if (!report.failures.empty()) return;
   for (std::size_t c = 0; c < report.channels.size(); ++c)
     if (report.halves.empty() ? report.errors[c].values == 0 : report.halves[c].pixels == 0)
-      throw bad_file(reference.path, "no value of the object is finite in channel " + report.channels[c]);
+      throw bad_file(reference.path, "no finite value of the object in channel " + report.channels[c]);
 }
 
 }  // namespace

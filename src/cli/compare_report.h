@@ -18,7 +18,7 @@ struct FlipReport {
   double exposure = 0;  ///< stops
 };
 
-/// What the values that are not finite were found in.
+/// Counts of values that are not finite.
 struct NonFiniteReport {
   std::string path;
   NonFinite count;
@@ -28,10 +28,10 @@ struct CompareReport {
   int width = 0, height = 0;
   std::size_t object_pixels = 0;
   std::vector<std::string> channels;
-  std::vector<double> floors;               ///< of the relative error; none with halves
+  std::vector<double> floors;               ///< floors of the relative error; none with halves
   std::vector<ErrorStatistics> errors;      ///< a channel each, then over all; none with halves
   std::vector<HalvesEstimate> halves;       ///< a channel each, then over all; none without halves
-  std::optional<FlipReport> flip;           ///< of R, G, B against one reference
+  std::optional<FlipReport> flip;           ///< FLIP of R, G, B against one reference
   std::vector<NonFiniteReport> not_finite;  ///< the picture, then its references
   std::vector<std::string> failures;        ///< why the comparison failed
 };

@@ -52,14 +52,14 @@ std::vector<int> parse_frames(const std::string& text) {
     const std::optional<int> first = take_number(rest);
     const std::optional<int> last = take(rest, '-') ? take_number(rest) : first;
     const std::optional<int> step = take(rest, 'x') ? take_number(rest) : 1;
-    if (!first || !last || !step || *step < 1) throw refused("cannot tell the frames", such_as);
+    if (!first || !last || !step || *step < 1) throw refused("bad frame range", such_as);
     if (*last < *first) throw refused("a range ends before it begins", such_as);
     for (std::int64_t frame = *first; frame <= *last; frame += *step) {
       frames.insert(int(frame));
       if (frames.size() > kMostFrames) throw refused("too many frames", "at most " + grouped(kMostFrames));
     }
   } while (take(rest, ','));
-  if (!rest.empty()) throw refused("cannot tell the frames", such_as);
+  if (!rest.empty()) throw refused("bad frame range", such_as);
   return std::vector<int>(frames.begin(), frames.end());
 }
 
@@ -78,12 +78,12 @@ void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_
   const auto begin = Clock::now();
   so_far = {frames.size()};
   std::vector<int> failed;
-  Monitor between;  // what comes between two frames
+  Monitor between;  // monitor between two frames
   const InterruptHandler interrupt(between);
   const auto stopped = [&](const std::string& words) {
     return Error(ErrorKind::interrupted, {}, 0, 0,
-                 fmt::format("{}; {} of {} frames are done, and the same command goes on with the others",
-                             words, so_far.finished - failed.size(), frames.size()));
+                 fmt::format("{}; {} of {} frames are done; repeat the command to render the others", words,
+                             so_far.finished - failed.size(), frames.size()));
   };
   for (const int frame : frames) {
     if (between.cancelled) throw stopped("interrupted");
@@ -105,8 +105,8 @@ void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_
   }
   if (!log.quiet && log.format == LogFormat::text) {
     const std::size_t found = frames.size() - so_far.rendered - failed.size();
-    write_line(stdout, fmt::format("\n{} of {} frames made{}{} in {}", so_far.rendered, frames.size(),
-                                   found > 0 ? fmt::format(", {} there already", found) : "",
+    write_line(stdout, fmt::format("\n{} of {} frames rendered{}{} in {}", so_far.rendered, frames.size(),
+                                   found > 0 ? fmt::format(", {} skipped", found) : "",
                                    failed.empty() ? "" : fmt::format(", {} failed", failed.size()),
                                    short_time(seconds_since(begin))));
   }

@@ -16,7 +16,7 @@ namespace opaline {
 /// error Error{bad_input}: it is none of these, or more than 100000
 std::vector<int> parse_frames(const std::string& text);
 
-/// What parse_frames makes the frames of.
+/// Inverse of parse_frames.
 std::string frames_text(const std::vector<int>& frames);
 
 /// Calls work(frame) for each, which says whether it rendered the frame or found it there; what goes wrong
@@ -30,7 +30,7 @@ void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_
 /// Gives the session the scene of the reference frame, if its method has samples.
 void anchor_session(Session& session, const std::string& scene, const std::vector<std::string>& overrides);
 
-/// What a picture of a frame is made from besides the program: as scene_hash, with the reference frame's
+/// Hash of all inputs of a frame's image but the program: as scene_hash, with the reference frame's
 /// meshes.
 std::string frame_hash(const std::string& path, const std::vector<std::string>& overrides,
                        const Scene& scene);
@@ -38,7 +38,7 @@ std::string frame_hash(const std::string& path, const std::vector<std::string>& 
 /// The command's arguments with the frame's number in the names of its files.
 RenderArguments arguments_of_frame(const RenderArguments& arguments, int frame);
 
-/// Whether all the outputs are there and each picture says that this frame was made by this version from this
+/// True if all the outputs are there and each picture says that this frame was made by this version from this
 /// hash with this command.
 bool is_rendered(const RenderArguments& arguments, const std::string& hash, int frame);
 

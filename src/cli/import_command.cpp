@@ -27,12 +27,11 @@ void import_command(const ImportArguments& arguments) {
       import_asset(arguments.asset, path_from(arguments.scene, arguments.asset), arguments.material);
   if (!arguments.log.quiet)
     for (const std::string& line : asset.translated) write_line(stderr, line);
-  for (const std::string& line : asset.not_carried) write_line(stderr, "not carried over: " + line);
+  for (const std::string& line : asset.not_carried) write_line(stderr, "not imported: " + line);
   parse_scene(asset.text, arguments.scene);
   if (!arguments.overwrite && fs::is_regular_file(arguments.scene) &&
       read_scene_text(arguments.scene) != asset.text)
-    throw bad_file(arguments.scene, "is there already and says something else",
-                   "another name, or --overwrite");
+    throw bad_file(arguments.scene, "exists with different content", "another name, or --overwrite");
   write_file(arguments.scene, asset.text);
   if (!arguments.log.quiet) write_line(stdout, arguments.scene + ": " + asset.summary);
 }

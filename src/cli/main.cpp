@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
   opaline::prepare_process();
   opaline::Log log;
   if (opaline::asks_for_json(argc, argv))
-    log.format = opaline::LogFormat::json;  // of mistakes in the options, too
+    log.format = opaline::LogFormat::json;  // also for errors in the options
   try {
     const opaline::Command command = opaline::parse_arguments(argc, argv);
     log = log_of(command);

@@ -22,11 +22,11 @@ void check_memory(const Scene& scene, const Plan& plan, std::size_t more_bytes) 
   const std::size_t bytes = std::max(plan.bytes + more_bytes, picture), taken = resident_memory(),
                     left = available_memory();
   if (bytes <= taken || bytes - taken <= left) return;
-  std::string advice = "a lower film.resolution, or --crop for one part after the other,";
+  std::string advice = "a lower film.resolution, or rendering in parts with --crop,";
   if (method_of(scene.settings.method).needs_samples() && !plan.groups.empty())
     advice += " or a lower settings.max_samples";
   throw run_failed({},
-                   fmt::format("out of memory: the picture needs about {}, and there are {}; {} takes less",
+                   fmt::format("out of memory: the image needs about {}, and {} are available; {} needs less",
                                short_bytes(bytes), short_bytes(left + taken), advice));
 }
 

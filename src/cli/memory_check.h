@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the machine has the memory that a picture needs.
+// Check for sufficient memory before a render.
 #pragma once
 
 #include "opaline/render/plan.h"

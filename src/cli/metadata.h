@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an EXR says about how it was made: enough to make it again, nothing that moves from run to run.
+// Metadata of an EXR: everything to reproduce it, and nothing that differs between runs.
 #pragma once
 
 #include <optional>

@@ -26,8 +26,9 @@ inline CLI::Option* add_size(CLI::App& app, const std::string& name, std::uint64
 
 /// Option of the commands that read assets.
 inline void add_allow_outside(CLI::App& app) {
-  app.add_flag_callback("--allow-outside", allow_files_outside_assets,
-                        "let assets name files outside of their own folders: buffers, images, libraries");
+  app.add_flag_callback(
+      "--allow-outside", allow_files_outside_assets,
+      "allow assets to refer to files outside their own folder: buffers, images, libraries");
 }
 
 inline void add_threads(CLI::App& app, int& threads, const std::string& help) {

@@ -63,7 +63,7 @@ CLI::Validator share_where(const char* such_as, const IsGood& is_good) {
         const std::optional<double> share = share_of(text);
         const bool percent = text.ends_with('%');
         if (share && is_good(*share) && (percent || *share < 1)) return std::string();
-        std::string failure = fmt::format("expected a share such as {}, got {}", such_as, text);
+        std::string failure = fmt::format("expected a fraction such as {}, got {}", such_as, text);
         if (share && *share >= 1 && *share <= 100 && !percent)
           failure += fmt::format(", which is {:.4g} %; did you mean {}%?", 100 * *share, text);
         return failure;
@@ -71,7 +71,7 @@ CLI::Validator share_where(const char* such_as, const IsGood& is_good) {
       {});
 }
 
-/// Whether CLI11 made a number of text and unit. What it would say tells of the unit alone.
+/// True if CLI11 made a number of text and unit. What it would say tells of the unit alone.
 bool converts(const CLI::Validator& conversion, std::string& text) {
   try {
     return conversion(text).empty();
@@ -144,11 +144,11 @@ CLI::Validator whole_number(const Range& range) {
 }
 
 CLI::Validator share_check() {
-  return share_where("1% or .01", [](double) { return true; });
+  return share_where("1% or 0.01", [](double) { return true; });
 }
 
 CLI::Validator positive_share_check() {
-  return share_where("2% or .02", [](double share) { return share > 0 && share <= 1; });
+  return share_where("2% or 0.02", [](double share) { return share > 0 && share <= 1; });
 }
 
 CLI::Validator seconds_of() {
@@ -157,7 +157,7 @@ CLI::Validator seconds_of() {
 }
 
 CLI::Validator millimetres_of() {
-  return positive_with_unit("a length such as 2mm, 500um, .5cm or 1m",
+  return positive_with_unit("a length such as 2mm, 500um, 0.5cm or 1m",
                             {{"um", 1e-3}, {"mm", 1}, {"cm", 10}, {"m", 1000}});
 }
 
@@ -220,9 +220,9 @@ CLI::Validator layers_check() {
         std::string name;
         while (std::getline(names, name, ',') && std::ranges::find(kLayers, name) != kLayers.end())
           ;
-        if (name == "none") return std::string("none stands alone");
+        if (name == "none") return std::string("none cannot be combined with other layers");
         const std::string near = did_you_mean(name, kLayerWords);
-        return fmt::format("there is no layer '{}'{}", printable(name),
+        return fmt::format("unknown layer '{}'{}", printable(name),
                            near.empty() ? "; expected none, or some of " + join(kLayers) : near);
       },
       {});

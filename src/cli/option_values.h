@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the texts of options stand for, and what is wrong with them.
+// Conversion and validation of option texts.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -26,9 +26,9 @@ CLI::Validator resolution_check();
 CLI::Validator crop_check();
 /// CLI11 would let a number beyond 64 bits wrap or stop at the end, and take 010 for 8.
 CLI::Validator whole_number(const Range& range);
-/// Of 0 and more. A number without % is below 1: who writes 1 means 1 %.
+/// Fraction of 0 or more. A number without % must be below 1, because "1" usually means 1 %.
 CLI::Validator share_check();
-/// Of (0, 1], the same.
+/// The same in (0, 1].
 CLI::Validator positive_share_check();
 /// "2s", "500ms", "1.5min", "1h" or seconds alone, to seconds.
 CLI::Validator seconds_of();
@@ -39,7 +39,7 @@ CLI::Validator bytes_of();
 /// Finite.
 CLI::Validator number_check();
 CLI::Validator log_check();
-/// Of a file's name.
+/// Checks the extension of a file name.
 CLI::Validator extension_check(const std::string& extension);
 /// "diffuse,N", "all" or "none"; nothing if a name is no layer's.
 std::optional<LayerChoice> layers_of(const std::string& text);

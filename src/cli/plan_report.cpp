@@ -45,7 +45,7 @@ std::string picture_text(const Film& film) {
   std::string text = fmt::format("{} x {} pixels, ", film.resolution[0], film.resolution[1]);
   if (film.crop) {
     const auto& [x0, y0, x1, y1] = *film.crop;
-    text += fmt::format("of them x {} to {}, y {} to {}, ", x0, x1 - 1, y0, y1 - 1);
+    text += fmt::format("crop x {} to {}, y {} to {}, ", x0, x1 - 1, y0, y1 - 1);
   }
   text += counted(std::size_t(film.samples_per_pixel), "sample") + " each";
   return text + fmt::format(", {} filter", name_of(film.filter));
@@ -70,14 +70,14 @@ void add_model(Paragraphs& plan, const GroupPlan& group, double across_air) {
   constexpr double kWorthSaying = .02;
   if (across_air > kWorthSaying)
     add_row(plan, "",
-            fmt::format("light jumps across the air between parts that face each other, {:.0f} % of "
-                        "what the profile carries; with --method volume_diffusion it does not",
+            fmt::format("the radial profile carries {:.0f} % of its light across air gaps between facing "
+                        "surfaces; --method volume_diffusion does not",
                         100 * across_air));
 }
 
 void add_group(Paragraphs& plan, const Scene& scene, const World& world, const GroupPlan& group) {
   add_row(plan, "translucent",
-          fmt::format("{} in {}: {:.4g} mm^2, {}", group.name, scene.media[group.medium].name, group.area,
+          fmt::format("{} of {}: {:.4g} mm^2, {}", group.name, scene.media[group.medium].name, group.area,
                       mean_free_path_text(group)));
   add_model(plan, group, share_across_air(scene, world, group));
   if (!method_of(scene.settings.method).needs_samples()) return;
@@ -90,17 +90,17 @@ std::string marble_text(const Scene& scene, const World& world) {
   constexpr double kHandful = 50;  // mm
   constexpr double kMuch = 500;    // mm: a thousand mean free paths of marble
   const Shape& shape = scene.shapes[0];
-  // An OBJ has no unit, a figure in metres is as large as a person: by its size light goes through or does not.
+  // An OBJ has no unit, a figure in metres is as large as a person: by its size light transmitted or does not.
   const double diagonal = world.diagonal * world.unit;
   const bool is_unitless = scene.file.ends_with(".obj") && scene.mm_per_unit == 1;
   const bool has_lights = std::ranges::any_of(scene.lights, is_delta);  // whose brightness follows the unit
   const bool has_unit = !(diagonal > 0) || !(is_unitless || (diagonal > kMuch && !has_lights));
   return fmt::format(
-      "; --set media.marble.preset=marble --set shapes.{}.medium=marble{} makes marble of {}{}{}",
+      "; --set media.marble.preset=marble --set shapes.{}.medium=marble{} gives {} the medium marble{}{}",
       override_key(shape.name, 0),
       has_unit ? "" : fmt::format(" --set mm_per_unit={:.2g}", scene.mm_per_unit * kHandful / diagonal),
       shape.name, has_unit ? "" : fmt::format(", {} mm across", kHandful),
-      shape.reflectance_texture ? " and not of its texture" : "");
+      shape.reflectance_texture ? ", without its texture" : "");
 }
 
 Paragraphs paragraphs_of(const Scene& scene, const World& world, const Plan& plan) {
@@ -114,15 +114,15 @@ Paragraphs paragraphs_of(const Scene& scene, const World& world, const Plan& pla
   for (std::size_t g = 0; g < std::min(plan.groups.size(), kMostShown); ++g)
     add_group(text, scene, world, plan.groups[g]);
   if (plan.groups.size() > kMostShown)
-    add_row(text, "", fmt::format("and {} bodies more", grouped(plan.groups.size() - kMostShown)));
+    add_row(text, "", fmt::format("and {} more bodies", grouped(plan.groups.size() - kMostShown)));
   if (plan.groups.empty())
-    add_row(text, "translucent", "nothing: no samples are needed" + marble_text(scene, world));
+    add_row(text, "translucent", "none; no samples are needed" + marble_text(scene, world));
   for (std::size_t i = 0; i < plan.stages.size(); ++i) add_row(text, i == 0 ? "stages" : "", plan.stages[i]);
   add_row(text, "memory", "about " + short_bytes(plan.bytes) + " at the peak");
   if (const double seconds = expected_seconds(scene, plan); seconds > kLong)
     add_row(text, "time",
             fmt::format("about {} s of CPU{}", grouped(std::uint64_t(seconds)),
-                        scene.settings.until_error ? ", more for the error that is asked for" : ""));
+                        scene.settings.until_error ? ", plus the time to reach settings.until_error" : ""));
   return text;
 }
 
@@ -177,7 +177,7 @@ Json plan_json(const Scene& scene, const World& world, const Plan& plan) {
   return json;
 }
 
-/// Of three channels: "83 79 -"; none where a channel is left out.
+/// Text of three channels: "83 79 -"; "-" for an empty channel.
 template <class Figure>
 std::string three(const PlateModel& plate, const Figure& figure) {
   std::string text;
@@ -201,22 +201,23 @@ Json plate_json(const PlateModel& plate) {
 
 void print_plate(const PlateModel& plate) {
   using Channel = PlateChannel;
-  print_row("model error",
-            fmt::format("{} is as thick as a plate of {:.3g} mm: {} mean free paths (R G B)", plate.body,
-                        plate.thickness, three(plate, [](const Channel& c) { return c.optical_thickness; })));
-  print_row("", fmt::format("of diffuse light that enters, `{}` sends back {} % and lets through {} %;",
+  print_row(
+      "model error",
+      fmt::format("{} has the thickness of a plate of {:.3g} mm: {} mean free paths (R G B)", plate.body,
+                  plate.thickness, three(plate, [](const Channel& c) { return c.optical_thickness; })));
+  print_row("", fmt::format("of transmitted diffuse light, `{}` reflects {} % and transmits {} %;",
                             name_of(plate.kind),
                             three(plate, [](const Channel& c) { return 100 * c.profile.back; }),
                             three(plate, [](const Channel& c) { return 100 * c.profile.through; })));
-  print_row("", fmt::format("random walks, the truth: {} % and {} %",
+  print_row("", fmt::format("random walks (reference): {} % and {} %",
                             three(plate, [](const Channel& c) { return 100 * c.walks.back; }),
                             three(plate, [](const Channel& c) { return 100 * c.walks.through; })));
 }
 
 void warn_of_nothing_seen(const Log& log) {
   print_warning(log,
-                "nothing translucent is seen: --target-error promises nothing here; noise of opaque surfaces "
-                "is settings.light_samples, of edges --spp");
+                "no translucent object is visible, so --target-error has no effect; settings.light_samples "
+                "controls noise on opaque surfaces, --spp antialiasing");
 }
 
 }  // namespace
@@ -238,9 +239,11 @@ void warn_of_unused_media(const Log& log, std::span<const std::string> overrides
     const bool is_used =
         std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return shape.medium == m; });
     if (is_set && !is_used)
-      print_warning(log, fmt::format("no shape has the medium '{0}' of --set {1}...; --set "
-                                     "shapes.NAME.medium={0} gives it to one",
-                                     scene.media[m].name, prefix));
+      print_warning(
+          log,
+          fmt::format(
+              "no shape uses the medium '{0}' of --set {1}...; assign it with --set shapes.NAME.medium={0}",
+              scene.media[m].name, prefix));
   }
 }
 
@@ -270,7 +273,7 @@ void print_decisions(const Log& log, const std::vector<std::string>& decisions, 
 void print_trial(const Log& log, double seconds) {
   if (!log.quiet && log.format == LogFormat::text && seconds > kLong)
     print_row("time",
-              fmt::format("about {} s of CPU for a first trial, as much or more for each that follows",
+              fmt::format("about {} s of CPU for the first trial, and at least as much for each further one",
                           grouped(std::uint64_t(seconds))));
 }
 
@@ -287,22 +290,22 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
                  {"evaluator", name_of(settings.evaluator)}});
   if (!chosen.sees_translucent) return warn_of_nothing_seen(log);
   if (!log.quiet && log.format == LogFormat::text)
-    print_row("target", fmt::format("{:.3g} %: {} predicted to be {} off, tolerance {}", 100 * target,
+    print_row("target", fmt::format("{:.3g} %: {}, predicted error {}, tolerance {}", 100 * target,
                                     counted(chosen.samples, "sample"), short_percent(chosen.predicted),
                                     short_percent(settings.tolerance)));
   if (!chosen.reached)
-    print_warning(log,
-                  fmt::format("an error of {:.3g} % cannot be reached with {}: {} is predicted", 100 * target,
-                              chosen.is_short_of_rays
-                                  ? grouped(std::uint64_t(kMostShadowRays)) + " shadow rays to a light"
-                                  : fmt::format("settings.max_samples of {}", settings.max_samples),
-                              short_percent(chosen.predicted)));
+    print_warning(
+        log, fmt::format("cannot reach an error of {:.3g} % with {}; the predicted error is {}", 100 * target,
+                         chosen.is_short_of_rays
+                             ? grouped(std::uint64_t(kMostShadowRays)) + " shadow rays per light"
+                             : fmt::format("settings.max_samples of {}", settings.max_samples),
+                         short_percent(chosen.predicted)));
 }
 
 void print_again_by(const Log& log, const std::string& command) {
   if (log.quiet) return;
   print_event(log, "again_by", {{"command", command}});
-  if (log.format == LogFormat::text) print_row("again by", command);
+  if (log.format == LogFormat::text) print_row("repeat with", command);
 }
 
 void print_volume_target(const Log& log, double target, const TargetError& chosen, const Settings& settings) {
@@ -318,17 +321,17 @@ void print_volume_target(const Log& log, double target, const TargetError& chose
                  {"light_samples", settings.light_samples}});
   if (!chosen.sees_translucent) return warn_of_nothing_seen(log);
   if (!log.quiet && log.format == LogFormat::text)
-    print_row("target",
-              fmt::format("{:.3g} %: {}, cells of {:.3g} mean free paths predicted to be {} off random walks",
-                          100 * target, counted(chosen.samples, "sample"), settings.cell_size,
-                          short_percent(chosen.predicted)));
+    print_row(
+        "target",
+        fmt::format("{:.3g} %: {}, cells of {:.3g} mean free paths, predicted error {} against random walks",
+                    100 * target, counted(chosen.samples, "sample"), settings.cell_size,
+                    short_percent(chosen.predicted)));
   if (!chosen.model)
-    return print_warning(log,
-                         "a mesh is open, or too thin for diffusion: what that is off by is not known, and "
-                         "nothing is promised");
+    return print_warning(
+        log, "a mesh is open or too thin for diffusion; its model error is unknown, so no error is promised");
   if (!chosen.reached)
-    print_warning(log, fmt::format("cannot promise less than {} against --method volume, of which {} "
-                                   "are the diffusion model's; taking that in place of {:.3g} %",
+    print_warning(log, fmt::format("cannot promise an error below {} against --method volume, including a "
+                                   "model error of {}; uses it instead of {:.3g} %",
                                    short_percent(std::max(chosen.promised, chosen.predicted)),
                                    short_percent(*chosen.model), 100 * target));
 }
@@ -349,31 +352,26 @@ void print_budget(const Log& log, double budget, double before, const TimeBudget
     print_event(log, "budget", members);
   }
   if (!chosen.sees_translucent)
-    return print_warning(log,
-                         "nothing translucent is seen: --time-budget has nothing to choose here, and the "
-                         "picture takes as long as it takes");
+    return print_warning(log, "no translucent object is visible, so --time-budget has no effect");
   const std::string error =
-      chosen.predicted ? fmt::format(" predicted to be {} off", short_percent(*chosen.predicted)) : "";
+      chosen.predicted ? fmt::format(", predicted error {}", short_percent(*chosen.predicted)) : "";
   if (!log.quiet && log.format == LogFormat::text)
-    print_row(
-        "budget",
-        fmt::format("{:.4g} s: {}{}, tolerance {}; about {:.3g} s are planned{}", budget,
-                    counted(chosen.samples, "sample"), error, short_percent(settings.tolerance), planned,
-                    chosen.at_most ? ", more samples being too many for settings.max_samples" : ""));
+    print_row("budget",
+              fmt::format("{:.4g} s: {}{}, tolerance {}; planned {:.3g} s{}", budget,
+                          counted(chosen.samples, "sample"), error, short_percent(settings.tolerance),
+                          planned, chosen.at_most ? "; settings.max_samples limits the samples" : ""));
   if (!chosen.fits)
     print_warning(
-        log,
-        fmt::format(
-            "{:.4g} s of CPU are too little: the cheapest picture of this scene takes about {:.2g} s, and is "
-            "made; fewer pixels, a lower --spp or settings.light_samples make it cheaper",
-            budget, planned));
+        log, fmt::format("{:.4g} s of CPU are too few: opaline renders the cheapest image of this scene, in "
+                         "about {:.2g} s; fewer pixels, --spp or settings.light_samples reduce the cost",
+                         budget, planned));
 }
 
 void print_skipped(const Log& log, const std::vector<std::string>& outputs) {
   if (log.quiet) return;
   if (log.format == LogFormat::json) print_event(log, "skipped", {{"outputs", outputs}});
   for (std::size_t i = 0; i < outputs.size() && log.format == LogFormat::text; ++i)
-    print_row("is there", outputs[i]);
+    print_row("skipped", outputs[i]);
 }
 
 }  // namespace opaline

@@ -17,7 +17,7 @@ void precompute_frame(const PrecomputeArguments& arguments, Session& session, St
   stages.run("loading", [&] {
     Scene scene = load_scene(arguments.scene, arguments.overrides, frame.value_or(1));
     if (frame) session.expect_pictures(scene.camera_frames);
-    scene.settings.method = Method::hierarchical;  // what else is there to prepare
+    scene.settings.method = Method::hierarchical;  // the only method with stages to precompute
     session.edit(std::move(scene));
     return 0;
   });

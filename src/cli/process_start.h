@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a process is given by whoever starts it, made safe before anything else happens.
+// Safe state of inherited descriptors and signals, before anything else.
 #pragma once
 
 namespace opaline {
@@ -11,7 +11,7 @@ namespace opaline {
 /// with one line and exit code 3, even before main.)
 void prepare_process();
 
-/// Whether standard output came closed.
+/// True if standard output came closed.
 bool was_started_without_output();
 
 }  // namespace opaline

@@ -26,7 +26,7 @@
 namespace opaline {
 namespace {
 
-constexpr const char* kGiven = "MEDIUM";  // what messages call the argument, as --help does
+constexpr const char* kGiven = "MEDIUM";  // name of the argument in messages, as in --help
 
 bool is_object(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
@@ -38,7 +38,7 @@ Medium preset_medium(const std::string& name) {
   if (std::ranges::find(names, name) != names.end())
     return parse_medium("{\"preset\": \"" + name + "\"}", kGiven);
   const std::string near = did_you_mean(name, names);
-  throw Error(ErrorKind::bad_input, {}, 0, 0, "there is no medium '" + printable(name) + "'" + near,
+  throw Error(ErrorKind::bad_input, {}, 0, 0, "unknown medium '" + printable(name) + "'" + near,
               near.empty()
                   ? "one of " + join(names) + R"(, or an object such as {"sigma_a": 0.01, "sigma_s": 2})"
                   : "");
@@ -59,14 +59,15 @@ ProfileRequest request_of(const ProfileArguments& arguments) {
   const auto* coefficients = std::get_if<PhysicalMedium>(&medium.coefficients);
   if (coefficients == nullptr)
     throw Error(ErrorKind::bad_input, {}, 0, 0,
-                "each model makes another medium of subsurface_color, so that there is none to walk through",
+                "subsurface_color defines a different medium for each diffusion model, so random walks have "
+                "no medium",
                 "sigma_a and sigma_s_prime, or sigma_a and sigma_s");
   ProfileRequest request;
   request.name = is_object(arguments.medium) ? "the medium" : arguments.medium;
   request.coefficients = *coefficients;
   request.eta = arguments.eta.value_or(medium.eta);
   const Range& range = key_info("medium", "specular_ior").range;
-  check_value(request.eta >= range.low && request.eta <= range.high, "--eta", "a number from .1 to 10",
+  check_value(request.eta >= range.low && request.eta <= range.high, "--eta", "a number from 0.1 to 10",
               request.eta);
   request.g = arguments.g.value_or(anisotropy_of(arguments.medium));
   check_value(std::abs(request.g) < 1, "--g", "a number between -1 and 1", request.g);
@@ -81,7 +82,7 @@ ProfileRequest request_of(const ProfileArguments& arguments) {
 void prepare_folder(const std::string& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
-  if (failure) throw run_failed(folder, "cannot make the folder: " + failure.message());
+  if (failure) throw run_failed(folder, "cannot create the folder: " + failure.message());
   check_page_file(folder + "/index.html");
 }
 
@@ -132,8 +133,8 @@ void print_text(const ProfileReport& report) {
                                    request.eta, request.g)});
   print_channels(report, "walks",
                  [](const ProfiledChannel& c) { return fmt::format("2 x {}", grouped(c.diffuse.walks)); });
-  print_face(report, "comes back", &SlabWalks::back, 0);
-  if (report.is_slab()) print_face(report, "goes through", &SlabWalks::through, request.thickness);
+  print_face(report, "reflected", &SlabWalks::back, 0);
+  if (report.is_slab()) print_face(report, "transmitted", &SlabWalks::through, request.thickness);
   const auto is_unfinished = [](const ProfiledChannel& c) { return c.diffuse.unfinished.value > 0; };
   if (std::ranges::any_of(report.channels, is_unfinished))
     print_channels(report, "unfinished, diffuse",
@@ -197,7 +198,7 @@ void profile_command(const ProfileArguments& arguments) {
     for (const ProfiledChannel& channel : report.channels)
       report.notes.emplace_back(
           "walks " + channel.name,
-          fmt::format("{} in diffuse light and as many along the normal", channel.diffuse.walks));
+          fmt::format("{0} in diffuse light and {0} along the normal", channel.diffuse.walks));
     report.notes.emplace_back("seed", std::to_string(request.seed));
     report.notes.emplace_back("cost", fmt::format("{:.1f} s of CPU", watch.cost("walks").cpu_seconds));
     for (auto& [key, value] : report.notes) std::ranges::replace(value, '\n', ' ');

@@ -20,13 +20,11 @@ Error bad_usage(const std::string& message, const std::string& expected, const s
   return Error(ErrorKind::bad_input, {}, 0, 0, message, expected, got);
 }
 
-/// What is chosen is written down as settings: several groups have a spacing in common.
+/// Requires that settings can express the choice: several bodies share one spacing.
 void check_groups(const Session& session, const char* option) {
   if (session.scene().settings.samples && session.plan().groups.size() > 1)
-    throw bad_usage(
-        fmt::format("{} chooses samples by their spacing, so that all groups have as many as they need",
-                    option),
-        "no settings.samples in the scene file");
+    throw bad_usage(fmt::format("{} chooses the sample spacing, and so the samples of each body", option),
+                    "no settings.samples in the scene file");
 }
 
 KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, Session& session) {
@@ -67,10 +65,10 @@ void check_budget(const RenderArguments& render) {
   if (render.target_error)
     throw bad_usage("--time-budget and --target-error both choose the settings", "one of the two");
   if (!render.frames.empty())
-    throw bad_usage("--time-budget chooses for one picture, and frames would flicker",
-                    "a single picture first, then --frames with the settings of its closing lines");
+    throw bad_usage("--time-budget chooses settings for one image, so frames would flicker",
+                    "a single image first, then --frames with the settings of its closing lines");
   if (!render.cache.empty())
-    throw bad_usage("--time-budget plans by what stages cost, and what is found in a --cache costs nothing",
+    throw bad_usage("--time-budget plans with the cost of stages, and cached stages have none",
                     "one of the two");
   const std::pair<bool, const char*> unplanned[] = {
       {!render.samples_ply.empty(), "--samples-ply"},
@@ -106,7 +104,7 @@ Plan announced_plan(const RenderArguments& arguments, const Session& session) {
   const Settings& settings = session.scene().settings;
   if (arguments.time_budget && settings.method == Method::direct && !settings.entry_samples &&
       !settings.until_error)
-    plan.stages.back() = "shading: direct, for as long as --time-budget leaves";
+    plan.stages.back() = "shading: direct, until the end of --time-budget";
   return plan;
 }
 
@@ -114,11 +112,9 @@ void warn_of_little_time(const RenderArguments& arguments, const Film& film, dou
                          const std::optional<DirectResult>& direct) {
   if (!direct || direct->entry_samples > entry_samples_per_pass(film) || spent <= *arguments.time_budget)
     return;
-  print_warning(
-      arguments.log,
-      fmt::format("{:.4g} s of CPU are too little: a single pass of direct takes {:.2g} s, and is made; "
-                  "fewer pixels make it cheaper",
-                  *arguments.time_budget, spent));
+  print_warning(arguments.log, fmt::format("{:.4g} s of CPU are too few: opaline renders a single pass of "
+                                           "direct, in {:.2g} s; fewer pixels reduce the cost",
+                                           *arguments.time_budget, spent));
 }
 
 RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache* cache) {
@@ -154,26 +150,27 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
   const Settings& settings = session.scene().settings;
   if (arguments.time_budget &&
       (settings.method == Method::lambert || settings.method == Method::volume_diffusion))
-    throw bad_usage("--time-budget chooses how light under the surface is summed",
+    throw bad_usage("--time-budget requires hierarchical evaluation or direct",
                     "--method hierarchical or direct", std::string(name_of(settings.method)));
   if (arguments.time_budget && settings.method == Method::volume)
-    throw bad_usage("--time-budget does not end random walks", "--until-error, and --resume to go on later",
+    throw bad_usage("--time-budget cannot stop random walks", "--until-error, and --resume to continue later",
                     "volume");
   const bool hierarchical = settings.method == Method::hierarchical;
   if (settings.method == Method::volume_diffusion && arguments.target_error && !arguments.verify)
     return choose_cells(stages, arguments, session);
   if (!hierarchical && (arguments.target_error || arguments.verify))
-    throw bad_usage(arguments.target_error ? "--target-error chooses how light under the surface is summed"
-                                           : "--verify measures how light under the surface is summed",
-                    arguments.verify
-                        ? "--method hierarchical; --method volume tells the error of volume_diffusion"
-                        : "--method hierarchical or volume_diffusion; the noise of direct and volume "
-                          "ends at --until-error",
+    throw bad_usage(arguments.target_error
+                        ? "--target-error requires hierarchical evaluation or volume_diffusion"
+                        : "--verify requires hierarchical evaluation or volume_diffusion",
+                    arguments.verify ? "--method hierarchical; compare volume_diffusion with --method volume"
+                                     : "--method hierarchical or volume_diffusion; use --until-error for the "
+                                       "noise of direct and volume",
                     std::string(name_of(settings.method)));
   if (!chooses_settings(arguments) || !hierarchical) return {};
   if (settings.evaluator == EvaluatorKind::classic)
-    throw bad_usage(fmt::format("{} cannot tell the error of the classic traversal", option_of(arguments)),
-                    "another --evaluator", "classic");
+    throw bad_usage(
+        fmt::format("{} cannot estimate the error of the classic traversal", option_of(arguments)),
+        "another --evaluator", "classic");
   if (arguments.time_budget) return fit_settings(stages, arguments, session);
   const TargetError chosen = stages.run(
       "choosing",
@@ -190,7 +187,7 @@ std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArg
                                             const RenderResult& picture) {
   if (!arguments.verify) return {};
   if (session.bodies().empty()) {
-    print_warning(arguments.log, "nothing is translucent: --verify has nothing to measure");
+    print_warning(arguments.log, "the scene has no translucent shape, so --verify measures nothing");
     return {};
   }
   // An error far below the target need not be known to its last digit.
@@ -202,12 +199,11 @@ std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArg
         "verifying", [&] { return measure_error(session, expected, &stages.monitor()); },
         InnerStages::trials);
     if (measured.points == 0)
-      print_warning(arguments.log, "nothing translucent is seen: --verify has nothing to measure");
+      print_warning(arguments.log, "no translucent object is visible, so --verify measures nothing");
     return measured;
   } catch (const Error& stopped) {
     if (stopped.kind != ErrorKind::interrupted) throw;
-    throw Error(ErrorKind::interrupted, {}, 0, 0,
-                "interrupted while the error was measured; the picture is written");
+    throw Error(ErrorKind::interrupted, {}, 0, 0, "interrupted during --verify; the image is written");
   }
 }
 

@@ -25,7 +25,7 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
 /// error as choose_settings; Error{bad_input}: several groups beside settings.samples
 RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache* cache);
 
-/// What writing the outputs does, on any picture: files beside them that are gone afterwards.
+/// Writes the outputs of an image for timing, into temporary files in the same folders.
 FinishPicture trial_writing(const RenderArguments& arguments, const Film& film);
 
 /// The session's, for print_plan: how long direct goes on may be up to --time-budget.
@@ -35,7 +35,7 @@ Plan announced_plan(const RenderArguments& arguments, const Session& session);
 void warn_of_little_time(const RenderArguments& arguments, const Film& film, double spent,
                          const std::optional<DirectResult>& direct);
 
-/// Whether --time-budget or --target-error is given.
+/// True if --time-budget or --target-error is given.
 bool chooses_settings(const RenderArguments& arguments);
 
 /// CPU seconds that --time-budget leaves from now on.

@@ -36,7 +36,7 @@ namespace {
 void check_precompute(const RenderArguments& arguments, const Scene& scene, const Plan& plan) {
   if (arguments.samples_ply.empty()) return;
   if (!method_of(scene.settings.method).needs_samples() || plan.groups.empty())
-    throw bad_file(arguments.samples_ply, "there are no samples to write",
+    throw bad_file(arguments.samples_ply, "no samples to write",
                    "settings.method \"hierarchical\", a translucent shape and a light");
 }
 
@@ -47,16 +47,16 @@ struct Shading {
   double cpu_seconds = 0, embree_seconds = 0;
 };
 
-constexpr const char* kNothingKept =
-    "nothing was kept: --resume FILE keeps the sums of direct and of random walks";
+constexpr const char* kNothingKept = "no sums are stored; --resume FILE stores the sums of direct and volume";
 
-/// What Ctrl-C has not lost.
+/// Message about the stored sums after Ctrl-C.
 std::string how_to_go_on(const RenderArguments& arguments, const Session& session,
                          const ResumableState& resumable) {
   if (arguments.resume.empty()) return kNothingKept;
-  if (resumable.state.passes == 0) return "nothing was kept: the first pass over the picture was not done";
+  if (resumable.state.passes == 0)
+    return "no sums are stored, because the first pass over the image is incomplete";
   const std::size_t samples = resumable.state.passes * entry_samples_per_pass(session.scene().film);
-  return fmt::format("the sums of {} entry samples a pixel are in {}; go on by {}", grouped(samples),
+  return fmt::format("{1} stores the sums of {0} entry samples per pixel; resume with {2}", grouped(samples),
                      arguments.resume, arguments.command_line);
 }
 
@@ -93,8 +93,8 @@ void prepare(StageRunner& stages, const RenderArguments& arguments, Session& ses
     const std::string kept =
         arguments.resume.empty() ? kNothingKept
         : walks.passes() == 0
-            ? "nothing was kept: the first pass over the samples was not done"
-            : fmt::format("the sums of {} passes of random walks are in {}; go on by {}",
+            ? "no sums are stored, because the first pass over the samples is incomplete"
+            : fmt::format("{1} stores the sums of {0} passes of random walks; resume with {2}",
                           grouped(walks.passes()), arguments.resume, arguments.command_line);
     throw Error(ErrorKind::interrupted, {}, 0, 0, "interrupted; " + kept);
   }
@@ -163,7 +163,7 @@ RenderArguments repeating(const RenderArguments& arguments, const Session& sessi
   return repeated;
 }
 
-/// What is shared by all pictures of the command; null where there is none.
+/// State shared by all images of the command; null: none.
 struct Shared {
   const StageCache* cache = nullptr;
   std::vector<std::string>* last_plan = nullptr;
@@ -181,7 +181,7 @@ void check_method_options(const RenderArguments& arguments, const Scene& scene) 
   if (method == Method::volume) return;
   if (arguments.gives_until_error) throw no_use("--until-error", "direct or volume");
   if (!arguments.resume.empty())
-    throw bad_file(arguments.resume, "there are no sums to go on from", "--method direct or volume");
+    throw bad_file(arguments.resume, "this method has no sums to resume", "--method direct or volume");
 }
 
 /// Gives the session its scene, unless the frame is there already (none); the scene's hash.
@@ -221,7 +221,7 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   KnownErrors errors = choose_settings(stages, arguments, session);
   if (shared.last_plan->empty()) warn_of_unused_media(arguments.log, arguments.overrides, scene);
   print_plan(arguments.log, scene, session.world(), announced_plan(arguments, session), shared.last_plan);
-  check_memory(scene, session.plan(), layer_bytes);  // of the settings that were chosen
+  check_memory(scene, session.plan(), layer_bytes);  // with the chosen settings
   return errors;
 }
 
@@ -239,8 +239,9 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
       print_warning(arguments.log, text);
   Shading shading = shade(stages, arguments, session);
   if (shading.picture.non_finite > 0)
-    print_warning(arguments.log, std::to_string(shading.picture.non_finite) +
-                                     " pixels are not finite and were written as 0; this is a defect");
+    print_warning(arguments.log,
+                  std::to_string(shading.picture.non_finite) +
+                      " pixels are not finite; 0 is written instead; please report this defect");
   for (const std::string& text : picture_warnings(session.scene(), session.world(), shading.picture.image))
     print_warning(arguments.log, text);
   for (const std::string& text : model_warnings(session.plan())) print_warning(arguments.log, text);

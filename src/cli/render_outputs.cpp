@@ -70,8 +70,7 @@ void check_layers(const LayerChoice& layers, const Scene& scene) {
         std::ranges::none_of(channels, [&](const std::string& channel) {
           return channel.substr(0, channel.find('.')) == layer;
         }))
-      throw Error(ErrorKind::bad_input, {}, 0, 0,
-                  "--layers: there is no layer '" + layer + "' with this method",
+      throw Error(ErrorKind::bad_input, {}, 0, 0, "--layers: no layer '" + layer + "' with this method",
                   layer == "variance" ? "--method direct" : "another --method", std::string(name_of(method)));
 }
 
@@ -120,8 +119,8 @@ std::vector<std::string> write_outputs(const RenderArguments& arguments, const S
   }
   if (cut > 0)
     print_warning(arguments.log, std::to_string(cut) +
-                                     " values above 65504 do not fit 16 bits and were cut; "
-                                     "--set film.pixel_type=float keeps them");
+                                     " values exceed 65504, the maximum of 16 bits, and are clamped; --set "
+                                     "film.pixel_type=float keeps them");
   return written;
 }
 

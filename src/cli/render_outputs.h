@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// What cannot be written at the end is said before the work.
+/// Reports an unwritable output before the work.
 /// error Error{run_failed} naming the file
 void check_writable(const RenderArguments& arguments);
 
@@ -27,7 +27,7 @@ WriteReport write_picture(const std::string& path, const Image& image, const Fil
 /// error Error{bad_input}: a layer was named that this scene's picture does not have
 void check_layers(const LayerChoice& layers, const Scene& scene);
 
-/// Of the layers that are made only where they are asked for.
+/// Asked layer bytes of the layers that are made only where they are asked for.
 std::size_t asked_layer_bytes(const LayerChoice& layers, const Scene& scene);
 /// Makes them, each a stage.
 /// error as add_light_groups

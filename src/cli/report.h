@@ -21,7 +21,7 @@ namespace opaline {
 /// Warns of media that --set changes and no shape has: most often a misspelt name.
 void warn_of_unused_media(const Log& log, std::span<const std::string> overrides, const Scene& scene);
 
-/// What the scene requires and why, then the plan's warnings; nothing but the warnings with --quiet.
+/// Prints the plan and its warnings; with --quiet the warnings only.
 /// last: null, or the texts of the frame before, which are not repeated as text, and then of this one
 void print_plan(const Log& log, const Scene& scene, const World& world, const Plan& plan,
                 std::vector<std::string>* last = nullptr);
@@ -29,14 +29,14 @@ void print_plan(const Log& log, const Scene& scene, const World& world, const Pl
 /// The model's own error in thin plates, three lines each.
 void print_plates(const Log& log, const std::vector<PlateModel>& plates);
 
-/// What was kept from before and what was not, a line each, and a warning unless it is empty; with --quiet
-/// the warning alone.
+/// Prints reused and recomputed stages, a line each, and a warning unless it is empty; with --quiet the
+/// warning only.
 void print_decisions(const Log& log, const std::vector<std::string>& decisions, const std::string& warning);
 
 /// Prints how long a trial of settings takes, if that is long.
 void print_trial(const Log& log, double seconds);
 
-/// What was chosen for --target-error, and a warning where that does not reach it.
+/// Prints the choice for --target-error, and a warning if it misses the target.
 void print_target(const Log& log, double target, const TargetError& chosen, const Settings& settings);
 /// The same for volume_diffusion.
 void print_volume_target(const Log& log, double target, const TargetError& chosen, const Settings& settings);
@@ -44,7 +44,7 @@ void print_volume_target(const Log& log, double target, const TargetError& chose
 /// The command that makes the same frames without choosing.
 void print_again_by(const Log& log, const std::string& command);
 
-/// What was chosen for --time-budget, and a warning where that is too little; `before`: CPU before the
+/// Prints the choice for --time-budget, and a warning if the budget is too small; `before`: CPU time before the
 /// choice, s.
 void print_budget(const Log& log, double budget, double before, const TimeBudget& chosen,
                   const Settings& settings);
@@ -78,17 +78,17 @@ struct Summary {
   std::size_t peak_memory = 0;  ///< bytes
   std::size_t samples = 0, queries = 0;
   std::vector<LightNoise> noise;
-  double estimated_error = 0;         ///< of `hierarchical`, see estimated_relative_error; 0: there is none
+  double estimated_error = 0;         ///< estimated_relative_error of `hierarchical`; 0: none
   std::optional<double> model_error;  ///< expected_model_error
   KnownErrors errors;
   std::optional<SpentBudget> budget;
   std::string
       again_by;  ///< the command that makes the same picture without choosing; empty: nothing was chosen
-  std::size_t walks = 0;          ///< of `volume`, a sample: VolumeExitance::walks, the largest of all bodies
-  double walk_noise = 0;          ///< their relative_error, the largest
-  std::size_t entry_samples = 0;  ///< of `direct`, a pixel
+  std::size_t walks = 0;  ///< walks of `volume` per sample: VolumeExitance::walks, the largest of all bodies
+  double walk_noise = 0;  ///< their relative_error, the largest
+  std::size_t entry_samples = 0;  ///< entry samples of `direct`, a pixel
   double direct_error = 0;        ///< its relative_noise
-  /// Of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.
+  /// Rays of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.
   std::uint64_t rays = 0;
   double shading_seconds = 0, embree_seconds = 0;
   std::vector<std::string> outputs;

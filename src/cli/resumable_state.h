@@ -20,8 +20,7 @@ class ResumableState {
     if (path_.empty()) return;
     key_ = direct_sums_key(arguments.scene, arguments.overrides, scene_);
     if (key_.empty())
-      throw bad_file(path_, "the sums of a scene that comes through a pipe cannot be kept",
-                     "a scene in a file");
+      throw bad_file(path_, "cannot store the sums of a scene that is read from a pipe", "a scene in a file");
     state = read_direct_state(path_, scene_, key_);
     written_ = state.passes;
   }

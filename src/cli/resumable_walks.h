@@ -54,8 +54,8 @@ class ResumableWalks {
   // Another lamp or body may be new in the scene, not all of them.
   void keep(std::span<const StageKey> keys, const VolumeSums& sums) {
     if (!was_empty_ && !has_found_)
-      throw bad_file(path_, "the sums are of another scene or other settings",
-                     "those of this one, or a new file name");
+      throw bad_file(path_, "the sums belong to another scene or other settings",
+                     "the sums of this scene and settings, or a new file name");
     const std::size_t before = passes();
     for (std::size_t s = 0; s < keys.size(); ++s) walks_[keys[s]] = sums.sources[s];
     changed_ = changed_ || passes() != before;

@@ -32,7 +32,7 @@ bool is_nothing(const StageCost& cost) {
   return cost.wall_seconds < kShown && cost.cpu_seconds < kShown;
 }
 
-/// What the trials left to the picture, of the stages between, is among what choosing cost, and named there.
+/// Prints the cost of each stage. Stages computed by the trials belong to the cost of choosing and are named there.
 void print_costs(const Summary& summary) {
   std::vector<StageCost> shown = summary.costs;
   const auto choosing = std::ranges::find(shown, "choosing", &StageCost::stage);
@@ -84,13 +84,12 @@ void print_text(const Summary& summary) {
             (summary.queries > 0 ? fmt::format(", {} shading points", grouped(summary.queries)) : ""));
   if (summary.entry_samples > 0)
     row("samples",
-        fmt::format("{} entry samples a pixel; noise {:.3g} % (standard error, rms over the pixels)",
+        fmt::format("{} entry samples per pixel; noise {:.3g} % (standard error, rms over the pixels)",
                     grouped(summary.entry_samples), 100 * summary.direct_error));
   if (summary.walks > 0)
-    row("walks",
-        fmt::format("{} a sample, channel and light; noise {:.3g} % (standard error of a cell, rms over the "
-                    "surface)",
-                    grouped(summary.walks), 100 * summary.walk_noise));
+    row("walks", fmt::format("{} per sample, channel and light; noise {:.3g} % (standard error of a cell, "
+                             "rms over the surface)",
+                             grouped(summary.walks), 100 * summary.walk_noise));
   const std::string settings_error = settings_error_text(summary);
   if (!settings_error.empty()) row("error", settings_error);
   if (summary.model_error) row(settings_error.empty() ? "error" : "", model_error_text(*summary.model_error));
@@ -102,18 +101,16 @@ void print_text(const Summary& summary) {
     row("noise", fmt::format("irradiance from {} on {}: {} (standard error at a sample)", noise.light,
                              noise.group, short_percent(noise.relative_error)));
   if (summary.noise.size() > worst.size())
-    row("", fmt::format("and less from or on {} more", summary.noise.size() - worst.size()));
-  row("rays",
-      fmt::format(
-          "{} in the shading pass: {:.3g} Mray per CPU second, {:.3g} inside Embree alone (the floor)",
-          grouped(summary.rays), mega_rays(summary.rays, summary.shading_seconds),
-          mega_rays(summary.rays, summary.embree_seconds)));
+    row("", fmt::format("{} more with lower noise", summary.noise.size() - worst.size()));
+  row("rays", fmt::format("{} in the shading pass: {:.3g} Mray per CPU second; {:.3g} in Embree alone",
+                          grouped(summary.rays), mega_rays(summary.rays, summary.shading_seconds),
+                          mega_rays(summary.rays, summary.embree_seconds)));
   if (summary.budget) {
     const SpentBudget& budget = *summary.budget;
-    row("budget", fmt::format("{:.3g} s of CPU spent, {:.3g} % of {:.4g} s", budget.spent,
+    row("budget", fmt::format("{:.3g} s of CPU, {:.3g} % of {:.4g} s", budget.spent,
                               100 * budget.spent / budget.seconds, budget.seconds));
   }
-  if (!summary.again_by.empty()) row("again by", summary.again_by);
+  if (!summary.again_by.empty()) row("repeat with", summary.again_by);
   for (const std::string& output : summary.outputs) row("wrote", output);
 }
 

@@ -32,7 +32,7 @@ void render_file(const ViewArguments& arguments, const std::vector<std::string>&
   if (!child.failure.empty()) throw run_failed({}, child.failure);
 }
 
-/// Whether a person at a desktop reads the output.
+/// True if a person at a desktop reads the output.
 bool is_at_desktop() {
   return (std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr) &&
          ::isatty(STDOUT_FILENO) == 1;

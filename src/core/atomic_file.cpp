@@ -55,7 +55,7 @@ void require_replaceable(const std::string& path) {
   const fs::file_status status = fs::status(path, failure);
   if (status.type() == fs::file_type::not_found) return;
   if (!fs::status_known(status)) throw run_failed(path, "cannot write: " + failure.message());
-  if (fs::is_directory(status)) throw run_failed(path, "cannot write: it is a folder");
+  if (fs::is_directory(status)) throw run_failed(path, "cannot write: is a folder");
   if (!fs::is_regular_file(status)) throw run_failed(path, "cannot write: it is not a regular file");
   // Another process may have removed it since.
   if (::access(path.c_str(), W_OK) != 0 && errno != ENOENT)
@@ -72,7 +72,7 @@ std::string create_beside(const fs::path& path) {
     Descriptor file{::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
     if (file.number >= 0) return name.string();
     if (errno == ENOENT && !fs::exists(folder, unknown))
-      throw run_failed(path.string(), "there is no folder '" + folder.string() + "'");
+      throw run_failed(path.string(), "no such folder '" + folder.string() + "'");
     if (errno != EEXIST)
       throw run_failed(path.string(), "cannot write in the folder '" + folder.string() + "': " + reason());
   }

@@ -65,7 +65,7 @@ std::string InputFile::read(std::uintmax_t begin, std::uintmax_t most) const {
 
 std::string InputFile::read_all() const {
   std::string bytes = read(0, size_);
-  if (bytes.size() < size_) throw run_failed(path_, "reading failed: the file became shorter");
+  if (bytes.size() < size_) throw run_failed(path_, "reading failed: the file was truncated during reading");
   return bytes;
 }
 

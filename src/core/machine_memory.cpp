@@ -55,7 +55,7 @@ std::size_t left_in_group(const std::filesystem::path& folder, const GroupFiles&
   return less(*limit, less(*used, droppable));
 }
 
-/// Of a group and of all groups that it is in. Inside a container the path that the kernel names may not be
+/// Available memory of a control group and its parents. Inside a container the path that the kernel reports may not be
 /// there; the mount's own folder then is the container's group.
 std::size_t left_in_groups(const std::filesystem::path& mount, std::string group, const GroupFiles& names) {
   std::size_t left = left_in_group(mount, names);

@@ -50,7 +50,7 @@ std::string stage_text(const ProgressState& state) {
   if (state.seconds_left >= 0) text += ", " + left_text(state.seconds_left);
   if (state.noise > 0 && std::isfinite(state.noise) && !text.empty())
     text += ", noise " + short_percent(state.noise);
-  if (text.empty() && state.seconds >= kSecondsBeforeElapsed) text = short_time(state.seconds) + " so far";
+  if (text.empty() && state.seconds >= kSecondsBeforeElapsed) text = short_time(state.seconds) + " elapsed";
   if (!state.trial.empty()) text += (text.empty() ? "(" : "  (") + state.trial + ")";
   return text;
 }

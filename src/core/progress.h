@@ -21,7 +21,7 @@ class ProgressEstimate {
   explicit ProgressEstimate(Time now) : start_(now) {}
   void update(const Monitor& monitor, Time now);
 
-  /// Of the work, 0 to .99: a stage that is done shows nothing any more; below 0: not known.
+  /// Fraction of the work, 0 to .99: a stage that is done shows nothing any more; below 0: not known.
   double fraction() const { return fraction_; }
   double seconds_left() const { return seconds_left_; }  ///< below 0: not known yet
   double seconds() const { return seconds_; }            ///< since the counters were set to 0
@@ -33,13 +33,13 @@ class ProgressEstimate {
   double fraction_ = -1, seconds_left_ = -1, seconds_ = 0, noise_ = -1;
 };
 
-/// What the line of a terminal tells.
+/// Content of the progress line.
 struct ProgressState {
   std::string stage;
-  double fraction = -1, seconds_left = -1, seconds = 0;  ///< of the stage, as ProgressEstimate has them
-  std::optional<FramesSoFar> frames = {};                ///< of a range: the line is about the whole of it
-  double noise = -1;                                     ///< of the stage
-  std::string trial = {};                                ///< the stage that a search is trying; empty: none
+  double fraction = -1, seconds_left = -1, seconds = 0;  ///< stage progress, see ProgressEstimate
+  std::optional<FramesSoFar> frames = {};  ///< progress of a frame range: the line covers the whole range
+  double noise = -1;                       ///< noise of the stage
+  std::string trial = {};                  ///< the stage that a search is trying; empty: none
 };
 
 /// The line, shorter than `columns` so that no terminal wraps it: the bar goes first, then the end is cut.

@@ -30,7 +30,7 @@ double source_exitance(const DirectionalKernel& p, const Vec3d& x, const Vec3d& 
   return std::exp(-s) / (4 * pi * d * d * d) * (p.from_fluence * fluence - p.from_flux * flux);
 }
 
-/// Of the plane through entry and exit that is nearest to the surface at the entry.
+/// Modified normal of the plane through entry and exit that is nearest to the surface at the entry.
 Vec3d modified_normal(const Vec3d& x, const Vec3d& normal) {
   const double r2 = dot(x, x);
   if (!(r2 > 0)) return normal;
@@ -92,7 +92,7 @@ std::vector<WayInside> diffuse_ways(double eta) {
 
 /// Mean over the ways and over the azimuth at the distance r on a plane, mean free paths.
 double ring_mean(const DirectionalKernel& p, const std::vector<WayInside>& ways, double r) {
-  constexpr int kAzimuths = 12;  // of a half circle
+  constexpr int kAzimuths = 12;  // azimuths of a half circle
   const Vec3d normal{0, 0, 1};
   double sum = 0;
   for (int i = 0; i < kAzimuths; ++i) {

@@ -43,7 +43,7 @@ double sinh_ratio(double s, double a, double b) {
   return std::exp(-s * (b - a)) * (a * mean_decay(2 * s * a)) / (b * mean_decay(2 * s * b));
 }
 
-// What a source at the height z over the point sends through the face there, and its share within r. Odd in z.
+// Flux of a source at the height z over the point through the face there, and its fraction within r. Odd in z.
 struct Flux {
   double decay, r;
   double density(double z) const {

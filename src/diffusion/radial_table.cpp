@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kStep = std::numbers::ln10 / RadialTable::kPerDecade;  // of ln r
+constexpr double kStep = std::numbers::ln10 / RadialTable::kPerDecade;  // step of ln r
 // Beyond these the reference is a dipole seen from afar, or nothing.
 constexpr double kManyWidths = 1e5, kManyDecays = 60;
 constexpr double kFarthest = 1400;  // knots: squares of such distances are in double's range
@@ -56,7 +56,7 @@ double RadialTable::knot(std::size_t i) {
 RadialTable::RadialTable(const RadialReference& reference, std::vector<double> logarithms)
     : reference_(reference), logarithms_(std::move(logarithms)) {
   require(logarithms_.size() == kKnots && reference.width > 0, "a table with a value at each knot");
-  constexpr double kLeastFall = .01;  // of ln density over ln r, between knots
+  constexpr double kLeastFall = .01;  // minimum slope of ln density over ln r, between knots
   for (std::size_t i = 1; i < kKnots; ++i) {
     const double steepest = -slope(reference_, knot(i - 1)) - kLeastFall;
     logarithms_[i] = std::min(logarithms_[i], logarithms_[i - 1] + kStep * steepest);
@@ -68,7 +68,7 @@ RadialTable::RadialTable(const RadialReference& reference, std::vector<double> l
   std::vector<double> shares{ring(0)};  // before the first knot: 2 pi r times a constant over r
   for (std::size_t i = 1; i < count; ++i) shares.push_back(ring_integral(double(i - 1), double(i)));
   const double end = knot(count - 1), s = reference_.decay * end;
-  shares.push_back(ring(double(count - 1)) / (1 + s));  // of (1 + kappa r) e^-kappa r / r^3
+  shares.push_back(ring(double(count - 1)) / (1 + s));  // integral of (1 + kappa r) e^-kappa r / r^3
   within_.resize(count);
   beyond_.resize(count);
   double sum = 0;

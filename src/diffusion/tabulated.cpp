@@ -27,7 +27,7 @@ constexpr std::size_t kKnots = RadialTable::kKnots;
 // Light that walks for longer leaves far away, where the table is the exact decay.
 constexpr std::uint64_t kMostCollisions = 1 << 16;
 constexpr double kMostWalks = 400000;
-// Of darker media the shape changes little (all but 2 % of the light was scattered once), and few walks come back.
+// Darker media change the shape little (all but 2 % of the light is scattered once), and few walks return.
 constexpr double kMostAbsorbed = .97;
 constexpr std::size_t kPilotWalks = 1024;
 
@@ -97,7 +97,7 @@ class SmoothFit {
   // own noise (Tabulated.IsTheLongerWalk).
   static constexpr double kSlope = .12, kBend = .03, kLongestStep = 2;
   static constexpr std::size_t kBand = 2;
-  using Row = std::array<double, kBand + 1>;  // of the symmetric matrix: diagonal, and to its right
+  using Row = std::array<double, kBand + 1>;  // row of the symmetric matrix: diagonal, and to its right
 
   std::vector<double> newton_step(const std::vector<double>& f) const {
     std::vector<Row> matrix(kKnots, Row{});

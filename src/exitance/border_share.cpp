@@ -16,7 +16,7 @@ double ring_radius(int i) {
   return std::pow(double(i) / kRings, 4);
 }
 
-// What each ring around the point gives, over the sum of all, from the cumulative integral up to each ring's
+// Weight of each ring around the point over the sum of all, from the cumulative integral up to each ring's
 // border.
 std::vector<double> ring_shares(const std::vector<double>& within) {
   std::vector<double> shares;
@@ -38,14 +38,14 @@ double inside_border(const std::vector<double>& shares, double t) {
   return sum;
 }
 
-// Of the weight (1 - t^2)^2 with which the samples' areas are summed.
+// Area shares of the weight (1 - t^2)^2 with which the samples' areas are summed.
 std::vector<double> area_shares() {
   std::vector<double> within;
   for (int i = 0; i <= kRings; ++i) within.push_back(1 - std::pow(1 - ring_radius(i) * ring_radius(i), 3));
   return ring_shares(within);
 }
 
-// Of 2 pi r R_d (1 - w(r/h)), by parts: steep profiles are bounded only in that form.
+// Near shares of 2 pi r R_d (1 - w(r/h)), by parts: steep profiles are bounded only in that form.
 std::vector<double> near_shares(const ChannelProfile& profile, double h) {
   std::vector<double> within{0};
   double by_parts = 0;

@@ -7,7 +7,7 @@
 namespace opaline {
 namespace {
 
-constexpr float kCoarseSolidAngle = 4;  // of a node in the first guess, sr
+constexpr float kCoarseSolidAngle = 4;  // coarse solid angle of a node in the first guess, sr
 constexpr float kCoarseSize = 4;        // and how many of them the size of a packet holds
 
 Sphere bounds_of(std::span<const Query> queries, std::span<const std::uint32_t> order) {

@@ -11,7 +11,7 @@ namespace opaline {
 
 /// A box and the sphere around it.
 struct Sphere {
-  Vec3f center{}, half{};  ///< of the box
+  Vec3f center{}, half{};  ///< center of the box
   float radius = 0;
 };
 

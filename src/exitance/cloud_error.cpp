@@ -16,7 +16,7 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kRuns = 16,
-                      kRun = 4;  // of trial sums, beside samples that follow each other in the tree
+                      kRun = 4;  // samples per trial sum, next to samples in octree order
 constexpr std::size_t kRoughnessTrials = 512;
 constexpr double kFineTolerance = 1.5e-3;
 // Samples so near each other, in spacings, are neighbours.
@@ -35,9 +35,9 @@ constexpr float kDegenerate = 1e-3f;
 // kManyCreases of the samples are beside one. On smooth surfaces they are smaller, down to kLeast, but for
 // shadows, which few of the trials meet: kRough times the roughness at least, up to 1.
 constexpr double kAtCreases = 1.6, kManyCreases = 0.02, kLeast = 0.03, kMost = 10, kRough = 4;
-// Of the tolerance: the nodes' mean error, at least and at most.
+// Fraction of the tolerance: mean error of the nodes, minimum and maximum.
 constexpr double kLeastHierarchy = 0.005, kMostHierarchy = 0.15;
-// Of what solid angles suggest: the mean error of the nodes of `classic`, at least and at most.
+// Factor of the estimate from solid angles: mean error of the nodes of `classic`, minimum and maximum.
 constexpr double kLeastFlattened = 0.02, kMostFlattened = 4;
 // Darker than this part of the brightest, errors are absolute.
 constexpr float kDark = 1e-3f;
@@ -47,7 +47,7 @@ struct Roughness {
   double creased = 0, trials = 0;
 };
 
-/// What lies around a sample.
+/// Neighbourhood of a sample.
 struct Neighbours {
   RgbF mean{}, low{}, high{};  // irradiance: weighted by nearness; with the sample's own
   float weights = 0;
@@ -123,7 +123,7 @@ struct Step {
   }
 };
 
-/// What a step changes the irradiance by: the least squares' slope through a sample and those around it.
+/// Change of irradiance along a step: least-squares slope through a sample and its neighbours.
 RgbF change_of_irradiance(const Octree& tree, std::uint32_t sample, const Step& step, float spacing) {
   const TreeSample& own = tree.samples[sample];
   const Vec3f position{own.x, own.y, own.z};

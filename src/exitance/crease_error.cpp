@@ -93,11 +93,11 @@ std::vector<Trial> draw_trials(const Octree& tree, float radius) {
   return trials;
 }
 
-/// What of another face lies within h of a point.
+/// Part of another face within h of a point.
 struct Face {
   Vec3f normal;
   bool above = false;   // the point's own plane
-  double distance = 0;  // of the point below its plane: weighted sum, then mean
+  double distance = 0;  // distance of the point below its plane: weighted sum, then mean
   double weight = 0;    // area times (1 - r^2/h^2)^2
   std::array<double, 3> flux{};
   double area = 0;
@@ -149,7 +149,7 @@ std::vector<Face> other_faces(const Octree& tree, std::uint32_t sample, float ra
   return visible_faces(std::move(faces));
 }
 
-/// Of a half plane at right angles, as long as the near field: how much of it is there.
+/// Visible fraction of a perpendicular half plane that is as long as the near field.
 double part_there(const Face& face, double radius) {
   const double t = std::min(1.0, face.distance / radius), rest = 1 - t * t;
   const double whole = std::numbers::pi * radius * radius / 6 * rest * rest * rest;
@@ -157,7 +157,7 @@ double part_there(const Face& face, double radius) {
   return face.weight > kWhole * whole ? 1 : face.weight / whole;
 }
 
-/// What a near field is made of: the share of a plane's on the point's own face, and what enters through
+/// Light of a near field: the fraction of the plane on the point's own face, and transmitted light through
 /// others, in flux units, times their shares.
 struct NearLight {
   std::array<double, 3> plane{1, 1, 1}, walls{};
@@ -178,7 +178,7 @@ NearLight near_light(const std::vector<Face>& faces, const NearRings& rings, dou
 }
 
 struct TrialError {
-  double error = 0, truth = 0;  // of the exitance
+  double error = 0, truth = 0;  // exitance: error, and exact value
 };
 
 // e: as evaluated with the point's own irradiance.

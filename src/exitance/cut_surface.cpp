@@ -112,7 +112,7 @@ class MeshCutter {
   std::vector<Vec3f>& normals_;
   std::vector<std::uint32_t> shared_;  // vertex of the cache, one a vertex of the mesh
   bool smooth_;
-  std::vector<Vec3f> means_;  // of the facets at each vertex, if not smooth
+  std::vector<Vec3f> means_;  // mean normals of the facets at each vertex, if not smooth
   Vec3f facet_;
   std::map<std::array<std::uint32_t, 4>, std::uint32_t> edges_;  // vertices on edges that were cut
 };

@@ -24,7 +24,7 @@ constexpr float kErrorShare = 0.7f;
 // one of the brightest possible, a relative error is not asked for.
 constexpr float kDark = 2e-4f, kDarkest = 1e-8f;
 
-// What a packet makes of the nodes it meets.
+// Node lists of a packet.
 struct PacketLists {
   Cluster cluster;
   std::vector<std::uint32_t> expanded, far, near;  // by its expansion, as points, sample by sample
@@ -39,14 +39,14 @@ struct PacketLists {
 struct alignas(16) Takers {
   std::array<std::uint8_t, kLanes> packets;
 
-  // Of the nodes that packet p wants.
+  // Lanes of the nodes requested by packet p.
   std::uint32_t lanes(std::size_t p) const {
     const __m128i bits = _mm_load_si128(reinterpret_cast<const __m128i*>(packets.data()));
     return std::uint32_t(_mm_movemask_epi8(_mm_sll_epi16(bits, _mm_cvtsi32_si128(7 - int(p)))));
   }
 };
 
-using Guesses = std::array<RgbF, PacketCut::kMost>;  // of the exitance of a chunk's packets
+using Guesses = std::array<RgbF, PacketCut::kMost>;  // exitance estimates of a chunk's packets
 
 // Up to kChunk queries that lie near each other.
 class Chunk {
@@ -143,7 +143,7 @@ class Chunk {
       gather(nodes_.data(), std::span(list).subspan(b * kLanes), blocks[b]);
   }
 
-  // What is known around the centre of a cluster: by inheritance, and by its own nodes.
+  // Expansion around the centre of a cluster: inherited, and from its own nodes.
   Expansion expansion_of(const Cluster& cluster, const std::vector<std::uint32_t>& nodes,
                          const Expansion& inherited, const Vec3f& center) {
     Expansion all = inherited.empty ? inherited : inherited.around(cluster.center - center);
@@ -257,7 +257,7 @@ class Chunk {
   std::array<std::vector<SourceBlock>, 2> rest_blocks_;
   std::array<PacketLists, kTogether> lists_;
   std::vector<std::uint32_t> rest_, queue_, wholes_;
-  std::vector<std::uint8_t> takers_;  // of the queue
+  std::vector<std::uint8_t> takers_;  // consumers of the queue
 };
 
 // Exitance, per channel, below which errors are held against it instead of the query's own.
@@ -289,7 +289,7 @@ void evaluate_dual_tree(const EvaluateInput& input, std::span<Exitance> result) 
   if (order.empty()) return;
   std::vector<Guesses> guesses(chunk_count(order.size(), kChunk));
   packets.cuts.resize(guesses.size());
-  std::optional<Chunk> only;  // of few queries, such as a tile's; not filled twice
+  std::optional<Chunk> only;  // for few queries, such as those of a tile; filled once
   parallel_chunks(order.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     const std::span<std::uint32_t> own = std::span(order).subspan(begin, end - begin);
     PacketCut& cut = packets.cuts[chunk];

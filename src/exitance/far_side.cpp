@@ -16,7 +16,7 @@
 namespace opaline {
 namespace {
 
-// Of what leaves on both sides: so much of their difference may lie beyond the reach.
+// Fraction of the exitance on both sides beyond the reach that is neglected.
 constexpr double kNeglected = 3e-4;
 // Area over squared distance of a node that stands as a point.
 constexpr float kSolidAngle = 0.06f;
@@ -44,7 +44,7 @@ double reach_of(const ChannelProfile& profile, double r_min, double r_max) {
 // Queries that follow each other, with bounds on where they lie and face.
 struct QueryBounds {
   Vec3f low, high, axis;
-  float cosine = 0, sine = 1;  // of the angle around the axis; cosine 0: any direction
+  float cosine = 0, sine = 1;  // cosine and sine of the angle around the axis; cosine 0: any direction
 
   explicit QueryBounds(std::span<const Query> queries) : low(queries[0].position), high(low) {
     Vec3f sum;
@@ -64,13 +64,13 @@ struct QueryBounds {
 
 enum class Sheets { same, other, both };  // both: or not known
 
-// Of all normals of a cone, seen from all queries: the angle between them is at most that of the axes and both cones'
+// Sheets of all normals of a cone, seen from all queries: the angle between them is at most that of the axes and both cones'
 // angles together, and beyond 120 degrees it is another sheet (same_sheet).
 Sheets sheets_of(const QueryBounds& queries, const Vec3f& axis, float cosine, float sine) {
   if (cosine == 0 || queries.cosine == 0) return Sheets::both;
-  const float c = cosine * queries.cosine - sine * queries.sine,  // of the two angles together
+  const float c = cosine * queries.cosine - sine * queries.sine,  // cosine and sine of the sum of both angles
       s = sine * queries.cosine + cosine * queries.sine;
-  constexpr float kCosine = -0.5f, kSine = 0.8660254f;  // of 120 degrees
+  constexpr float kCosine = -0.5f, kSine = 0.8660254f;  // cosine and sine of 120 degrees
   const float between = dot(axis, queries.axis);
   if (c > kCosine && between > kCosine * c + kSine * s) return Sheets::same;
   // More than 60 degrees reach back to the same sheet.
@@ -78,7 +78,7 @@ Sheets sheets_of(const QueryBounds& queries, const Vec3f& axis, float cosine, fl
   return Sheets::both;
 }
 
-// What neighbouring queries add up: nodes of other sheets that stand as points, and samples.
+// Sum over neighbouring queries: nodes of other sheets taken as points, and samples.
 class CrossingLight {
  public:
   CrossingLight(const EvaluateInput& input, std::span<const Query> queries)

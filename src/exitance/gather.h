@@ -31,7 +31,7 @@ class Gather {
     const __m128 k = d[0] == d[1] && d[1] == d[2] ? kernel_.table(d[0]) : kernel_.table(d[0], d[1], d[2]);
     const __m128 contribution = _mm_mul_ps(k, _mm_load_ps(node.flux.data()));
     accumulate(contribution);
-    // What a point in place of a patch leaves out is proportional to the patch's solid angle.
+    // The error of a point in place of a patch is proportional to the patch's solid angle.
     const __m128 solid_angle = _mm_div_ps(_mm_set1_ps(node.flux[3]), r2);
     flattened_ = _mm_add_ps(flattened_, _mm_mul_ps(contribution, solid_angle));
   }

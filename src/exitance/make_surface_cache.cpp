@@ -15,7 +15,7 @@ namespace {
 // Shares of the tolerance: of the evaluation at the nodes, and of what interpolation may be off by its own
 // estimate.
 constexpr double kEvaluationShare = 0.6, kInterpolationShare = 0.4;
-// Of what slopes add to the middle of an edge, and of what a lattice's predecessor missed at its new nodes:
+// Rise error of what slopes add to the middle of an edge, and of what a lattice's predecessor missed at its new nodes:
 // the part that interpolation still misses (measured, test_surface_cache). Patches whose nodes may
 // not come closer are left to points for the worst alone: with .2 skin at 2048 x 2048 takes 1.75 times as long.
 constexpr float kRiseError = 0.6f, kRest = 0.6f, kRestAtFinest = 0.05f;
@@ -255,7 +255,7 @@ class Builder {
         normalized(normals_[a] * w + normals_[b] * u + normals_[c] * v)};
   }
 
-  // What the patch would give at an odd node of its lattice without it.
+  // Prediction of the patch at an odd node of its lattice, without that node.
   RgbF predicted(const Refined& r, std::uint32_t i, std::uint32_t j) const {
     const float u = float(i) / float(r.segments), v = float(j) / float(r.segments);
     if (r.segments == 2) return between_vertices(cache_, cache_.patches[r.patch], u, v).exitance;
@@ -320,7 +320,7 @@ class Builder {
 
   const SurfaceCacheInput& input_;
   SurfaceCache cache_;
-  std::vector<Vec3f> normals_;  // of its vertices
+  std::vector<Vec3f> normals_;  // normals of its vertices
   std::vector<Query> queries_;  // to evaluate: of vertices at first, then of nodes
   std::vector<PlaceDoubt> vertex_doubts_, node_doubts_;
   std::vector<std::uint32_t> new_nodes_;  // where the latter go

@@ -29,7 +29,7 @@ Points4 load(const float* lanes) {
   return (Points4)_mm_load_ps(lanes);
 }
 
-// Of the four points from a lane on.
+// Sums of the four points from a lane on.
 PointSums<Points4> sums_at(const EvaluateInput& input, const PacketSums& from, std::size_t lane) {
   PointSums<Points4> sums;
   sums.near_area = load(from.near_area + lane);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is summed sample by sample at a packet, and what its sums come to.
+// Sums over single samples at a packet, and their exitance.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneK
                  const std::vector<std::uint32_t>& leaves, const Packet& packet, PacketSums& sums,
                  std::vector<std::uint32_t>& room);
 
-/// Of the queries that stand in a packet's lanes.
+/// Sets the exitance of the queries in a packet's lanes.
 void set_exitance(const EvaluateInput& input, const PacketSums& sums, std::span<const std::uint32_t> queries,
                   std::span<Exitance> result);
 

@@ -21,8 +21,8 @@ template <class F>
 struct PointSums {
   std::array<F, 3> far{};      ///< far kernel times flux
   std::array<F, 3> spread{};   ///< squares of the samples' contributions around the mean of their neighbours
-  std::array<F, 3> squares{};  ///< of the samples' contributions
-  std::array<F, 3> sheets{};   ///< of what samples of other sheets within h change by when they move
+  std::array<F, 3> squares{};  ///< squares of the samples' contributions
+  std::array<F, 3> sheets{};   ///< change of samples on other sheets within h, if they move
   std::array<F, 3> hierarchy{};  ///< error of the nodes taken as points
   /// Samples of the same sheet within h, weighted by (1 - r^2/h^2)^2: area, flux, flux^2 / area.
   F near_area{};
@@ -102,9 +102,9 @@ inline float moved_distance2(const Vec3f& apart, const Vec3f& normal, float near
 /// irradiance; variance: of the irradiance around the point.
 template <class F>
 F estimated_error(const PointSums<F>& sums, std::size_t c, F near, F variance, const CloudError& cloud) {
-  // Of an irradiance that varies around the point, what its mean misses.
+  // Variation of an irradiance that varies around the point, what its mean misses.
   constexpr float kVariation = 0.2f;
-  // Of an irradiance that neighbours do not foretell, what its sample says of the whole cell.
+  // Weight of the unpredicted irradiance of a sample for its whole cell.
   constexpr float kRough = 0.8f;
   const F local =
       kOffset * kOffset * larger(F{}, sums.spread[c]) + kVariation * kVariation * near * near * variance;

@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-constexpr int kBits = 8;  // of a coordinate in a key: chunks are coarser
+constexpr int kBits = 8;  // bits of a coordinate in a key: chunks are coarser
 
 struct Box {
   Vec3f low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
@@ -90,7 +90,7 @@ struct Span {
   std::size_t longest() const {
     return side(0) >= side(1) && side(0) >= side(2) ? 0 : side(1) >= side(2) ? 1 : 2;
   }
-  /// Of the disc around it that neighbours within `reach` lie in, up to a factor.
+  /// Size of the disc around it with its neighbours within `reach`, up to a factor.
   float neighbourhood(float reach) const {
     const float x = float(side(0)), y = float(side(1)), z = float(side(2));
     const float radius = 0.5f * std::sqrt(x * x + y * y + z * z) + reach;
@@ -137,7 +137,7 @@ class ChunkCutter {
 
   // Cuts a packet where its parts have fewer neighbours than the whole.
   void separate(std::size_t first, std::size_t last, const Span& box) {
-    constexpr float kPacket = 2;  // what a packet costs by itself, in neighbourhoods of a point
+    constexpr float kPacket = 2;  // fixed cost of a packet, in neighbourhoods of a point
     const float whole = box.neighbourhood(reach);
     if (spare_ == 0 || whole < (kPacket + 2) * reach * reach) return finish(first, last);
     sort_key(first, last, box.longest());
@@ -177,7 +177,7 @@ std::vector<std::uint32_t> chunk_order(std::span<const Query> queries) {
   std::vector<std::uint32_t> order;
   order.reserve(queries.size());
   Box box, chunk;
-  double squares = 0;  // of the chunks' sides, were they cut from the order given
+  double squares = 0;  // squares of the chunks' sides, were they cut from the order given
   for (std::uint32_t i = 0; i < queries.size(); ++i) {
     if (!is_finite(queries[i].position)) continue;
     order.push_back(i);

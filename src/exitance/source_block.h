@@ -13,12 +13,12 @@ namespace opaline {
 
 struct alignas(64) SourceBlock {
   float x[3][kLanes], y[3][kLanes], z[3][kLanes];  ///< centroids of the channels
-  float all[3][kLanes];                            ///< of all channels together
+  float all[3][kLanes];                            ///< sum of all channels
   float aside[kLanes];  ///< how far the centroid of a channel lies off, mm; 0: none does
   float flux[3][kLanes];
   float spread[6][kLanes];                   ///< OctreeNode::spread
   float size[kLanes];                        ///< root of its trace
-  float center[3][kLanes], half[3][kLanes];  ///< of the box
+  float center[3][kLanes], half[3][kLanes];  ///< center of the box
   std::uint32_t node[kLanes];
   bool one_colour = true;  ///< no lane has a channel aside
 };

@@ -36,8 +36,8 @@ class MeshChecker {
     report_.zero_area_dropped += source_.collapsed;
     drop_slivers();
     if (source_.triangles.empty())
-      throw bad_file(settings_.name, "the mesh has no area", "at least one triangle with an area",
-                     std::to_string(report_.zero_area_dropped) + " of no area");
+      throw bad_file(settings_.name, "the mesh has no area", "at least one triangle with nonzero area",
+                     std::to_string(report_.zero_area_dropped) + " with zero area");
     warn_about_drops();
     CheckedMesh checked;
     checked.mesh = compacted();
@@ -177,14 +177,16 @@ class MeshChecker {
       ++report_.flipped;
     }
     if (winding.inconsistent > 0)
-      warn(std::to_string(winding.inconsistent) + " triangles wound against their neighbours were flipped");
+      warn(std::to_string(winding.inconsistent) +
+           " triangles with winding opposite to their neighbours were flipped");
     const auto turned = [&](Inward reason) { return winding.turned[std::size_t(reason)]; };
     if (const TurnedParts closed = turned(Inward::by_volume); closed.parts > 0)
-      warn(std::to_string(closed.triangles) + " triangles of closed parts wound inward were flipped");
+      warn(std::to_string(closed.triangles) + " triangles of closed parts with inward winding were flipped");
     warn_of_open(turned(Inward::by_normals), "against the file's normals");
     warn_of_open(turned(Inward::by_volume_if_closed), "by the volume with holes closed");
     if (final && winding.unorientable_edges > 0)
-      warn("one-sided surface: no winding suits " + std::to_string(winding.unorientable_edges) + " edges");
+      warn("one-sided surface: no consistent winding for " + std::to_string(winding.unorientable_edges) +
+           " edges");
   }
 
   void warn_of_open(const TurnedParts& turned, const char* reason) {
@@ -214,7 +216,7 @@ class MeshChecker {
       warn("open mesh: " + std::to_string(report_.open_edges) + " boundary edges; light can leak");
     if (report_.non_manifold_edges > 0)
       warn("non-manifold mesh: " + std::to_string(report_.non_manifold_edges) +
-           " edges with more than two triangles; inside and outside may be wrong there");
+           " edges with more than two triangles; inside and outside are ambiguous there");
   }
 
   /// Last, because a triangle that is only thin still ties its neighbours together.
@@ -230,11 +232,11 @@ class MeshChecker {
     const auto warn_of = [&](std::size_t count, const char* what) {
       if (count > 0) report_.warnings.push_back(settings_.name + ": " + std::to_string(count) + what);
     };
-    warn_of(report_.zero_area_dropped, " triangles without area were dropped");
-    warn_of(report_.duplicates_dropped, " triangles given twice were dropped");
+    warn_of(report_.zero_area_dropped, " triangles with zero area were removed");
+    warn_of(report_.duplicates_dropped, " duplicate triangles were removed");
   }
 
-  /// Of the triangles that are left; those that fill holes have none. given: of the source's, or empty
+  /// Corner data of the remaining triangles; those that fill holes have none. given: data of the source, or empty
   template <class Corners>
   std::vector<Corners> mended(const std::vector<Corners>& given) const {
     std::vector<Corners> corners;
@@ -297,7 +299,7 @@ class MeshChecker {
     return mesh;
   }
 
-  static constexpr std::uint32_t kNew = ~0u;  // of a triangle that fills a hole
+  static constexpr std::uint32_t kNew = ~0u;  // index of a triangle that fills a hole
 
   const CheckSettings& settings_;
   SourceMesh source_;

@@ -19,17 +19,17 @@ struct CheckSettings {
   bool has_inside = false;   ///< wind open parts outward, too
 };
 
-/// What checking a mesh found that depends on which triangles meet where, and not on the places themselves.
+/// Results of mesh checks that depend on connectivity only, not on positions.
 struct CheckMemory {
   bool holds = false, recalled = false;  ///< recalled: the last call made use of it
   bool fill_holes = false, may_be_open = false, has_inside = false;
   std::vector<Triangle> given;  ///< before anything was done to them
   std::vector<std::uint32_t> same,
-      site;                      ///< of each vertex the first at its place, with its normal and without
+      site;                      ///< first vertex at the same position, with its normal and without
   std::vector<Triangle> mended;  ///< without doubles, and wound
   std::vector<std::uint32_t>
-      origins;  ///< of these, twice the number of that given, one more if flipped; where something is given by triangle
-  MeshParts parts;    ///< of these
+      origins;        ///< twice the source index of each triangle, plus one if flipped; for per-triangle data
+  MeshParts parts;    ///< parts of these
   MeshReport report;  ///< warnings do not name the mesh
 };
 

@@ -16,7 +16,7 @@ double twice_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return length(cross(b - a, c - a));
 }
 
-/// What rounding adds to the areas of all triangles and takes from them, over their sum.
+/// Area that rounding adds to or removes from all triangles, over their sum.
 double area_lost(const Mesh& mesh) {
   double sum = 0, lost = 0;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -35,20 +35,20 @@ void check_precision(const Mesh& mesh, const std::string& name, double diagonal,
   const double side = max_component(box.high - box.low);
   const double far = max_component(component_max(box.high, -box.low));
   if (side < kSmallestForItsPlace * far)
-    throw bad_file(name, "is too small for its distance from the middle of the scene",
-                   fmt::format("at least {:.4g} mm, the distance over 65536, for single precision to hold it",
+    throw bad_file(name, "is too small for its distance from the centre of the scene",
+                   fmt::format("at least {:.4g} mm (distance / 65536), the limit of single precision",
                                kSmallestForItsPlace * far * unit),
                    fmt::format("{:.4g} mm", side * unit));
   if (side < kSmallestForTheWorld * diagonal)
     throw bad_file(name, "is too small for the scene",
-                   fmt::format("at least {:.4g} mm, the scene's diagonal over 2^30",
+                   fmt::format("at least {:.4g} mm (diagonal of the scene / 2^30)",
                                kSmallestForTheWorld * diagonal * unit),
                    fmt::format("{:.4g} mm", side * unit));
   const double lost = area_lost(mesh);
   if (lost > kMostAreaLost)
     throw bad_file(name, "is too thin or too fine for its extent",
-                   "vertices whose rounding to single precision, 1 part in 2^24 of their distance from the "
-                   "middle of the scene, changes the area by at most 10 %",
+                   "vertices for which rounding to single precision (2^-24 times the distance from the "
+                   "centre of the scene) changes the area by at most 10 %",
                    fmt::format("{:.3g} %", 100 * lost));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether single precision can carry a world: rays, samples and their tree are floats.
+// Check that single precision represents a world: rays, samples and their octree are floats.
 #pragma once
 
 #include <string>

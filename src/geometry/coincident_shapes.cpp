@@ -12,7 +12,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of a shape's diagonal
+constexpr double kRounding = 1e-6;  // rounding of a shape's diagonal
 constexpr std::size_t kPoints = 16;
 
 /// Bounds in steps of the rounding.
@@ -68,12 +68,9 @@ std::vector<std::string> warnings_of_coincident_shapes(const Scene& scene, const
     else
       warnings.push_back(
           "the shapes '" + scene.shapes[*same].name + "' and '" + scene.shapes[i].name +
-          "' have the same surface in the same place, so rounding decides which one each ray meets; "
-          "remove one of them");
+          "' have coincident surfaces, so rounding decides which one a ray hits; remove one of them");
   }
-  if (more > 0)
-    warnings.push_back(std::to_string(more) +
-                       " more shapes have the surface of another one in the same place");
+  if (more > 0) warnings.push_back(std::to_string(more) + " more shapes coincide with another shape");
   return warnings;
 }
 

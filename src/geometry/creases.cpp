@@ -68,7 +68,7 @@ class Fans {
   const Smoothing& smoothing_;
   double least_cosine_;
   std::vector<std::uint32_t> parent_;
-  std::vector<Vec3d> normals_;  // of the triangles
+  std::vector<Vec3d> normals_;  // normals of the triangles
 };
 
 }  // namespace
@@ -76,7 +76,7 @@ class Fans {
 void average_between_creases(Mesh& mesh, const std::vector<bool>& missing, const Smoothing& smoothing) {
   constexpr std::uint32_t none = ~0u;
   Fans fans(mesh, smoothing);
-  std::vector<Vec3d> sum(3 * mesh.triangles.size());  // of fans
+  std::vector<Vec3d> sum(3 * mesh.triangles.size());  // sum of fans
   const auto for_each_corner = [&](const auto& visit) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
       for (std::uint32_t k = 0; k < 3; ++k) visit(t, k, fans.first(3 * t + k));
@@ -84,7 +84,7 @@ void average_between_creases(Mesh& mesh, const std::vector<bool>& missing, const
   for_each_corner([&](std::uint32_t t, std::uint32_t k, std::uint32_t fan) {
     sum[fan] += fans.normal(t) * corner_angle(mesh, mesh.triangles[t], k);
   });
-  std::vector<std::uint32_t> vertex(sum.size(), none);  // of fans
+  std::vector<std::uint32_t> vertex(sum.size(), none);  // vertex of each fan
   std::vector<bool> is_taken(missing.size());
   for_each_corner([&](std::uint32_t t, std::uint32_t k, std::uint32_t fan) {
     std::uint32_t& own = mesh.triangles[t][k];

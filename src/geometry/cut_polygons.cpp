@@ -15,7 +15,7 @@ constexpr double kLeastOutside = 1e-6;
 // Comparisons of corners with ears in all polygons of a file together: seconds. Ears are not compared beyond it.
 constexpr std::size_t kMostComparisons = std::size_t(1) << 29;
 
-constexpr double kRounding = 1e-12;  // of a polygon whose corners are at most 1 from its first one
+constexpr double kRounding = 1e-12;  // rounding of a polygon whose corners are at most 1 from its first one
 
 struct Point {
   double x = 0, y = 0;
@@ -74,7 +74,7 @@ class CornerGrid {
   Point low_, high_;
   double side_ = 1;
   std::size_t columns_ = 1;
-  std::vector<std::uint32_t> start_, corners_;  // of each square, row by row; corners_ in their order
+  std::vector<std::uint32_t> start_, corners_;  // corners of each square, row by row, in order
 };
 
 /// Clips the ears of a polygon in the plane, counter-clockwise as a whole.

@@ -26,7 +26,7 @@ struct SourceReader {
   }
 };
 
-/// Of the vertices that triangles use.
+/// Used bounds of the vertices that triangles use.
 Bounds used_bounds(const SourceMesh& mesh) {
   Bounds box;
   for (const Triangle& triangle : mesh.triangles) {
@@ -61,14 +61,15 @@ struct NormalMap {
 
 void place(SourceMesh& mesh, const Transform& to_world, const std::string& name) {
   const Vec3d x = normalized(to_world.x), y = normalized(to_world.y), z = normalized(to_world.z);
-  const double determinant = dot(x, cross(y, z));  // of the directions alone: no matter of scale
+  const double determinant = dot(x, cross(y, z));  // determinant of the directions alone: no matter of scale
   if (!(std::abs(determinant) > 1e-12) || !is_finite(to_world.translation))
     throw bad_file(name, "the transform is singular or not finite", "three independent axes",
                    "relative determinant " + std::to_string(determinant));
   for (Vec3d& p : mesh.positions) {
     p = transform_point(to_world, p);
     if (!is_finite(p) || max_component(component_max(p, -p)) >= 1e18)
-      throw bad_file(name, "a vertex is too far out after the transform", "coordinates below 1e18");
+      throw bad_file(name, "a vertex is too far from the origin after the transform",
+                     "coordinates below 1e18");
   }
   const double side = determinant < 0 ? -1 : 1;
   const double lx = length(to_world.x), ly = length(to_world.y), lz = length(to_world.z);
@@ -103,8 +104,8 @@ void choose_colors(const MeshFile& file, const std::string& name, SourceMesh& me
 SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs) {
   SourceMesh mesh = std::visit(SourceReader{name, uvs}, shape.source);
   if ((uvs == MeshUvs::required || uvs == MeshUvs::with_tangents) && mesh.uvs.empty())
-    throw bad_file(name, "has no UVs, by which its textures would be laid over it",
-                   "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF", "none");
+    throw bad_file(name, "has textures but no UVs", "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF",
+                   "none");
   if (const auto* file = std::get_if<MeshFile>(&shape.source)) {
     if (file->fit_size) fit(mesh, *file->fit_size, name);
     choose_colors(*file, name, mesh);
@@ -118,8 +119,7 @@ CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh me
   settings.name = name;
   settings.smooth = shape.normals == NormalMode::smooth;
   const auto* file = std::get_if<MeshFile>(&shape.source);
-  const bool is_part =
-      file != nullptr && !file->part.empty();  // of an asset, whose surfaces need not be closed
+  const bool is_part = file != nullptr && !file->part.empty();  // part of an asset; its surfaces may be open
   settings.may_be_open = (is_part || std::holds_alternative<QuadShape>(shape.source)) && !shape.medium;
   settings.has_inside = shape.medium.has_value();
   if (file != nullptr) settings.fill_holes = file->fill_holes;

@@ -37,7 +37,7 @@ struct PartMeasures {
   Bounds box;
   double volume = 0;      ///< signed; holes closed by triangles to the middles of their rims
   double magnitudes = 0;  ///< sum of the absolute values that add up to the volume
-  // Of open parts alone:
+  // Open parts only:
   double area = 0, hole_area = 0;
   Vec3d area_vector;  ///< sum of the triangles' normals times their areas
   double area_for_normals = 0, area_against_normals = 0;
@@ -52,7 +52,7 @@ class MeasuredParts {
   /// Triangles of a part, ascending.
   std::span<const std::uint32_t> triangles(std::size_t part) const;
 
-  /// Whether a part, with its holes closed, is around the larger half of some points of another part.
+  /// True if a part, with its holes closed, is around the larger half of some points of another part.
   bool contains(std::size_t outer, std::size_t inner) const;
 
   /// The common volume of parts, with their rims joined to the middle of their area, and its magnitudes.

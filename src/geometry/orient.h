@@ -20,7 +20,7 @@ struct Winding {
   std::size_t inconsistent = 0;        ///< triangles of `flip` that were wound against their neighbours
   std::array<TurnedParts, 4> turned;   ///< parts wound inward, by Inward
   std::size_t unorientable_edges = 0;  ///< edges that no winding satisfies (Moebius strips)
-  MeshParts parts;                     ///< of the mesh as mended
+  MeshParts parts;                     ///< parts of the mesh as mended
 };
 
 /// Which triangles to flip so that triangles sharing an edge of exactly two agree, and parts face outward. Where

@@ -18,7 +18,7 @@ constexpr double kLeastOneSided = 0.1;   // volume over magnitudes of a wide ope
 constexpr double kLeastAgreement = 0.9;  // area whose normals agree, over that with usable normals
 constexpr double kLeastNormals = 0.1;    // area with usable normals, over the whole
 
-enum class Shape : unsigned char { none, sheet, wide, solid };  // of none nothing is asked
+enum class Shape : unsigned char { none, sheet, wide, solid };  // none: not tested
 
 bool meets(const Bounds& a, const Bounds& b) {
   return component_max(a.low, b.low) ==
@@ -63,7 +63,7 @@ class Chooser {
     return is_sheet ? Shape::sheet : Shape::wide;
   }
 
-  /// Whether a part agrees with its normals, 1, or is wound against them, -1; 0 without such.
+  /// True if a part agrees with its normals, 1, or is wound against them, -1; 0 without such.
   int agreement(std::uint32_t i) const {
     const PartMeasures& m = measured_[i];
     const double sum = m.area_for_normals + m.area_against_normals;
@@ -72,7 +72,7 @@ class Chooser {
     return m.area_against_normals >= kLeastAgreement * sum ? -1 : 0;
   }
 
-  /// What no normals decide may be a piece of a surface.
+  /// True if normals are undecided: it may be a piece of a surface.
   bool is_piece(std::uint32_t i) const {
     return (shapes_[i] == Shape::sheet || shapes_[i] == Shape::wide) && agreement(i) == 0;
   }

@@ -54,7 +54,7 @@ void check_device(RTCDevice device) {
   const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN)
     throw run_failed({}, "out of memory while building the ray structure");
-  if (error == RTC_ERROR_UNSUPPORTED_CPU) throw run_failed({}, "Embree does not know this processor");
+  if (error == RTC_ERROR_UNSUPPORTED_CPU) throw run_failed({}, "Embree does not support this processor");
   require(error == RTC_ERROR_NONE, "Embree reports an error");
 }
 

@@ -38,8 +38,8 @@ void check_size(const std::string& path, const InputFile& file) {
   const bool may_announce = format != nullptr && format->announced_length != nullptr;
   const std::uintmax_t announced = may_announce ? format->announced_length(file.read(0, header)) : 0;
   if (announced > 0 && size > 2 * announced + spare)
-    throw bad_file(path, "the file is far longer than its header says", std::to_string(announced) + " bytes",
-                   std::to_string(size));
+    throw bad_file(path, "the file is much longer than its header states",
+                   std::to_string(announced) + " bytes", std::to_string(size));
   if (const std::size_t memory = available_memory(); size > memory)
     throw bad_file(path, "the mesh file does not fit into memory", std::to_string(memory) + " bytes",
                    std::to_string(size));
@@ -83,7 +83,7 @@ SourceMesh read_mesh(const std::string& path, const std::string& part, MeshUvs u
                    extension.empty() ? "no extension" : "'" + extension + "'");
   }
   if (!part.empty() && format->read_part == nullptr)
-    throw bad_file(path, "its format has no parts", "no \"part\"", '"' + part + '"');
+    throw bad_file(path, "the format has no parts", "no \"part\"", '"' + part + '"');
   std::string bytes = read_mesh_bytes(path);
   SourceMesh mesh = part.empty() ? format->read(path, bytes, uvs) : format->read_part(path, part, bytes, uvs);
   require_indexable(path, mesh);

@@ -21,7 +21,7 @@ using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 using HalfedgeMesh = OpenMesh::TriMesh;  // coordinates in double
 using Halfedge = OpenMesh::HalfedgeHandle;
 
-// Of a hole up to this many edges all triangulations are compared, in time cubic in their number. Of those within a
+// Up to this many edges of a hole, all triangulations are compared, in time cubic in their number. Among those within a
 // Delaunay tetrahedrization, which take less, the one that is found hangs on addresses where some are as good.
 constexpr std::size_t largest_cubic_hole = 500;
 
@@ -81,7 +81,7 @@ class HoleFiller {
 
   std::uint32_t original(OpenMesh::VertexHandle v) const { return original_[std::size_t(v.idx())]; }
 
-  /// Whether every edge of the border is open in the mesh as it was, not cut where three triangles meet.
+  /// True if every edge of the border is open in the mesh as it was, not cut where three triangles meet.
   bool is_hole(Halfedge border, std::size_t& edges) const {
     bool open = true;
     for (const Halfedge h : CGAL::halfedges_around_face(border, mesh_)) {
@@ -126,7 +126,7 @@ class HoleFiller {
 
   const std::vector<Vec3d>& positions_;
   const std::vector<Edge>& open_edges_;
-  std::vector<std::uint32_t> original_;  // of each vertex of mesh_
+  std::vector<std::uint32_t> original_;  // source vertex of each vertex of mesh_
   HalfedgeMesh mesh_;
   HoleFilling result_;
 };

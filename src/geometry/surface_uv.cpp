@@ -9,7 +9,7 @@ SurfaceUv surface_uv(const Mesh& mesh, std::uint32_t triangle, float u, float v)
   const Vec3d ab = mesh.positions[b] - mesh.positions[a], ac = mesh.positions[c] - mesh.positions[a];
   const Vec3d normal = cross(ab, ac);
   const double inverse = 1 / dot(normal, normal);
-  // Of the barycentrics.
+  // Gradients of the barycentric coordinates.
   const Vec3d of_b = cross(ac, normal) * inverse, of_c = cross(normal, ab) * inverse;
   SurfaceUv result;
   std::array<Vec3f, 2> gradients;

@@ -21,7 +21,7 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions);
 /// axis. Nothing moves where a triangle with an area would lose it.
 void join_seams(SourceMesh& mesh);
 
-/// Whether a triangle counts as having no area: twice it is at most 1e-12 of the square of its longest side.
+/// True if a triangle counts as having no area: twice it is at most 1e-12 of the square of its longest side.
 bool is_sliver(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
 /// For each triangle whether an earlier one has the same three vertices, in whatever order.

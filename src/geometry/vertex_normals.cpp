@@ -127,11 +127,12 @@ void complete_normals(Mesh& mesh, const Smoothing& smoothing, const std::string&
     average_between_creases(mesh, missing, smoothing);
   if (!own) return;
   if (count > 0)
-    warnings.push_back(name + ": " + std::to_string(count) + " vertices without a usable normal; computed");
+    warnings.push_back(name + ": " + std::to_string(count) +
+                       " vertices without a usable normal; normals computed");
   const std::size_t turned = turn_outward(mesh);
   if (turned > 0)
     warnings.push_back(name + ": " + std::to_string(turned) +
-                       " normals pointed into the surface; turned round");
+                       " normals pointed into the surface and were flipped");
 }
 
 }  // namespace opaline

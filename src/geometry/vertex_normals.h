@@ -26,7 +26,7 @@ void complete_normals(Mesh& mesh, const Smoothing& smoothing, const std::string&
 std::vector<std::uint32_t> reversed_triangles(const Mesh& mesh);
 
 Vec3d unit_normal(const Mesh& mesh, const Triangle& t);
-/// Of a triangle at its corner k, radians.
+/// Corner angle of a triangle at its corner k, radians.
 double corner_angle(const Mesh& mesh, const Triangle& t, std::size_t k);
 
 }  // namespace opaline

@@ -19,7 +19,7 @@ Vec3d stable_middle(const Bounds& all, double diagonal) {
           step * std::round(middle.z / step)};
 }
 
-/// What is wrong with a shape is said where the scene has it.
+/// Reports an error of a shape at its position in the scene file.
 CheckedMesh load_mesh(const Scene& scene, const Shape& shape, MeshMemory* memory) {
   const MeshUvs uvs = uvs_of(scene, shape);
   try {

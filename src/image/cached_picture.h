@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the module of OpenImageIO (image/picture_reader.h) gives textures.
+// Texture interface of the OpenImageIO module (image/picture_reader.h).
 #pragma once
 
 #include <memory>
@@ -23,19 +23,19 @@ class CachedPicture {
   /// Which of red, green, blue and alpha the picture has.
   virtual std::array<bool, 4> channels() const = 0;
   virtual TextureMemory memory() const = 0;
-  /// What is left out of the file; empty: nothing.
+  /// Ignored parts of the file; empty: none.
   virtual std::string warning() const = 0;
 };
 
 struct TextureReader {
   std::unique_ptr<CachedPicture> (*open)(PictureSource source, TextureEncoding encoding);
-  /// Whether it holds floats.
+  /// True if it holds floats.
   bool (*is_float)(const PictureSource& source);
-  /// Of the cache, bytes.
+  /// Size limit of the cache, bytes.
   std::size_t (*cache_limit)();
 };
 
 }  // namespace opaline
 
-/// What the module gives.
+/// Entry point of the module.
 extern "C" opaline::TextureReader opaline_texture_reader();

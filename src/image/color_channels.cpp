@@ -33,7 +33,7 @@ bool has_color(const ChannelPlaces& places) {
   return std::max({places[0], places[1], places[2]}) >= 0;
 }
 
-/// Of one layer.
+/// Places of one layer.
 ChannelPlaces places_in(std::string_view layer, const std::vector<std::string>& channels) {
   ChannelPlaces places{-1, -1, -1, -1};
   int grey = -1;
@@ -62,7 +62,7 @@ ChannelPlaces channel_places(const std::vector<std::string>& channels, const std
   constexpr const char* expected = "the channels R, G and B, or Y, or one alone";
   if (channels.size() == 1) return {0, 0, 0, is_color_word(component_of(channels[0]), 3) ? 0 : -1};
   if (std::ranges::any_of(channels, [](const std::string& c) { return component_of(c) == "ry"; }))
-    throw bad_file(path, "has its colours as luminance and chroma", expected, listed(channels));
+    throw bad_file(path, "stores colours as luminance and chroma", expected, listed(channels));
   ChannelPlaces places = places_in("", channels);
   if (has_color(places)) return places;
   std::set<std::string_view> layers;
@@ -73,8 +73,7 @@ ChannelPlaces channel_places(const std::vector<std::string>& channels, const std
     places = of_layer;
   }
   if (layers.size() == 1) return places;
-  throw bad_file(path,
-                 layers.empty() ? "has no colours" : "has several layers of colours and none without a name",
+  throw bad_file(path, layers.empty() ? "has no colours" : "has several colour layers, none of them unnamed",
                  expected, listed(channels));
 }
 

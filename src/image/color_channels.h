@@ -31,9 +31,9 @@ using ChannelPlaces = std::array<int, 4>;
 /// error Error{bad_input} naming the file: no such channels, several layers, luminance and chroma (RY, BY)
 ChannelPlaces channel_places(const std::vector<std::string>& channels, const std::string& path);
 
-/// Of Cryptomatte: names and coverages, not colours.
+/// True for channels of Cryptomatte: names and coverages, not colours.
 bool is_matte_channel(std::string_view channel);
-/// Whether a layer is what one light adds: "diffuse_NAME", "specular_NAME", "emission_NAME".
+/// True if a layer is what one light adds: "diffuse_NAME", "specular_NAME", "emission_NAME".
 bool is_light_group(std::string_view layer);
 
 /// Converts pixels of `step` values each. Standard errors and variances become bounds, which hold however the channels'

@@ -126,7 +126,7 @@ class ChunkCheck {
     if (size < bytes && compression_ == imf::RLE_COMPRESSION) is_whole = bytes_of_runs(data, size) == bytes;
     const bool is_zip = compression_ == imf::ZIP_COMPRESSION || compression_ == imf::ZIPS_COMPRESSION;
     if (is_whole && size < bytes && is_zip && is_at_end) is_whole = inflates_to(bytes, data, size);
-    if (!is_whole) throw bad_file(path_, "the picture is damaged: a chunk does not hold all of its pixels");
+    if (!is_whole) throw bad_file(path_, "the image is damaged: incomplete chunk");
   }
 
   imf::MultiPartInputFile& file_;
@@ -145,7 +145,7 @@ void check_exr_chunks(const std::string& path) try {
 } catch (const Error&) {
   throw;
 } catch (const std::exception& failure) {
-  throw bad_file(path, std::string("the picture is damaged: ") + failure.what());
+  throw bad_file(path, std::string("the image is damaged: ") + failure.what());
 }
 
 }  // namespace opaline

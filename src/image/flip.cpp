@@ -262,7 +262,7 @@ Vec3f pixel_of(const Planes& planes, std::size_t i) {
 std::vector<float> flip(const Layer& picture, const Layer& reference, double exposure,
                         double pixels_per_degree) {
   require(picture.width == reference.width && picture.height == reference.height,
-          "pictures are compared that have the same size");
+          "images with the same size");
   const Perceived a = perceive(picture, exposure, pixels_per_degree);
   const Perceived b = perceive(reference, exposure, pixels_per_degree);
   std::vector<float> difference(picture.channels[0].size());

@@ -30,13 +30,13 @@ inline constexpr std::string_view kTextureFormats[] = {"exr", "hdr", "png", "jpe
 /// texture's tiles in the wrong places if it lies within.
 class LinearInput : public OIIO::ImageInput {
  public:
-  /// What inputs of this name, of none of a file, read.
+  /// Registers the source of inputs with this name.
   static void register_source(const std::string& name, std::shared_ptr<const PictureSource> source,
                               const TexelColors& colors);
   static void forget_source(const std::string& name);
   static OIIO::ImageInput* create() { return new LinearInput; }
 
-  /// Whether an opened picture is held.
+  /// True if an opened picture is held.
   static bool is_held(const OpenPicture& picture, const TexelLayout& layout);
 
   const char* format_name() const override { return "opaline linear"; }
@@ -73,8 +73,8 @@ class LinearInput : public OIIO::ImageInput {
   bool is_held_ = false;
   OpenPicture opened_;
   std::optional<TexelLayout> layout_;
-  OIIO::TypeDesc native_;  // of the values in the file
-  std::mutex mutex_;       // of all below
+  OIIO::TypeDesc native_;  // type of the values in the file
+  std::mutex mutex_;       // guards all members below
   std::vector<unsigned char> whole_, read_;
   std::vector<bool> is_given_;  // each row of it
   std::vector<float> values_;

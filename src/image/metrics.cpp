@@ -43,7 +43,7 @@ std::vector<float> plane_of(const Image& image, const std::string& name) {
 
 void require_alike(const Layer& a, const Layer& b, const std::vector<std::uint8_t>& object) {
   require(a.width == b.width && a.height == b.height && a.channels.size() == b.channels.size(),
-          "pictures are compared that have the same size and channels");
+          "images with the same size and channels");
   require(object.size() == static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height),
           "a flag for each pixel");
 }
@@ -85,7 +85,7 @@ class Moments {
   double mean_ = 0, squares_ = 0;
 };
 
-/// What a pixel adds to the means of HalvesEstimate.
+/// Contribution of a pixel to the means of HalvesEstimate.
 struct Terms {
   double squared_error = 0, relative_error = 0, squared_noise = 0;
 };
@@ -113,7 +113,7 @@ struct HalvesSums {
 /// The values of one channel in the three pictures, pixel by pixel.
 struct HalvesChannel {
   const std::vector<float>&h, &d1, &d2;
-  double largest = 0, mean = 0;  ///< of d over the compared pixels, > 0
+  double largest = 0, mean = 0;  ///< largest and mean of d over the compared pixels, > 0
 
   bool compared(std::size_t i) const {
     return std::isfinite(h[i]) && std::isfinite(d1[i]) && std::isfinite(d2[i]);

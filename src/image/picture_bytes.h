@@ -13,7 +13,7 @@ namespace opaline {
 /// A picture's bytes: a file, or in memory.
 struct PictureSource {
   std::string path;   ///< for messages, and to read unless there are bytes
-  std::string bytes;  ///< of the file
+  std::string bytes;  ///< bytes of the file
   bool repeats = true;
 };
 

@@ -54,7 +54,7 @@ void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::strin
   constexpr double most_pixels = 1 << 29;
   const int width = std::max(spec.width, spec.full_width), height = std::max(spec.height, spec.full_height);
   if (double(width) * height > most_pixels)
-    throw bad_file(path, "the picture is too large", "at most 537 million pixels, such as 32768 x 16384",
+    throw bad_file(path, "the image is too large", "at most 537 million pixels, such as 32768 x 16384",
                    std::to_string(width) + " x " + std::to_string(height) + ", " +
                        std::to_string(std::int64_t(1e-6 * width * height)) + " million; make it smaller");
 }
@@ -63,7 +63,7 @@ void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::strin
 void check_jpeg_end(const PictureBytes& bytes, const std::string& path) {
   constexpr std::uintmax_t kTail = 1 << 16;  // programs append notes of their own
   const std::string tail = bytes.read(bytes.size() - std::min(kTail, bytes.size()), kTail);
-  if (tail.rfind("\xff\xd9") == tail.npos) throw bad_file(path, "the picture is truncated");
+  if (tail.rfind("\xff\xd9") == tail.npos) throw bad_file(path, "the image is truncated");
 }
 
 /// "EXR, HDR or PNG"
@@ -89,7 +89,7 @@ OpenPicture open_picture(const PictureSource& source, std::span<const std::strin
   if (bytes.size() == 0) throw bad_file(source.path, "the file is empty", readable);
   OpenPicture picture{format_of(bytes), {}, {}};
   if (std::ranges::find(formats, picture.format) == formats.end())
-    throw bad_file(source.path, "not a picture that can be read", readable);
+    throw bad_file(source.path, "not a readable image", readable);
   picture.input = OIIO::ImageInput::create(picture.format);
   OIIO::ImageSpec spec, config;
   config.attribute("oiio:UnassociatedAlpha", 1);
@@ -97,12 +97,12 @@ OpenPicture open_picture(const PictureSource& source, std::span<const std::strin
     picture.memory =
         std::make_unique<OIIO::Filesystem::IOMemReader>(source.bytes.data(), source.bytes.size());
     if (!picture.input->set_ioproxy(picture.memory.get()))
-      throw bad_file(source.path, "cannot be read from within an asset", "a PNG or JPEG picture",
+      throw bad_file(source.path, "cannot be read from within an asset", "a PNG or JPEG image",
                      std::string(picture.format));
   }
   if (!picture.input || !picture.input->open(source.path, spec, config))
-    throw bad_file(source.path, "not a picture that can be read: " + complaint_of(picture.input.get()));
-  if (spec.deep) throw bad_file(source.path, "deep pictures are not supported");
+    throw bad_file(source.path, "not a readable image: " + complaint_of(picture.input.get()));
+  if (spec.deep) throw bad_file(source.path, "deep images are not supported");
   check_size(source.path, spec, picture.format, bytes.size());
   return picture;
 }

@@ -8,7 +8,7 @@ namespace opaline {
 /// error Error{run_failed}: the module is not there
 void* picture_module_function(const char* name);
 
-/// Whether it was loaded.
+/// True if it was loaded.
 bool picture_module_is_loaded();
 
 }  // namespace opaline

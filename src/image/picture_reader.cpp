@@ -64,7 +64,7 @@ Image read_picture(const std::string& path) {
                       image.channels.size());
   // A truncated EXR opens, and is found out here.
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
-    throw bad_file(path, "the picture is damaged: " + complaint_of(&input));
+    throw bad_file(path, "the image is damaged: " + complaint_of(&input));
   if (picture.format == "png") linearize(image, spec.alpha_channel);
   if (const auto matrix = matrix_to_rec709(spec, path))
     convert_colors(image.pixels, image.channels.size(), color_channels(image.channels), *matrix);

@@ -15,5 +15,5 @@ using ReadPicture = Image (*)(const std::string& path);
 
 }  // namespace opaline
 
-/// What the module gives.
+/// Entry point of the module.
 extern "C" opaline::ReadPicture opaline_picture_reader();

@@ -60,9 +60,9 @@ void check_png_chunks(const PictureBytes& bytes, const std::string& path) {
   while (!chunk.starts_with("IEND")) {
     const std::uintmax_t data = big_endian(bytes.read(at, 4));
     chunk = bytes.read(at + 4, 4 + data + 4);
-    if (chunk.size() < 4 + data + 4) throw bad_file(path, "the picture is truncated");
+    if (chunk.size() < 4 + data + 4) throw bad_file(path, "the image is truncated");
     if (crc_of({chunk.data(), 4 + data}) != big_endian({chunk.data() + 4 + data, 4}))
-      throw bad_file(path, "the picture is damaged: wrong CRC of the chunk at byte " + std::to_string(at));
+      throw bad_file(path, "the image is damaged: wrong CRC of the chunk at byte " + std::to_string(at));
     at += 12 + data;
   }
 }

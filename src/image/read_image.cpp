@@ -18,7 +18,7 @@ void* picture_module_function(const char* name) {
   void* const module = ::dlopen(kModule, RTLD_NOW | RTLD_LOCAL);
   void* const function = module != nullptr ? ::dlsym(module, name) : nullptr;
   if (function == nullptr)
-    throw run_failed(kModule, std::string("cannot load what reads pictures: ") + ::dlerror());
+    throw run_failed(kModule, std::string("cannot load the image-reader plugin: ") + ::dlerror());
   return function;
 }
 

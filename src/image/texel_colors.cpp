@@ -13,7 +13,7 @@ namespace opaline {
 namespace {
 
 bool are_same(const RgbPrimaries& a, const RgbPrimaries& b) {
-  constexpr double kRounding = 1e-4;  // of files that state four digits
+  constexpr double kRounding = 1e-4;  // rounding of files that state four digits
   for (const auto& [x, y] : {std::pair(a.red, b.red), std::pair(a.green, b.green), std::pair(a.blue, b.blue),
                              std::pair(a.white, b.white)})
     if (!(std::abs(x[0] - y[0]) < kRounding && std::abs(x[1] - y[1]) < kRounding)) return false;
@@ -50,9 +50,8 @@ std::optional<ColorMatrix> matrix_to_rec709(const OIIO::ImageSpec& file, const s
   if (are_same(primaries, kAp1Primaries)) return from_acescg();
   const ColorMatrix matrix = color_matrix(primaries, kRec709Primaries);
   if (!is_finite_matrix(matrix))
-    throw bad_file(path, "states chromaticities that span no colour space",
-                   "red, green and blue that do not lie on a line, and a white between them",
-                   text_of(primaries));
+    throw bad_file(path, "has chromaticities that span no colour space",
+                   "red, green and blue not on one line, and white between them", text_of(primaries));
   return matrix;
 }
 

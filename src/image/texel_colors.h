@@ -22,7 +22,7 @@ std::optional<ColorMatrix> matrix_to_rec709(const OIIO::ImageSpec& file, const s
 struct TexelColors {
   bool is_premultiplied = false;         ///< colours are multiplied by alpha
   bool is_srgb = false;                  ///< encoded by IEC 61966-2-1
-  std::optional<ColorMatrix> to_rec709;  ///< of files with other primaries
+  std::optional<ColorMatrix> to_rec709;  ///< conversion of files with other primaries
 
   TexelColors() = default;
   /// Data keep alpha and primaries as the file has them. A grey image has no primaries.

@@ -74,7 +74,7 @@ std::uint64_t content_hash(const PictureSource& source) {
   return XXH3_64bits(bytes.data(), bytes.size());
 }
 
-/// What a file's texels depend on, without reading them.
+/// Identity of a file's texels, without reading them.
 struct Stamp {
   std::vector<std::pair<fs::file_time_type, std::uintmax_t>> files;
   friend bool operator==(const Stamp&, const Stamp&) = default;
@@ -106,7 +106,7 @@ TextureFile::~TextureFile() = default;
 
 void TextureFile::add_picture(int tile, const std::string& path, TextureEncoding encoding) {
   PictureSource source = source_of(path, tile == 0);
-  constexpr std::uint64_t kVersion = 3;  // of the texels that a file's bytes stand for
+  constexpr std::uint64_t kVersion = 3;  // version of the conversion from bytes to texels
   const std::array<std::uint64_t, 6> parts{kVersion,
                                            hash_,
                                            std::uint64_t(tile),

@@ -21,7 +21,7 @@
 namespace opaline {
 namespace {
 
-constexpr int kRows = 64;  // of a picture, read at once
+constexpr int kRows = 64;  // rows of a picture, read at once
 
 /// A quarter of the machine, but at least 256 MB and at most 4 GB.
 std::size_t cache_limit() {
@@ -51,14 +51,14 @@ void read_rows(OIIO::ImageInput& input, const TexelLayout& layout, int begin, in
           ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, begin, end, spec.z, spec.z + 1, layout.begin,
                              layout.end, type, values)
           : input.read_scanlines(0, 0, begin, end, spec.z, layout.begin, layout.end, type, values);
-  if (!good) throw bad_file(path, "the picture is damaged: " + complaint_of(&input));
+  if (!good) throw bad_file(path, "the image is damaged: " + complaint_of(&input));
 }
 
 int rows_at_once(const OIIO::ImageSpec& spec) {
   return spec.tile_height > 0 ? spec.tile_height : kRows;
 }
 
-/// Whether all pixels of the data window have the same bytes.
+/// True if all pixels of the data window have the same bytes.
 bool is_even(const PictureSource& source) {
   const OpenPicture opened = open_picture(source, kTextureFormats);
   const OIIO::ImageSpec spec = opened.input->spec();
@@ -199,7 +199,7 @@ class OiioPicture : public CachedPicture {
   TextureMemory memory() const override { return memory_; }
   std::string warning() const override {
     if (ignored_ == 0) return {};
-    return source_->path + ": the file does not state the meaning of " +
+    return source_->path + ": the file does not define the meaning of " +
            (ignored_ == 1 ? "a channel beside grey, which is" : "channels beside grey, which are") +
            " not used";
   }
@@ -208,13 +208,13 @@ class OiioPicture : public CachedPicture {
   [[noreturn]] void fail() const {
     std::string complaint = texture_system().geterror();
     complaint = complaint.substr(0, complaint.find('\n'));
-    throw bad_file(source_->path, "the picture is damaged: " + complaint);
+    throw bad_file(source_->path, "the image is damaged: " + complaint);
   }
 
   std::shared_ptr<const PictureSource> source_;
   TexelColors colors_;
   int ignored_ = 0;   // channels of the file
-  int channels_ = 0;  // of a texel
+  int channels_ = 0;  // channels of a texel
   std::array<bool, 4> has_channel_{};
   bool is_windowed_ = false;
   TextureMemory memory_;

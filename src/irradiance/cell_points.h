@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// Whether a mesh of the world has samples, by its index; meshes beyond the end have none.
+/// True if a mesh of the world has samples, by its index; meshes beyond the end have none.
 std::vector<bool> meshes_of(std::span<const SurfaceSample> samples);
 
 /// Points of the cells of a batch of samples, found together: add the samples, project, read the points.
@@ -27,7 +27,7 @@ class CellPoints {
   struct Point {
     SurfacePoint at;
     float weight = 0;
-    std::uint32_t line = 0;  ///< of its cell, below kMost
+    std::uint32_t line = 0;  ///< line of its cell, below kMost
   };
 
   /// surface: whether a mesh of the world has samples; spacing: sqrt(area / samples), mm.
@@ -57,7 +57,7 @@ class CellPoints {
   };
   struct Cell {
     Vec3f sample, normal;
-    std::uint32_t mesh, triangle;  // of the sample
+    std::uint32_t mesh, triangle;  // surface point of the sample
     std::size_t first_bisector, end_bisector;
   };
   struct Line {

@@ -60,7 +60,7 @@ struct ErrorSums {
   double variance = 0, sum = 0;
 };
 
-// Of lights that share their rays; unblocked: what the weights would be were nothing in the way.
+// Traces lights that share their rays; unblocked: weights without occlusion.
 void trace_transfers(const IrradianceInput& input, std::span<const Light> lights,
                      std::span<LightTransfer> transfers, std::span<std::vector<float>> unblocked) {
   const std::size_t n = input.samples.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What hides a room from points that lie together, as their shadow rays tell.
+// Visibility of an environment from neighbouring points, estimated by their shadow rays.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace opaline {
 
-/// Of each block of a room's picture, how much of its light reaches points that lie together. The points are two halves:
-/// what one may expect is told by the rays of the other, so that it does not depend on its own.
+/// Visibility of each block of an environment map from neighbouring points. The points form two halves; the rays of one
+/// half predict the visibility for the other, so that a prediction is independent of its own rays.
 class RoomShadows {
  public:
   explicit RoomShadows(const EnvironmentPicture& room);

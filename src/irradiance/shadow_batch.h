@@ -134,11 +134,11 @@ class ShadowBatch {
 
  private:
   static constexpr std::size_t kSorted = 256;       // rays that Embree takes at once
-  static constexpr float kMeanCosine = 2.0f / 3;    // of even light
+  static constexpr float kMeanCosine = 2.0f / 3;    // mean cosine of even light
   static constexpr std::size_t kFewestOfRoom = 32;  // rays: a ratio of sums over fewer is biased
-  // Of points that lie together, and rays of theirs, that tell what the others may expect.
+  // Minimum pools of neighbouring points, and rays of a pool, for a prediction of visibility.
   static constexpr std::size_t kFewestPools = 4, kFewestOfTogether = 256;
-  static constexpr float kRounding = 1e-4f;  // of a sum of a few floats, less one of them
+  static constexpr float kRounding = 1e-4f;  // rounding of a sum of a few floats, less one of them
 
   void carry(const SurfacePoint& point, const LightSample& sample, const std::array<float, 3>& weights) {
     const float cosine = dot(point.normal, sample.direction);
@@ -193,10 +193,10 @@ class ShadowBatch {
         lights_[light].source);
   }
 
-  // Of a few directions one is traced, by how much of it the lobe mirrors, and stands for all.
+  // Traces one of a few directions, sampled by the reflected light of the lobe, as the estimate of all.
   void add_mirrored(const SurfacePoint& point, std::uint64_t index, const std::array<double, 2>& shift,
                     std::uint64_t first, const Lobe& lobe) {
-    constexpr float kEven = .1f;  // of the choice: the lobe of a grazing view is another
+    constexpr float kEven = .1f;  // uniform part of the choice, for the different lobe of a grazing view
     constexpr std::size_t draws = kLobeDraws;
     std::array<std::array<double, 2>, draws> squares;
     std::array<EnvironmentSample, draws> drawn;
@@ -251,8 +251,8 @@ class ShadowBatch {
                          draw.expected, 0, false});
   }
 
-  // What nothing shadows is known of all lights together: as far as light reaches the point from the others that are
-  // drawn, it counts for what is drawn. The mean is that of what is drawn, for draws do not depend on each other.
+  // Control variate: the unshadowed sum of all lights is exact, so the shadow rays of the other samples correct a sample. The
+  // mean is unchanged, because samples are independent.
   template <class Use>
   void use_controlled(std::size_t point, const Use& use) const {
     const std::size_t samples = std::size_t(samples_), first = point * samples, lights = lights_.size();
@@ -277,8 +277,8 @@ class ShadowBatch {
     }
   }
 
-  // What a room brings where nothing is in the way is known. The rays of a pool tell, channel by channel, the part of it
-  // that reaches its points: what they bring over what they would. A point's own rays count as far as they differ.
+  // Control variate: the unshadowed irradiance of an environment is exact. The rays of a pool estimate the visible fraction
+  // per channel; the rays of a point add their difference from that estimate.
   template <class Use>
   void use_pool(std::size_t begin, std::size_t end, const Use& use) const {
     const std::size_t samples = std::size_t(samples_), lights = lights_.size();
@@ -385,17 +385,17 @@ class ShadowBatch {
   std::vector<LightTree::Drawn> drawn_;
   bool scattered_ = false, keeps_directions_ = false, shares_shadows_ = false;
   std::vector<float> carried_;
-  /// Of one sample of many lights: what its light would bring were nothing in the way, over how often it is drawn; the mean
-  /// of that over all draws of the sample.
+  /// One sample of many lights: its unshadowed contribution over its probability, and the mean of that over all draws
+  /// of the sample.
   struct Control {
     RgbF here, mean;
     float expected;
-    std::uint32_t block;  // of a room
+    std::uint32_t block;  // block of an environment map
     bool lit;
   };
   std::vector<Control> controls_;   // empty: none
-  std::vector<RgbF> means_;         // of points that a room lights
-  std::vector<Vec3d> normals_;      // of these, in the room's picture
+  std::vector<RgbF> means_;         // means of points lit by an environment
+  std::vector<Vec3d> normals_;      // normals of these, in the room's picture
   std::vector<std::size_t> pools_;  // the first point of each
   std::uint64_t pooled_ = 0;        // the last point's sequence
   std::vector<Vec3f> directions_;

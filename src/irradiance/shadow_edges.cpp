@@ -138,8 +138,8 @@ void average(const IrradianceInput& input, std::uint32_t light, std::span<const 
   const std::size_t batch_size = batch_points(int(most) * each);
   for (std::size_t begin = 0; begin < marks.size(); begin += batch_size) {
     const std::span<const Mark> part = marks.subspan(begin, std::min(batch_size, marks.size() - begin));
-    std::vector<std::uint32_t> owners;  // of the points in the batch
-    std::vector<float> areas;           // of the same
+    std::vector<std::uint32_t> owners;  // owners of the points in the batch
+    std::vector<float> areas;           // areas of the same points
     std::vector<double> sums(part.size()), whole(part.size());
     for (std::uint32_t m = 0; m < part.size(); ++m)
       for (const CellPoints::Point& point : points.points(part[m].cell)) {
@@ -156,7 +156,7 @@ void average(const IrradianceInput& input, std::uint32_t light, std::span<const 
   }
 }
 
-/// What refined samples are moved by, times their areas.
+/// Displacement of refined samples, times their areas.
 struct Shift {
   double sum = 0, squares = 0, ray_noise = 0;
 

@@ -8,7 +8,7 @@
 
 namespace opaline {
 
-/// Whether trees can hold the light: its kind has a place, a way it shines and a brightest intensity.
+/// True if trees can hold the light: its kind has a place, a way it shines and a brightest intensity.
 bool fits_into_tree(const Light& light);
 
 struct BuiltLightTree {

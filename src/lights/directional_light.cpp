@@ -11,7 +11,7 @@
 namespace opaline {
 namespace {
 
-// Of smaller discs single precision tells no direction from another, nor holds the radiance.
+// Least angle of smaller discs single precision tells no direction from another, nor holds the radiance.
 constexpr double kLeastAngle = .004;
 
 bool is_parallel(const DirectionalLight& light) {
@@ -34,20 +34,22 @@ double cap(double sine2) {
 template <>
 std::vector<KeyInfo> LightReader<DirectionalLight>::rows() {
   using enum ValueType;
-  return {{.key = "type", .type = choice, .meaning = "`\"directional\"`: a sun"},
-          {.key = "direction", .type = triple, .meaning = "the way its light travels, of any length but 0"},
+  return {{.key = "type", .type = choice, .meaning = "`\"directional\"`: a distant light, such as the sun"},
+          {.key = "direction",
+           .type = triple,
+           .meaning = "direction in which the light travels, of any nonzero length"},
           {.key = "irradiance",
            .type = color,
            .unit = "W/mm²",
            .range = kNonNegative,
-           .meaning = "on a surface that faces it"},
+           .meaning = "irradiance on a surface perpendicular to the light"},
           {.key = "angle",
            .type = number,
            .unit = "degrees",
            .range = {0, 90},
            .default_value = "0",
-           .meaning = "of the disc that it is in the sky; the sun has .53; wider blurs shadows; less than "
-                      ".004 counts as 0"}};
+           .meaning = "angular diameter of its disc; the sun has 0.53; a larger one blurs shadows; less than "
+                      "0.004 counts as 0"}};
 }
 
 template <>

@@ -18,7 +18,7 @@ struct Turn {
 
 /// Counterclockwise about +y, seen from above; degrees.
 Vec3d turned(const Vec3d& direction, double degrees) {
-  thread_local Turn turn;  // of one light after another, millions of directions each
+  thread_local Turn turn;  // rotation of the current light, for millions of directions
   if (degrees != turn.degrees) {
     const double angle = degrees * std::numbers::pi / 180;
     turn = {degrees, std::cos(angle), std::sin(angle)};
@@ -35,7 +35,7 @@ Vec3d in_picture(const EnvironmentLight& light, const Vec3f& direction) {
 
 namespace {
 
-/// What the light's picture has in a direction. Its channels, lights of their own, are asked one after the other.
+/// Radiance of the environment map in a direction. Its channels are separate lights, evaluated one after the other.
 RgbF radiance_towards(const EnvironmentLight& light, const Vec3f& direction) {
   struct Asked {
     std::uint64_t picture = 0;
@@ -88,23 +88,22 @@ RgbF unshadowed(const EnvironmentLight& light, const Vec3f& normal) {
 template <>
 std::vector<KeyInfo> LightReader<EnvironmentLight>::rows() {
   using enum ValueType;
-  return {{.key = "type", .type = choice, .meaning = "`\"environment\"`: a picture of the room, all around"},
+  return {{.key = "type", .type = choice, .meaning = "`\"environment\"`: an environment map"},
           {.key = "file",
            .type = file,
-           .meaning = "a lat-long EXR, HDR or PNG picture, twice as wide as high, +y up, +z in its middle; "
-                      "relative to the "
-                      "scene file"},
+           .meaning = "lat-long EXR, HDR or PNG image, twice as wide as high, +y up, +z at the centre; "
+                      "relative to the scene file"},
           {.key = "strength",
            .type = color,
            .range = kNonNegative,
            .default_value = "1",
-           .meaning = "times the picture, whose values are then radiance, W/(mm² sr)"},
+           .meaning = "factor of the image; the product is radiance, W/(mm² sr)"},
           {.key = "rotation",
            .type = number,
            .unit = "degrees",
            .range = {-360, 360},
            .default_value = "0",
-           .meaning = "about +y, counterclockwise seen from above"}};
+           .meaning = "rotation about +y, counter-clockwise seen from above"}};
 }
 
 template <>

@@ -30,7 +30,7 @@ constexpr std::size_t kMostColumns = 1024, kBlockColumns = 64, kBrightest = 32;
 // as a cosine.
 constexpr double kBetweenNormals = .15, kLeastCosine = .05;
 
-// Of the unfolded octahedron, both in [-1, 1].
+// Unfolded normal of the unfolded octahedron, both in [-1, 1].
 Vec3d unfolded_normal(double x, double y) {
   const double z = 1 - std::abs(x) - std::abs(y), over = std::max(-z, 0.0);
   return normalized(Vec3d{x + (x < 0 ? over : -over), y + (y < 0 ? over : -over), z});
@@ -64,7 +64,8 @@ constexpr float kMostRadiance = 1e30f;
 std::vector<RgbF> colours_of(const std::string& path, const Image& image, NegativePixels& negative) {
   const ChannelPlaces places = channel_places(image.channels, path);
   if (std::min({places[0], places[1], places[2]}) < 0)
-    throw bad_file(path, "has no colours for an environment", "the channels R, G and B, or Y, or one alone");
+    throw bad_file(path, "has no colour channels for an environment map",
+                   "the channels R, G and B, or Y, or one alone");
   check_display_window(path, double(image.width) * image.height,
                        double(image.full_width) * image.full_height);
   const auto width = std::size_t(image.full_width);
@@ -77,7 +78,7 @@ std::vector<RgbF> colours_of(const std::string& path, const Image& image, Negati
     for (std::size_t c = 0; c < 3; ++c) {
       const float value = values[places[c]];
       if (!(std::abs(value) <= kMostRadiance))
-        throw bad_file(path, place_text(i, width) + " is not finite or too bright", "a radiance up to 1e30",
+        throw bad_file(path, place_text(i, width) + " is not finite or too large", "a radiance up to 1e30",
                        fmt::format("{:g}", value));
       pixels[i][c] = std::max(value, 0.0f);
     }
@@ -122,7 +123,7 @@ std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::st
     return picture;
   const Image image = read_image(path);
   if (image.full_width != 2 * image.full_height)
-    throw bad_file(path, "is no picture of an environment", "a lat-long picture, twice as wide as high",
+    throw bad_file(path, "is not an environment map", "a lat-long image, twice as wide as high",
                    std::to_string(image.full_width) + " x " + std::to_string(image.full_height));
   NegativePixels negative;
   const auto picture = std::make_shared<EnvironmentPicture>(
@@ -130,7 +131,7 @@ std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::st
   picture->path_ = path;
   if (negative.count > 0)
     picture->warning_ =
-        fmt::format("{}: {} of {} pixels have a negative radiance, taken as 0; the lowest is {:.3g} at {}",
+        fmt::format("{}: {} of {} pixels have a negative radiance, replaced by 0; the lowest is {:.3g} at {}",
                     path, negative.count, picture->pixels_.size(), negative.lowest,
                     place_text(negative.lowest_at, picture->width_));
   entry = {time, bytes, picture};
@@ -176,7 +177,7 @@ void EnvironmentPicture::make_importance() {
     }
 }
 
-// Of a cell, integrated over its directions.
+// Flux of a cell, integrated over its directions.
 double EnvironmentPicture::flux_of(std::size_t row, std::size_t column) const {
   const auto share = [this](std::size_t cell) {
     return double(std::min(cell * step_, width_)) / double(width_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is known of a room's light before a shadow ray is traced.
+// Sample of an environment before its shadow ray.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ inline constexpr int kLobeDraws = 4;
 
 inline constexpr std::size_t kMostAtOnce = 8;
 
-/// What a lobe mirrors of a room's light.
+/// Specular reflection of an environment by a lobe.
 struct RoomLobe {
   const EnvironmentPicture* picture;
   double rotation;
@@ -36,7 +36,7 @@ struct EnvironmentSample {
   Vec3f direction;
   RgbF weights;
   RgbF unshadowed;          ///< about the irradiance that it brings were nothing in the way
-  std::uint32_t block = 0;  ///< of the picture
+  std::uint32_t block = 0;  ///< block of the environment map
 };
 
 /// in    unit_squares: one a sample, at most kMostAtOnce

@@ -121,7 +121,7 @@ WeighedDraw::WeighedDraw(const LampTable& lamps, std::span<const float> weights,
     sum += sums_[b];
   }
   if (!(sum > 0)) return;
-  // What those drawn surely leave goes to the others, of which more are drawn surely then.
+  // Weights of certain lights go to the others, so that more lights become certain.
   scale_ = draws / sum;
   for (std::size_t sure = 0;;) {
     std::size_t now = 0;
@@ -169,7 +169,7 @@ class WeighedDraw::OtherLamps {
  public:
   explicit OtherLamps(std::span<Stratum> strata) : strata_(strata) { begin_stratum(0); }
 
-  /// Whether so much fits into the stratum at hand, and is not drawn from there.
+  /// True if so much fits into the stratum at hand, and is not drawn from there.
   bool passes(double length) const {
     const double end = end_ + length;
     return end < border_ && (place_ < end_ || place_ >= end);
@@ -205,7 +205,7 @@ class WeighedDraw::OtherLamps {
   std::span<Stratum> strata_;
   std::size_t stratum_ = 0;  // at hand
   double border_, place_;    // its end, and where it is drawn
-  double end_ = 0;           // of the lamps so far
+  double end_ = 0;           // end of the lamps so far
 };
 
 void WeighedDraw::take_others(std::span<Stratum> strata) const {

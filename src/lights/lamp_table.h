@@ -25,7 +25,7 @@ class LampTable {
   /// could make it 0.
   /// in    normal: unit; weights: weights() of them
   void weigh(const Vec3f& point, const Vec3f& normal, std::span<float> weights) const;
-  /// What a lamp of that weight brings, in its colour.
+  /// Contribution of a light with that weight, in its colour.
   RgbF brought(std::size_t lamp, float weight) const {
     return RgbF{colours_[0][lamp], colours_[1][lamp], colours_[2][lamp]} * weight;
   }
@@ -62,7 +62,7 @@ class WeighedDraw {
     double place = 0;  ///< where it is drawn, in [0, 1)
     std::size_t lamp = 0;
     float expected = 0;  ///< how often it takes the lamp from all strata; 0: nothing was drawn
-    RgbF brought{};      ///< what it brings in the mean, were nothing in the way (LampTable::brought)
+    RgbF brought{};      ///< mean contribution without occlusion (LampTable::brought)
   };
   /// Gives a stratum to each lamp that is expected once. Returns how many these are.
   std::size_t take_sure(std::span<Stratum> strata) const;
@@ -78,7 +78,7 @@ class WeighedDraw {
 
   const LampTable& lamps_;
   std::span<const float> weights_;
-  double scale_ = 0;  // of weights, to how often each is drawn
+  double scale_ = 0;  // scale of weights, to how often each is drawn
   std::size_t blocks_;
   std::array<double, kMost / kBlock> sums_;
   std::array<float, kMost / kBlock> largest_;

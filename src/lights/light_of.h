@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a kind of light can do. Each kind has a file that defines all of it, and how the scene file gives it
+// Operations of a kind of light. Each kind has a file that defines all of it, and how the scene file gives it
 // (scene/light_reader.h); a kind without one of these does not link.
 #pragma once
 
@@ -31,14 +31,14 @@ struct LightOf {
   static Kind recentred(Kind light, const Vec3d& origin, double unit);
   static LightSample sample(const Kind& light, const Vec3f& point, const Vec3f& normal,
                             std::array<double, 2> unit_square, int samples);
-  /// Of a kind that comes as a light for each channel: the weight of each channel.
+  /// Samples a kind with one light per channel: the weight of each channel.
   static LightSample sample_channels(const Kind& light, const Vec3f& point, const Vec3f& normal,
                                      std::array<double, 2> unit_square, int samples, RgbF& weights);
-  /// Of directions from the point that `sample` draws, 1/sr; 0 for delta lights.
+  /// Density of directions from the point that `sample` draws, 1/sr; 0 for delta lights.
   static float density(const Kind& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction);
   /// Where a ray meets the light itself before `far`; no hit for lights without an area.
   static EmitterHit intersect(const Kind& light, const Vec3f& origin, const Vec3f& direction, float far);
-  /// What a ray that meets nothing sees of it; 0 unless it is all around.
+  /// Radiance along a ray that hits nothing; 0 for lights at finite distance.
   static RgbF background(const Kind& light, const Vec3f& direction);
   static LightExtent extent(const Kind& light);
   /// None: trees cannot hold it.
@@ -48,7 +48,7 @@ struct LightOf {
   static std::vector<double> geometry(const Kind& light);
 };
 
-/// Of a light of any kind: light.cpp.
+/// Lamp of a light of any kind: light.cpp.
 std::optional<Lamp> lamp_of(const Light& light);
 
 }  // namespace opaline

@@ -64,7 +64,7 @@ double facing(const LightTree::Node& node, float cosine, float ball) {
   return node.fades_by_square ? share * share : share;
 }
 
-/// Whether a node's lights are alike at a place.
+/// True if a node's lights are alike at a place.
 bool is_narrow(const LightTree::Node& node, const LightTree::Place& at) {
   const Vec3f to = node.center - at.point;
   const float d2 = dot(to, to), r2 = node.radius * node.radius;
@@ -74,7 +74,7 @@ bool is_narrow(const LightTree::Node& node, const LightTree::Place& at) {
   return mirrored(*at.lobe, (dot(at.lobe->mirrored, to) + node.radius) * per_d) < kMirrored;
 }
 
-/// Of the brightest light, if all others are multiples of it.
+/// Emission of the brightest light, if all others are multiples of it.
 std::optional<Rgb> common_emission_of(std::span<const Light> lights) {
   Rgb common{};
   for (const Light& light : lights)

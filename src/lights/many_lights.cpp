@@ -11,7 +11,7 @@
 namespace opaline {
 namespace {
 
-// Of a direction in which a light without an area lies: above that of any other way of drawing directions.
+// Density of the direction of a delta light: above all other densities.
 constexpr float kOfDeltaLight = 1e30f;
 
 bool is_dark(const Light& light) {

@@ -11,12 +11,12 @@ template <>
 std::vector<KeyInfo> LightReader<PointLight>::rows() {
   using enum ValueType;
   return {{.key = "type", .type = choice, .meaning = "`\"point\"`"},
-          {.key = "position", .type = point, .meaning = "where it is"},
+          {.key = "position", .type = point, .meaning = "position"},
           {.key = "intensity",
            .type = color,
            .unit = "W/sr",
            .range = kNonNegative,
-           .meaning = "brightness in every direction"}};
+           .meaning = "radiant intensity in every direction"}};
 }
 
 template <>

@@ -14,15 +14,17 @@ std::vector<KeyInfo> LightReader<QuadLight>::rows() {
   using enum ValueType;
   return {{.key = "type",
            .type = choice,
-           .meaning = "`\"quad\"`: a flat lamp, shining on the side where u x v points"},
+           .meaning = "`\"quad\"`: a flat area light that emits on the side of u x v"},
           {.key = "corner", .type = point, .meaning = "one corner"},
-          {.key = "u", .type = point, .meaning = "from it along one side"},
-          {.key = "v", .type = point, .meaning = "from it along the other, not parallel to `u`"},
+          {.key = "u", .type = point, .meaning = "vector from the corner along one side"},
+          {.key = "v",
+           .type = point,
+           .meaning = "vector from the corner along the other side, not parallel to `u`"},
           {.key = "radiance",
            .type = color,
            .unit = "W/(mm² sr)",
            .range = kNonNegative,
-           .meaning = "brightness of its surface"}};
+           .meaning = "emitted radiance"}};
 }
 
 template <>

@@ -15,7 +15,7 @@ namespace opaline {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kOutsideLobe = .125;  // of directions: a lobe's tail meets lamps, too
+constexpr double kOutsideLobe = .125;  // fraction of directions; the tail of a lobe meets bright lights
 
 }  // namespace
 

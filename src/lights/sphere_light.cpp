@@ -13,14 +13,14 @@ namespace opaline {
 template <>
 std::vector<KeyInfo> LightReader<SphereLight>::rows() {
   using enum ValueType;
-  return {{.key = "type", .type = choice, .meaning = "`\"sphere\"`: a glowing ball"},
-          {.key = "center", .type = point, .meaning = "its centre"},
-          {.key = "radius", .type = length, .meaning = "its radius"},
+  return {{.key = "type", .type = choice, .meaning = "`\"sphere\"`: a spherical area light"},
+          {.key = "center", .type = point, .meaning = "centre"},
+          {.key = "radius", .type = length, .meaning = "radius"},
           {.key = "radiance",
            .type = color,
            .unit = "W/(mm² sr)",
            .range = kNonNegative,
-           .meaning = "brightness of its surface"}};
+           .meaning = "emitted radiance"}};
 }
 
 template <>

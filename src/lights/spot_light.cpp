@@ -11,7 +11,7 @@ namespace opaline {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
-constexpr double kLeastFade = 1e-3;  // of the cosine, as glTF's recommended implementation has it
+constexpr double kLeastFade = 1e-3;  // minimum falloff range of the cosine, as in glTF
 
 /// From 1 within the inner cone to 0 at the rim: the square of a ramp in the cosine (KHR_lights_punctual).
 double fade(const SpotLight& light, double cosine) {
@@ -25,26 +25,26 @@ double fade(const SpotLight& light, double cosine) {
 template <>
 std::vector<KeyInfo> LightReader<SpotLight>::rows() {
   using enum ValueType;
-  return {{.key = "type", .type = choice, .meaning = "`\"spot\"`: a point that shines within a cone"},
-          {.key = "position", .type = point, .meaning = "where it is"},
-          {.key = "direction", .type = triple, .meaning = "the way its middle shines, of any length but 0"},
+  return {{.key = "type", .type = choice, .meaning = "`\"spot\"`: a point light limited to a cone"},
+          {.key = "position", .type = point, .meaning = "position"},
+          {.key = "direction", .type = triple, .meaning = "direction of the axis, of any nonzero length"},
           {.key = "intensity",
            .type = color,
            .unit = "W/sr",
            .range = kNonNegative,
-           .meaning = "brightness along the middle"},
+           .meaning = "radiant intensity along the axis"},
           {.key = "outer_angle",
            .type = number,
            .unit = "degrees",
            .range = {0, 90, true},
            .default_value = "45",
-           .meaning = "from the middle to the rim, where its light ends"},
+           .meaning = "angle from the axis to the edge of the cone"},
           {.key = "inner_angle",
            .type = number,
            .unit = "degrees",
            .range = {0, 90},
            .default_value = "0",
-           .meaning = "from the middle to where its light begins to fade; less than `outer_angle`"}};
+           .meaning = "angle from the axis to the start of the falloff; less than `outer_angle`"}};
 }
 
 template <>

@@ -15,8 +15,8 @@ std::string SubsurfaceMethod::light_stage(const Scene& scene, std::span<const Li
 }
 
 std::string SubsurfaceMethod::bounces_stage() const {
-  return "bounces: light between things, once, gathered at the samples and at 64 x 64 places of the "
-         "picture, more in corners";
+  return "bounces: light between shapes, one bounce, gathered at the samples and at 64 x 64 points of the "
+         "image, more in corners";
 }
 
 }  // namespace opaline

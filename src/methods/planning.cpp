@@ -36,8 +36,10 @@ std::string irradiance_stage(const Scene& scene, std::span<const Light> traced) 
     drawn_from += many != nullptr ? many->tree->lights().size() : 0;
     rays += std::size_t(shadow_rays(traced[l], scene.settings.light_samples));
   }
-  const std::string drawn = drawn_from > 0 ? fmt::format(", some to lights drawn from {}", drawn_from) : "";
-  return fmt::format("irradiance: {} light(s), {} shadow ray(s) a sample{}", lights, rays, drawn);
+  const std::string drawn =
+      drawn_from > 0 ? fmt::format(", including importance-sampled lights out of {}", drawn_from) : "";
+  return fmt::format("irradiance: {} light{}, {} shadow ray{} per sample{}", lights, lights == 1 ? "" : "s",
+                     rays, rays == 1 ? "" : "s", drawn);
 }
 
 }  // namespace opaline

@@ -23,7 +23,7 @@ struct BodyPlanning {
   const Scene& scene;
   const World& world;
   std::span<const Light> lights;  ///< recentred
-  double fewest_samples;          ///< of a body
+  double fewest_samples;          ///< fewest samples of a body
 };
 
 /// Expected memory of a body, bytes.
@@ -38,7 +38,7 @@ struct BodyMemory {
 /// grid of its own.
 double needle_fraction(const World& world, const GroupPlan& body);
 
-/// "irradiance: 2 light(s), ..."
+/// "irradiance: 2 lights, ..."
 std::string irradiance_stage(const Scene& scene, std::span<const Light> lights);
 
 }  // namespace opaline

@@ -57,7 +57,7 @@ std::vector<Keyed> morton_order(std::span<const FluxSample> samples) {
   return order;
 }
 
-// What a node is made from, in double: sums per lane R, G, B, area.
+// Sums that define a node, in double: per lane R, G, B, area.
 struct Sums {
   std::array<double, 4> weight{};
   std::array<Vec3d, 4> moment{};

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kPoints = 200, kCountingPixels = 48 * 48, kMostPixels = 256 * 256;
 constexpr std::size_t kFirstSamples = 512;
-// What stays of noise alone: the mean of sqrt(max(0, x^2 - 1)) of a normal x.
+// Bias from noise alone: the mean of sqrt(max(0, x^2 - 1)) of a normal x.
 constexpr double kLeft = 0.34;
-// Of the reference, over the expected error.
+// Noise of the reference, over the expected error.
 constexpr double kNoise = 0.7;
 
 /// As many pixels as it takes to see the points wanted.

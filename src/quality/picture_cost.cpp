@@ -93,7 +93,7 @@ double ShadingCost::of(const SettingsSearch& search) {
     pixels += pixels_of(tile.pixels);
   }
   for (const Tile& tile : tiles_) all += pixels_of(tile.pixels);
-  // What a picture costs before its first pixel.
+  // Cost of an image before its first pixel.
   const double before = cost_of({}), tried = std::max(0.0, cost_of(parts) - before);
   const double most = double(tiles_.size()) / kLeastLeft;
   tried_ = std::size_t(std::clamp(double(count) * kTrySeconds / std::max(tried, 1e-4), double(kFewestTiles),

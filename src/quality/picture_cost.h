@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a whole picture will cost, told from small parts of it.
+// Cost of a whole image, predicted from small parts of it.
 #pragma once
 
 #include <vector>
@@ -24,8 +24,8 @@ class ShadingCost {
     double coverage = 0;  // by what is to be shaded
     Rectangle pixels{};
   };
-  std::vector<Tile> tiles_;  // of all the picture, by coverage
-  std::size_t tried_;        // so many of them, spread evenly
+  std::vector<Tile> tiles_;  // tiles of the image, by coverage
+  std::size_t tried_;        // number of tried tiles, spread evenly
 };
 
 /// CPU of what follows a picture, by a small one, s. The first call of `finish` may cost more than later
@@ -35,7 +35,7 @@ double finishing_cost(const Image& probe, const Film& film, const FinishPicture&
 /// Every few pixels of a picture, so that about so many are left.
 Image thinned(const Image& picture, double pixels);
 
-/// Of the time that is planned: the rest is for what is guessed too low.
+/// Planned fraction of the available time; the rest covers underestimates.
 inline constexpr double kPlannedShare = 0.93;
 
 }  // namespace opaline

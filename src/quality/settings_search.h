@@ -13,9 +13,9 @@ struct SettingsSearch {
   Session& session;
   Scene scene;  ///< with the settings that are tried
   Monitor* monitor = nullptr;
-  double area = 0, most_samples = 0;  ///< of all groups; mm^2
+  double area = 0, most_samples = 0;  ///< area and most samples of all groups; mm^2
   double probe_pixels = 96 * 96;      ///< errors may be in a few pixels alone, beside the edge of a shadow
-  std::size_t enough_points = 3000;   ///< of a probe, lit and translucent
+  std::size_t enough_points = 3000;   ///< enough points of a probe, lit and translucent
   std::uint64_t pictures = 0;
   double estimated = 0;  ///< mean relative error of the last picture, by its own `error` layer
   /// Light between things, where there is any: gathered for the first picture, and for all others too.
@@ -46,7 +46,7 @@ struct SettingsSearch {
   bool try_surface_cache();
 };
 
-/// Of the evaluator, for an error of the whole picture.
+/// Tolerance of the evaluator, for an error of the whole picture.
 double tolerance_for(double error);
 
 /// Pixels of a probe that show lit translucent surface.

@@ -14,7 +14,7 @@ namespace {
 
 // Estimates are rarely less than this factor too low: a picture's own; one that a second picture agrees with.
 constexpr double kSafety = 1.6, kSecondSafety = 1.35;
-// So many samples are off by about this, whatever they stand on; with their number that falls by this power.
+// Usual error of this number of samples on any shape, and the power by which it falls with their number.
 constexpr double kUsualSamples = 17000, kUsualError = 0.006, kSlope = 0.8;
 // Where they are too few they grow by this factor at least, and so much beyond what the slope says: one step
 // is cheaper than two.
@@ -23,17 +23,17 @@ constexpr double kLeastGrowth = 2.5, kBeyond = 1.25, kMostGrowth = 4;
 constexpr double kMostNoise = 0.5;
 constexpr int kMostLightSamples = 65536;
 constexpr int kMostSteps = 12;
-// Of the small pictures: a mean needs no more.
+// Pixels of the small images: enough for a mean.
 constexpr double kProbePixels = 64 * 64;
 constexpr std::size_t kEnoughPoints = 1500;
 
-/// So many as usually do.
+/// Usual number of samples for the target.
 double first_guess(const SettingsSearch& search, double fewest, double target) {
   const double guess = kUsualSamples * std::pow(kSafety * kUsualError / target, 1 / kSlope);
   return std::clamp(guess, fewest, search.most_samples);
 }
 
-/// Of the shadow rays of a small picture, as another one differs.
+/// Noise of the shadow rays of a small picture, as another one differs.
 double noise_of(SettingsSearch& search, const Image& picture) {
   if (std::ranges::all_of(recentred_lights(search.scene, search.session.world()), is_delta)) return 0;
   return probe_difference(search.picture(), picture) / std::sqrt(2);

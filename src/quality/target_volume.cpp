@@ -16,16 +16,16 @@ namespace {
 // No body of the table of bench_volume_models is farther off than the expected error by more than this factor.
 constexpr double kModelSafety = 1.4;
 constexpr double kThinnest = 3;  // mean free paths: the table has no thinner body
-// What cells, samples and shadow rays may add where the model alone takes all of the target: 4 % of the promise.
+// Minimum fraction for cells, samples and shadow rays if the model error uses all of the target: 4 % of the promise.
 constexpr double kLeastShare = .3;
 constexpr double kCoarsest = 3, kFinest = .25;  // cells, mean free paths
-constexpr double kMargin = .85;                 // of the error that is aimed at: two steps cost more than one
+constexpr double kMargin = .85;  // margin of the error that is aimed at: two steps cost more than one
 constexpr int kMostSteps = 6, kMostLightSamples = 4096;
 constexpr double kProbePixels = 64 * 64;
 constexpr std::size_t kEnoughPoints = 1500;
 constexpr double kQuickCells = 3e5;  // solved in about a second
 
-/// Of the worst body; none where a mesh is open, or so thin that light crosses it almost without scattering, or so large
+/// Model error of the worst body; none where a mesh is open, or so thin that light crosses it almost without scattering, or so large
 /// that it has no cells.
 std::optional<double> model_error(const Plan& plan) {
   double worst = 0;

@@ -18,9 +18,9 @@ namespace opaline {
 namespace {
 
 constexpr double kFewest = 2500;             // samples
-constexpr std::size_t kEnoughPoints = 1000;  // of a small picture
+constexpr std::size_t kEnoughPoints = 1000;  // enough points of a small picture
 constexpr double kFirstTolerance = .01;
-// So many times the most samples of a small picture are planned with: what these cost is a few per cent then.
+// Maximum factor of the samples of a small image; these cost a few per cent then.
 constexpr double kBeyond = 8;
 // Samples that are there cost less than a few more.
 constexpr double kWorthPlacing = 1.25;
@@ -34,8 +34,8 @@ struct Tried {
   Image picture;
   double sampling = 0;
   double preparing = 0;  ///< sampling, irradiance, octree, bounces
-  double shading = 0;    ///< of the whole picture
-  double looking = 0;    ///< what trying it cost besides
+  double shading = 0;    ///< cost of shading the whole image
+  double looking = 0;    ///< other cost of trying it
 };
 
 struct Choice {
@@ -89,7 +89,7 @@ class BudgetSearch {
   std::vector<Tried> tried_;
   int doubled_ = 0;  // times in a row
   std::optional<ShadingCost> shading_;
-  std::optional<double> error_;  // of the last tried
+  std::optional<double> error_;  // error of the last tried
 };
 
 void BudgetSearch::try_first(const FinishPicture& finish) {
@@ -148,7 +148,7 @@ double BudgetSearch::growth() const {
 
 /// Along a straight line: sampling has a part that does not grow.
 double BudgetSearch::preparing(double samples) const {
-  constexpr double kFixed = 0.7;  // of the sampling of a few
+  constexpr double kFixed = 0.7;  // fixed part of the cost of sampling
   const Tried &first = tried_.front(), &now = last();
   if (samples == now.samples) return 0;
   const double least = 0.3 * now.preparing / now.samples, most = now.preparing / now.samples;
@@ -179,7 +179,7 @@ double BudgetSearch::goal() const {
   return std::min(affordable(search_.most_samples).samples / kBeyond, search_.most_samples);
 }
 
-/// Whether a picture is still within the time afterwards, or cheaper than now.
+/// True if a picture is still within the time afterwards, or cheaper than now.
 bool BudgetSearch::is_worth_trying(double samples) const {
   double shading = 0.75 * last().shading;  // near light is dear where samples are few
   if (tried_.size() > 1) {

@@ -14,8 +14,9 @@
 namespace opaline {
 namespace {
 
-constexpr std::array kFactors{1 / 16.0, 1 / 8.0, 1 / 4.0, 1 / 2.0, 1.0, 2.0, 4.0};  // of the scene's samples
-constexpr double kFewest = 300;                                                     // of a picture
+constexpr std::array kFactors{1 / 16.0, 1 / 8.0, 1 / 4.0, 1 / 2.0,
+                              1.0,      2.0,     4.0};  // factors of the scene's samples
+constexpr double kFewest = 300;                         // minimum samples of an image
 constexpr double kUsualSlope = .8;  // power of the number of samples with which the error falls
 constexpr double kProbePixels = 128 * 128;
 
@@ -28,7 +29,7 @@ double rounded(double value, double digits) {
 struct Trade {
   SettingsSearch search;
   Scene given;
-  Image probe;  ///< of the last point
+  Image probe;  ///< probe of the last point
 
   double prepared_seconds() const {
     double seconds = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a mesh's boundary makes of light that leaves, and of light that it mirrors.
+// Boundary of a mesh: transmission of outgoing light, and specular reflection.
 #pragma once
 
 #include <algorithm>
@@ -20,15 +20,15 @@ namespace opaline {
 struct Appearance {
   bool translucent = false;
   RgbF albedo{};                       ///< reflectance, or total diffuse reflectance
-  float eta = 1;                       ///< of the boundary, where there is one
+  float eta = 1;                       ///< eta of the boundary, where there is one
   float average_reflectance = 0;       ///< F_bar
   std::optional<RoughBoundary> rough;  ///< none: smooth
   bool has_boundary = false;           ///< translucent things and glossy opaque ones
-  float metalness = 0;                 ///< of an opaque one
-  /// Of a boundary whose roughness is a texture, or that is anisotropic.
+  float metalness = 0;                 ///< metalness of an opaque one
+  /// Range of a textured or anisotropic roughness.
   std::shared_ptr<const RoughnessRange> roughnesses = {};
   float roughness = 0;  ///< where it is no texture
-  /// Of light that was followed inside; none: it leaves as the boundary lets it.
+  /// Angular distribution of light that was traced inside; none: given by the boundary.
   std::shared_ptr<const AngularExit> exit = {};
 
   /// The same at a point whose textures are known.

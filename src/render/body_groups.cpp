@@ -52,12 +52,11 @@ double alignment_of(const World& world, const GroupPlan& group) {
 void check_profile(const Scene& scene, const Medium& medium) {
   if (medium.profile != ProfileKind::directional_dipole || scene.settings.method != Method::hierarchical)
     return;
-  throw Error(
-      ErrorKind::bad_input, medium.place.file, medium.place.line, medium.place.column,
-      fmt::format("{}: the profile directional_dipole asks from where light comes, and the samples of the "
-                  "method hierarchical hold the sum over all directions",
-                  medium.name),
-      "--method direct, or another profile, such as better_dipole");
+  throw Error(ErrorKind::bad_input, medium.place.file, medium.place.line, medium.place.column,
+              fmt::format("{}: the profile directional_dipole requires the direction of the light, but the "
+                          "samples of the method hierarchical store irradiance over all directions",
+                          medium.name),
+              "--method direct, or another profile, such as better_dipole");
 }
 
 }  // namespace
@@ -75,11 +74,9 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
     const DiffuseProfile& profile = *known;
     if (!profile.translucent) {
       const Medium& medium = scene.media[*shape.medium];
-      warnings.push_back(
-          text_at(medium.place,
-                  fmt::format("{}: medium {} does not scatter and is not translucent; its diffuse part is "
-                              "black",
-                              shape.name, medium.name)));
+      warnings.push_back(text_at(
+          medium.place, fmt::format("{}: the medium {} does not scatter, so its diffuse reflection is black",
+                                    shape.name, medium.name)));
       continue;
     }
     const std::string& name = shape.group.empty() ? shape.name : shape.group;

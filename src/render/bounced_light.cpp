@@ -27,9 +27,9 @@ constexpr float kNear = 0.07f;
 constexpr float kVaried = 0.2f;
 // Distance from a place's plane, over the places' spacing, at which it stands for a hit half as well.
 constexpr float kOffPlane = 0.2f;
-constexpr float kLeastWeight = 0.05f;  // of all places around a hit, where a place at the hit has 1
+constexpr float kLeastWeight = 0.05f;  // sum over the places around a hit; a place at the hit has weight 1
 
-// Of a row's places, one a lane; GCC's and Clang's.
+// Lanes of a row's places, one a lane; GCC's and Clang's.
 using Lanes = float __attribute__((vector_size(BouncedPlaces::kBeside * sizeof(float))));
 
 Lanes absolute(const Lanes& values) {

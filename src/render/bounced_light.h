@@ -36,7 +36,7 @@ class BouncedPlaces {
     std::vector<float> reach;  ///< off the plane, where they stand for a point half as well
     std::vector<float> eta;    ///< below 0: no surface there
 
-    /// Of the boundary and place that light is asked for; dx, dy: to the first place of a row, in places.
+    /// Boundary and position of a query; dx, dy: to the first place of a row, in places.
     struct Asked {
       Vec3f point, normal;
       float eta, dx, dy;
@@ -56,7 +56,7 @@ class BouncedPlaces {
 
     Lattice(const Film& film, int pixels);
     std::array<double, 2> in_places(const CameraRays::FilmPlace& seen) const;
-    /// Whether a place around this one is near, and their light varies.
+    /// True if a place around this one is near, and their light varies.
     bool needs_closer_places(const CameraRays::FilmPlace& seen) const;
     std::optional<RgbF> at(const CameraRays::FilmPlace& seen, const SurfacePoint& point, float eta) const;
   };
@@ -66,7 +66,7 @@ class BouncedPlaces {
 
   CameraRays camera_;
   std::vector<Lattice> lattices_;  // each of places half as far apart as the last, where that needs them
-  std::size_t chunks_ = 0;         // of places that gathered
+  std::size_t chunks_ = 0;         // chunks of places that gathered
 };
 
 /// At the hits of a picture: by RenderInput::bounced, or places of its own. Hits that no place stands for, at rims, gather

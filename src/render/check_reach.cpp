@@ -21,9 +21,9 @@ void check_distance(const Scene& scene, const std::string& what, double distance
   if (distance <= kFarthest) return;
   throw bad_file(
       scene.file, what + " is too far from the shapes",
-      fmt::format("at most {:.3g} mm from the middle of them all, 2^50 of the unit that suits their "
-                  "size, for single precision to reach it",
-                  kFarthest * mm),
+      fmt::format(
+          "at most {:.3g} mm from their centre (2^50 times the internal unit), the limit of single precision",
+          kFarthest * mm),
       fmt::format("{:.3g} mm", distance * mm));
 }
 

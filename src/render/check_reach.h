@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the camera and the lights lie within what single precision can compute with.
+// Check that the camera and the lights lie within the range of single precision.
 #pragma once
 
 #include "opaline/geometry/world.h"

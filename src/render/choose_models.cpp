@@ -21,12 +21,12 @@ namespace {
 
 constexpr ProfileKind kOfBodies = ProfileKind::normalized_diffusion;
 constexpr ProfileKind kOfThickPlates = ProfileKind::dipole;
-// Of a square plate a sixth as thick as wide.
+// Alignment of a square plate with a thickness of a sixth of its width.
 constexpr double kFlatAlignment = .58;
 // Diffuse mean free paths, of the channel where light goes farthest: 2 % of what goes down crosses a thicker plate.
 constexpr double kCrossed = 4;
 
-/// What counts of a medium, over the channels that scatter.
+/// Extremes of a medium over its scattering channels.
 struct MediumExtremes {
   double mean_free_path = 0, diffuse_mean_free_path = 0;  ///< the longest, mm
   std::string channels;  ///< whose mean free path is the longest: "red", "red, green"
@@ -90,14 +90,14 @@ bool BodyShape::is_flat() const {
 BodyModel choose_model(const Medium& medium, const BodyShape& shape) {
   BodyModel model{{kOfBodies}, true, {}, {}, {}};
   if (!(shape.thickness > 0)) {
-    model.reason = "its mesh is open: how thick it is, and the error, are unknown";
+    model.reason = "open mesh, so thickness and error are unknown";
     return model;
   }
   const bool is_flat = shape.is_flat();
   const double thickness = is_flat ? shape.plate_thickness() : shape.thickness;
   const MediumExtremes extremes = extremes_of(medium);
   if (!(extremes.mean_free_path > 0)) {
-    model.reason = "no mean free path: diffuse reflection";
+    model.reason = "no mean free path, diffuse reflection";
     return model;
   }
   const double mean_free_paths = thickness / extremes.mean_free_path;
@@ -137,7 +137,7 @@ BodyModel planned_model(const Scene& scene, const GroupPlan& group) {
   BodyModel model = choose_model(medium, shape_of(group));
   if (medium.profile) {
     model.is_chosen = false;
-    model.reason = "named by the scene";
+    model.reason = "set by the scene";
     model.expected_error = {};
   } else if (model.profile != medium.chosen) {
     model.reason = "as in the reference frame";

@@ -23,7 +23,7 @@ bool survives(Entry& entry, float usual, double random) {
   return true;
 }
 
-/// What tints light that enters there, as fine as the texture is.
+/// Tint of transmitted light at an entry, at the full resolution of the texture.
 RgbF entering_tint(const DirectExitanceInput& input, const Entry& entry, std::size_t exit) {
   if (input.textures == nullptr || input.textures->empty()) return RgbF(1);
   const bool is_exit = entry.mesh == Hit::kMiss;
@@ -56,7 +56,7 @@ void add_directed_light(const DirectExitanceInput& input, const PointIrradianceI
   });
 }
 
-/// What surfaces send to the entries, by a ray each.
+/// Adds light from other surfaces at the entries, by one ray each.
 void add_bounced_light(const DirectExitanceInput& input, const PointIrradianceInput& at,
                        std::span<const Entry> entries, std::span<const std::size_t> exits,
                        std::vector<RgbF>& exitance) {
@@ -80,7 +80,7 @@ std::vector<RgbF> direct_exitance(const DirectExitanceInput& input) {
   std::vector<Entry> entries, taken;
   std::vector<SurfacePoint> entry_points;
   std::vector<std::uint64_t> keys;
-  std::vector<std::size_t> exits;  // of the entries taken
+  std::vector<std::size_t> exits;  // exits of the accepted entries
   const float usual = input.sampler.usual_weight();
   for (std::size_t p = 0; p < points; ++p) {
     const std::uint64_t key = hash_bits(input.exits.seed, input.exits.keys[p]);

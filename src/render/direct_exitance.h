@@ -14,7 +14,7 @@ struct DirectExitanceInput {
   const EntrySampler& sampler;
   PointIrradianceInput exits;  ///< points that light leaves, their keys, lights and boundary
   int entry_samples = 1;       ///< a point, >= 0
-  /// What tints light that enters, and where the exits are; null: nothing.
+  /// Textures of the tint, with the positions of the exits; null: none.
   const SurfaceTextures* textures = nullptr;
   std::span<const Hit> hits = {};
   const Shader* gathers = nullptr;  ///< as Pass::gathers

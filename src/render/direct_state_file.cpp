@@ -47,7 +47,7 @@ std::vector<float> values_in_order(const Image& image, const std::vector<std::st
 void write_direct_state(const std::string& path, const DirectState& state, const Scene& scene,
                         const std::string& scene_key) {
   Image image = empty_state_image(scene);
-  require(image.pixels.size() == state.sums.size(), "the state is of another picture");
+  require(image.pixels.size() == state.sums.size(), "the state belongs to another image");
   std::ranges::copy(state.sums, image.pixels.begin());
   image.metadata = {{kPasses, std::to_string(state.passes)}, {kScene, scene_key}};
   write_exr(path, image, false);
@@ -62,12 +62,12 @@ DirectState read_direct_state(const std::string& path, const Scene& scene, const
   std::vector<float> sums = values_in_order(image, expected.channels);
   const auto [end, error] = std::from_chars(passes.data(), passes.data() + passes.size(), state.passes);
   if (passes.empty() || error != std::errc{} || end != passes.data() + passes.size() || sums.empty())
-    throw bad_file(path, "not the sums of a direct rendering", "a file that --resume wrote");
+    throw bad_file(path, "does not hold the sums of a direct render", "a file that --resume wrote");
   if (text_of(image, kScene) != scene_key)
-    throw bad_file(path, "the sums are of another scene or other settings",
-                   "those of this one, or a new file name");
+    throw bad_file(path, "the sums belong to another scene or other settings",
+                   "the sums of this scene and settings, or a new file name");
   if (image.width != expected.width || image.height != expected.height)
-    throw bad_file(path, "the sums are of another picture size");
+    throw bad_file(path, "the sums belong to another image size");
   state.sums = std::move(sums);
   return state;
 }

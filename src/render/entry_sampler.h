@@ -26,9 +26,9 @@ struct Entry {
   SurfacePoint point;
   RgbF weight;                ///< R_d / density per area, per channel
   float inverse_density = 0;  ///< per area; 0: the weight is of light that leaves where it entered
-  std::uint32_t mesh = Hit::kMiss, triangle = 0;  ///< of the point; kMiss: it is the exit itself
+  std::uint32_t mesh = Hit::kMiss, triangle = 0;  ///< mesh and triangle of the point; kMiss: the exit itself
   float u = 0, v = 0;
-  RgbF tint{1, 1, 1};  ///< of the light that enters
+  RgbF tint{1, 1, 1};  ///< tint of the light that enters
 };
 
 /// Draws entry points on the surfaces of one group of translucent meshes with a density near R_d of their
@@ -52,7 +52,7 @@ class EntrySampler {
   /// About the largest channel's weight of an entry on a flat surface.
   float usual_weight() const { return usual_weight_; }
 
-  /// Whether R_d depends on the direction of the light; the weights then have its mean.
+  /// True if R_d depends on the direction of the light; the weights then have its mean.
   bool is_directional() const { return is_directional_; }
   /// R_d, 1/mm^2, for light from a direction, per channel; 0 of channels whose light leaves where it enters.
   RgbF directional(const SurfacePoint& exit, const SurfacePoint& entry, const Vec3f& towards_light) const;
@@ -73,7 +73,7 @@ class EntrySampler {
   float channel_mean(float r2) const;
 
   std::vector<std::uint32_t> meshes_;
-  DiffuseProfile profile_;  // of channels_ alone
+  DiffuseProfile profile_;  // profile of channels_ alone
   const RayScene& rays_;
   LineQuery lines_;
   KernelTable table_;

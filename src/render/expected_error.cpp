@@ -23,7 +23,7 @@ std::optional<double> expected_model_error(const Plan& plan) {
 }
 
 std::vector<std::string> model_warnings(const Plan& plan) {
-  constexpr double kLarge = .2, kBetter = .7;  // of the error
+  constexpr double kLarge = .2, kBetter = .7;  // bounds of the error
   std::vector<std::string> warnings;
   for (const GroupPlan& group : plan.groups) {
     const std::optional<double> error = expected_error(group.model, group.method);

@@ -16,16 +16,16 @@ namespace opaline {
 /// all around in half of the time that they take for few.
 inline constexpr std::size_t kGatheredAtOnce = 1024;
 
-/// What points gather, by rays over the hemisphere, from surfaces that are lit by the scene's lights.
+/// Light gathered at points, by rays over the hemisphere, from surfaces under direct light.
 struct GatherInput {
   const RayScene& rays;
   const Shader& shader;
   std::span<const SurfacePoint> points;
   std::span<const std::uint64_t> keys;  ///< one a point: chooses its random numbers
-  float eta = 0;                        ///< of the boundary that light enters through; 0: none
+  float eta = 0;                        ///< eta of the boundary that light enters through; 0: none
   int rays_each = 64;
   std::uint64_t seed = 0;
-  /// What rays of the same points, keys, number and seed met, added to while gathered_bytes of the view are few; or null.
+  /// Cached hits of the same points, keys, number and seed, extended up to gathered_bytes of the view; or null.
   HeldView::Gathering* held = nullptr;
   HeldView* view = nullptr;  ///< that has it
 };
@@ -35,7 +35,7 @@ struct SurfaceLight {
   std::size_t point;  ///< its index
   Vec3f towards;      ///< the surface; unit
   float distance;     ///< to it, world units
-  RgbF irradiance;    ///< of what comes through the boundary where there is one, W/mm^2
+  RgbF irradiance;    ///< irradiance transmitted by the boundary, if any, W/mm^2
 };
 
 using UseOfGathered = std::function<void(const SurfaceLight&)>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What textures say where a ray met a surface.
+// Texture values at a hit.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,7 @@ struct HitTextures {
   std::optional<float> roughness, metalness;  ///< none: the surface's own
   bool is_bent = false;                       ///< maps have turned the shading normal
   Vec3f tangent{};                            ///< SurfaceTextures::tangent
-  float tangent_share =
-      0;  ///< of the view's direction along the surface: cos^2 of its azimuth from the tangent
+  float tangent_share = 0;                    ///< cos^2 of the view direction's azimuth from the tangent
 };
 
 }  // namespace opaline

@@ -30,7 +30,7 @@ std::size_t bytes_of(const IrradianceLattice::Cell& cell) {
 
 }  // namespace
 
-// What is known of a cell while its places are sought.
+// Crossings of a cell during the search for its points.
 struct IrradianceLattice::Crossings {
   Crossings(const Key& key, const Vec3d& low_, double step_, std::uint64_t seed_, Cell& cell_)
       : low(low_), step(step_), seed(hash_bits(seed_, key.level)), cell(cell_) {
@@ -53,9 +53,9 @@ struct IrradianceLattice::Crossings {
 
   Vec3d low;  // corner of the cell
   double step;
-  std::uint64_t seed;  // of the cell
+  std::uint64_t seed;  // seed of the cell
   Cell& cell;
-  std::array<std::array<std::array<float, 2>, kLines * kLines>, 3> shifts;  // of the lines in their squares
+  std::array<std::array<std::array<float, 2>, kLines * kLines>, 3> shifts;  // lines in their squares
 };
 
 IrradianceLattice::IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta,

@@ -34,7 +34,7 @@ class IrradianceLattice {
     std::vector<float> areas;                 ///< that each point stands for, mm^2
     std::vector<RgbF> entered;                ///< by all lights
     std::vector<PointTransfers> lights = {};  ///< one a light, where they are held
-    std::uint64_t seed = 0, picture = 0;      ///< of the places' keys; that `entered` is of
+    std::uint64_t seed = 0, picture = 0;      ///< seeds of the points' keys; image of `entered`
   };
 
   /// in    spacing: of the lines of level 0, mm; eta: of the boundary, as PointIrradianceInput's; light_samples: shadow rays from a place to each light with an area;
@@ -42,7 +42,7 @@ class IrradianceLattice {
   IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta, int light_samples,
                     bool holds_lights);
 
-  /// Whether a new one with these would be the same.
+  /// True if a new one with these would be the same.
   bool is_of(const std::vector<bool>& is_own_mesh, double spacing, double eta, int light_samples) const;
   /// To be called between pictures of other lights, as HeldView::set_lights.
   void set_lights(std::span<const std::optional<std::size_t>> before);
@@ -52,7 +52,7 @@ class IrradianceLattice {
   static constexpr std::size_t kMostBytes = std::size_t(64) << 20;
 
   double spacing(std::uint32_t level) const;
-  /// Of the cells that are within reach, mm, of any of some points.
+  /// Keys of the cells within reach, mm, of any of some points.
   std::vector<Key> keys_near(std::span<const SurfacePoint> points, std::span<const std::uint32_t> chosen,
                              double reach, std::uint32_t level) const;
   /// in    lighting: its points, boundary and number of rays are not looked at; the same at each call but for them

@@ -54,7 +54,7 @@ double squared_distance(const Segment& segment, const Corners& corners) {
   return at(low);
 }
 
-/// Whether no point of the ball comes nearer to the segment than `distance`.
+/// True if no point of the ball comes nearer to the segment than `distance`.
 bool is_beyond(const Segment& segment, const Vec3d& center, double radius, double distance) {
   return squared_distance(center, segment) >= (distance + radius) * (distance + radius);
 }

@@ -16,12 +16,12 @@
 
 namespace opaline {
 
-/// Whether the channel is diffuse reflection: the limit of a vanishing mean free path.
+/// True if the channel is diffuse reflection: the limit of a vanishing mean free path.
 inline bool is_local(const DiffuseProfile& profile, std::size_t channel) {
   return profile.total[channel] > 0 && !(profile.mean_free_path[channel] > 0);
 }
 
-/// What stands below the surface of bodies of one medium, by the textures above: R G B, reduced, lengths in the world's
+/// Media below the surface of bodies of one medium, from the textures above: R G B, reduced, lengths in the world's
 /// unit.
 class LocalMedia {
  public:
@@ -42,11 +42,10 @@ class LocalMedia {
   SurfaceTextures textures_;
   ArtistMedium mean_;
   double eta_;
-  std::vector<double>
-      totals_;  // of media whose 1 - albedo' is the square of 0 to 1, evenly; from 1 down to 0
+  std::vector<double> totals_;  // totals of media with 1 - albedo' = t^2, for uniform t from 1 to 0
 };
 
-/// What cells of a body whose medium varies are to resolve: the length that a tenth of its surface is below, mm.
+/// Length that the cells of a textured body must resolve: the 10th percentile over its surface, mm.
 double short_length_of(const Scene& scene, const World& world, const GroupPlan& group);
 
 /// Inside a body: at each point the medium of the nearest point of its surface. Empty where the body's medium is the same

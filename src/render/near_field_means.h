@@ -30,7 +30,7 @@ class NearFieldMeans {
   /// Adds the places of cells; none beyond the kernel's reach need be among them. Call it once.
   void add_lattice(std::span<const IrradianceLattice::Cell* const> cells);
 
-  /// Of a point of the set; NaN where no place is near.
+  /// Mean at a point of the set; NaN if no place is near.
   RgbF mean(std::size_t point) const;
 
  private:
@@ -48,11 +48,11 @@ class NearFieldMeans {
 
   const NearKernel& kernel_;
   std::size_t count_, end_;
-  std::array<Box, kMostPoints / kGroup> boxes_;  // of every kGroup points
+  std::array<Box, kMostPoints / kGroup> boxes_;  // boxes of every kGroup points
   Numbers x_{}, y_{}, z_{}, nx_{}, ny_{}, nz_{}, drawn_{};
-  std::array<int, kMostPoints> ring_{}, drawn_ring_{};  // of the place last looked at
+  std::array<int, kMostPoints> ring_{}, drawn_ring_{};  // rings of the current place
   Numbers found_{};  // the places that each point drew, times its cosine with the place last looked at
-  std::array<Densities, kMostPoints> here_{};  // of the place last looked at
+  std::array<Densities, kMostPoints> here_{};  // densities of the current place
   std::array<Densities, kMostPoints> weights_{}, sums_{};
   // Places close to a group, coordinate by coordinate; what each stands for, and its irradiance.
   std::array<std::vector<float>, 6> close_coordinates_;

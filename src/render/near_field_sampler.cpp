@@ -24,7 +24,7 @@ constexpr float kFinestAt = 0.1f;  // stake from which on the lattice is as fine
 constexpr int kAlone = 24, kTogether = 96, kEach = 3;
 constexpr std::uint64_t kStride = 11;  // in the sequence from one point's places to the next one's
 constexpr int kFewerRays = 16;      // than a point's own are traced from a place to each light with an area
-constexpr float kErrorLeft = 0.4f;  // of what the interpolated irradiance was off by
+constexpr float kErrorLeft = 0.4f;  // fraction of the interpolation error that remains
 
 // In units of the distance within which half of the narrowest channel's kernel lies: spacing of the lattice
 // at its coarsest; distance of points that use the lattice; of points that are many more than its cells; and
@@ -59,7 +59,7 @@ RgbF bounced_at(const PointIrradianceInput& lighting, std::size_t point) {
 
 }  // namespace
 
-// What refine was given, or is to fill.
+// Input of refine, and its result.
 struct NearFieldSampler::Found {
   const PointIrradianceInput& lighting;
   std::span<const RgbF> own;
@@ -72,7 +72,7 @@ struct NearFieldSampler::Places {
   std::vector<TracedRay> rays;
   std::vector<SurfacePoint> points;
   std::vector<std::uint64_t> keys;
-  std::vector<std::uint32_t> sets;  // of the points that brought them
+  std::vector<std::uint32_t> sets;  // sets of the points that requested them
 };
 
 NearFieldSampler::NearFieldSampler(const Body& group, int light_samples,
@@ -142,7 +142,7 @@ void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_
   std::vector<int> drawn;
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
     for (std::size_t m = first; m < ends[set]; ++m) {
-      // Of what lies beyond an edge in a part p of the near field, about p is at stake, and the deviation of
+      // A part p of the near field beyond an edge contributes an error of about p, and the deviation of
       // a place is as the root of p.
       const std::uint32_t i = sorted[m];
       const float wanted = std::sqrt(at_stake(found.own[i], found.exitance[i]) / kUsual) *
@@ -260,7 +260,7 @@ void NearFieldSampler::part(std::span<const SurfacePoint> points, std::span<std:
   std::ranges::nth_element(marked, marked.begin() + std::ptrdiff_t(count), {}, along);
 }
 
-// So many that with those of its neighbours the point has about kTogether, but kAlone of its own at most.
+// Number of places of a point: about kTogether with those of its neighbours, at most kAlone of its own.
 float NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint32_t> set,
                                   std::span<const SurfacePoint> points) const {
   const float square = float(near_.root_mean_square * near_.root_mean_square);

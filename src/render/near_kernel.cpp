@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kBeyondReach = 0.02;  // of a kernel
+constexpr double kBeyondReach = 0.02;  // fraction of a kernel beyond its reach
 
 }  // namespace
 

@@ -18,10 +18,10 @@ namespace {
 // Above this share of the irradiance at the point itself (SplitKernel::own_irradiance) the near field's rms
 // radius is under a fifth of h, less than two segments of the finest lattice.
 constexpr float kSharp = 0.8f;
-// What lattices need not resolve, over the tolerance, of the exitance: bumps of the mesh, that its own
-// vertices tell, and what a few shadow rays beside a shadow's edge leave open.
+// Error, over the tolerance, that lattices need not resolve: bumps of the mesh, resolved by its own
+// vertices, and noise of a few shadow rays beside a shadow's edge.
 constexpr float kBumps = 1, kEdgeNoise = 2;
-// What hangs on the near field's irradiance (stake_of), over the tolerance, at places left to the points.
+// Sensitivity to the near field's irradiance (stake_of), over the tolerance, above which points are evaluated directly.
 // `render scenes/bunny-marble.json --resolution 2048x2048 --evaluator surface_cache` against brute_force, p99
 // over all / over the ear: 1: .31 / .63 %, .5: .23 / .27 %.
 constexpr float kTooSharp = 0.5f;

@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Whether a cache can hold the light that depends on the irradiance at each place, so that pictures trace no
+/// True if a cache can hold the light that depends on the irradiance at each place, so that pictures trace no
 /// shadow rays: facets without smooth normals are lit each in its own way, and the shadows of a mean free
 /// path far below the sample spacing are too sharp to interpolate; light that bounces is known at the picture's points.
 bool can_hold_own_light(const Scene& scene, const World& world, const Body& group);

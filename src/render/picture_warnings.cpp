@@ -18,7 +18,7 @@ namespace {
 
 // In units of white, after the exposure: below 16, below 64 and at 255 of a PNG's 255 levels.
 constexpr float kAlmostBlack = 0.005f, kDark = 0.05f, kOverexposed = 1.1f;
-constexpr double kWellExposed = 0.5;  // what the brightest of a picture may be
+constexpr double kWellExposed = 0.5;  // maximum of a well-exposed image
 constexpr double kFarAway = 30;       // diagonals of all shapes
 
 Bounds box_of(const World& world) {
@@ -60,7 +60,7 @@ std::vector<float> sampled_brightness(const Image& image) {
   return values.empty() && step > 1 ? brightness(image, 1) : values;
 }
 
-/// Whether most of the pixels full of an object show a surface from behind: opaque ones have no behind.
+/// True if most of the pixels full of an object show a surface from behind: opaque ones have no behind.
 bool is_inside(const Image& image, const Vec3d& camera) {
   const std::size_t stride = image.channels.size(), coverage = channel(image, "A");
   const std::array<std::size_t, 3> normal{channel(image, "N.X"), channel(image, "N.Y"),
@@ -101,7 +101,7 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
   const double pixels =
       radius / distance / std::tan(camera.field_of_view * std::numbers::pi / 360) * scene.film.resolution[1];
   const double degrees = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
-  std::string where = fmt::format("{:.0f} degrees beside the middle of the view", degrees);
+  std::string where = fmt::format("{:.0f} degrees from the view direction", degrees);
   if (scene.film.crop && degrees < 90)
     where = "around the pixel " + pixel_text(scene, towards);
   else if (distance <= radius)
@@ -109,31 +109,31 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
   else if (degrees > 90)
     where = "behind the camera";
   else if (pixels < 2)
-    where = fmt::format("so far away that all of them are {:.2g} pixels wide", pixels);
+    where = fmt::format("so far away that together they are {:.2g} pixels wide", pixels);
   else if (degrees < camera.field_of_view / 2)
-    where = "in the view: does a lamp stand in front of them, or are they thinner than a pixel?";
+    where = "in the view, but possibly behind a light or thinner than a pixel";
   const std::string look = "--set camera.look_at=" + point_text(middle, scene.mm_per_unit);
-  std::string advice = look + " looks at their middle";
+  std::string advice = look + " centres them";
   if (scene.film.crop) {
-    advice = "a small --resolution without a crop shows where they are";
+    advice = "render a small --resolution without a crop to locate them";
   } else if (distance <= radius) {
     const double far = 1.2 * radius / std::sin(camera.field_of_view * std::numbers::pi / 360);
     const Vec3d back = distance > 0 ? normalized(towards) : normalized(camera.look_at - camera.position);
-    advice = fmt::format("{} --set camera.position={} looks at them from outside", look,
+    advice = fmt::format("{} --set camera.position={} views them from outside", look,
                          point_text(middle - back * far, scene.mm_per_unit));
   } else if (degrees < camera.field_of_view / 2 && pixels >= 2) {
-    advice = "move the lamp or set \"visible\": false for it, or choose a higher --resolution";
+    advice = "move the light, set \"visible\": false for it, or choose a higher --resolution";
   } else if (distance > radius && degrees <= 90 && pixels < 2) {
     const double near = radius / std::sin(camera.field_of_view * std::numbers::pi / 360);
     advice = fmt::format("{} --set camera.position={} shows them", look,
                          point_text(middle - towards * (near / distance), scene.mm_per_unit));
   }
-  return fmt::format("nothing is in view{}: the shapes lie between {} and {} (scene units), {}; {}",
-                     scene.film.crop ? " of the crop" : "", point_text(box.low, scene.mm_per_unit),
+  return fmt::format("no shape is visible{}: the shapes are between {} and {} (scene units), {}; {}",
+                     scene.film.crop ? " in the crop" : "", point_text(box.low, scene.mm_per_unit),
                      point_text(box.high, scene.mm_per_unit), where, advice);
 }
 
-/// What is wrong with single lights, where a picture is too dark.
+/// Problems of single lights, if the image is too dark.
 std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
   const Bounds box = box_of(world);
   const Vec3d middle = .5 * (box.low + box.high);
@@ -144,10 +144,10 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
     const std::optional<Vec3d> place = extent(light).center;
     const double distance = place ? length(*place - middle) : 0;
     if (emission(light) == Rgb{})
-      texts.push_back(fmt::format("the light {} has no brightness", light.name));
+      texts.push_back(fmt::format("the light {} emits nothing", light.name));
     else if (distance > kFarAway * world.diagonal * world.unit)
       texts.push_back(fmt::format(
-          "the light {} is {:.3g} scene units away from shapes that measure {:.3g} together", light.name,
+          "the light {} is {:.3g} scene units away from the shapes, whose total extent is {:.3g}", light.name,
           distance / scene.mm_per_unit, world.diagonal * world.unit / scene.mm_per_unit));
   }
   return texts;
@@ -162,8 +162,8 @@ std::string unit_text(const Scene& scene, double brightest) {
   });
   if (!has_points || factor == 1 || meant < double(kAlmostBlack) || meant > 100) return {};
   return fmt::format(
-      "; mm_per_unit is {:g}, and intensity / distance^2 is in W/mm^2 all the same: an intensity meant for "
-      "scene units has to be {:g} times as high",
+      "; mm_per_unit is {:g}, but intensity / distance^2 is in W/mm^2: multiply an intensity given for scene "
+      "units by {:g}",
       scene.mm_per_unit, factor);
 }
 
@@ -174,7 +174,7 @@ std::string exposure_text(const Scene& scene, double brightest) {
   return fmt::format("; use --exposure {:g}", stops);
 }
 
-/// Of which the plan has said so.
+/// Has black medium of which the plan has said so.
 bool has_black_medium(const Scene& scene) {
   return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
     return shape.medium && !make_diffuse_profile(scene.media[*shape.medium]).translucent;
@@ -199,7 +199,7 @@ std::string cause_of_black(const Scene& scene, const Shape& shape) {
   if (is_black(shape.reflectance, shape.reflectance_texture))
     return "the reflectance of " + shape.name + " is 0";
   if (shape.gloss && shape.gloss->metalness == 1)
-    return shape.name + " is a metal, which shows surroundings, environments and lights alone";
+    return shape.name + " is a metal, which reflects only surroundings, environments and lights";
   return {};
 }
 
@@ -218,14 +218,15 @@ std::string too_dark(const Scene& scene, const World& world, double brightest) {
   const std::vector<std::string> causes = weak_lights(scene, world);
   std::string text = "black";
   if (brightest > 0)
-    text = fmt::format("almost black: the object is at most {:.2g} x white{}{}", brightest,
+    text = fmt::format("almost black: the maximum of the object is {:.2g} x white{}{}", brightest,
                        exposure_text(scene, brightest), unit_text(scene, brightest));
   else if (const std::string black = black_surfaces(scene); !black.empty())
     text += ": " + black;
   else if (causes.empty() && lights_that_miss(scene, world).empty() && !has_black_medium(scene))
-    text += ": no light reaches what is seen; is every light behind it, inside a shape or in its shadow?";
+    text +=
+        ": no light reaches the visible surfaces; all lights may be behind them, inside a shape or in shadow";
   for (const std::string& cause : causes) text += "; " + cause;
-  return "the picture is " + text;
+  return "the image is " + text;
 }
 
 using Corners = std::array<Vec3d, 3>;
@@ -243,7 +244,7 @@ double largest_cosine(const Vec3d& a, const Vec3d& b, const Vec3d& axis) {
   return largest;
 }
 
-/// Whether a cone from zero and a triangle meet: an edge is in it, or its axis passes through the triangle.
+/// True if a cone from zero and a triangle meet: an edge is in it, or its axis passes through the triangle.
 bool meets_cone(const Corners& corners, const Vec3d& axis, double least_cosine) {
   const auto& [a, b, c] = corners;
   for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
@@ -255,7 +256,7 @@ bool meets_cone(const Corners& corners, const Vec3d& axis, double least_cosine) 
   return is_within && dot(axis, normal) * dot(a, normal) > 0;
 }
 
-/// Whether the side or the cone that a light shines into has a surface in it, in shadow or not.
+/// True if the side or the cone that a light shines into has a surface in it, in shadow or not.
 bool reaches_a_surface(const Light& light, const World& world) {
   constexpr double kGrazing = 1e-6;  // diagonals
   const LightExtent lamp = extent(light);
@@ -276,14 +277,14 @@ bool reaches_a_surface(const Light& light, const World& world) {
   });
 }
 
-/// What to do about a light that reaches no surface.
+/// Advice for a light that reaches no surface.
 std::string way_to_turn(const Scene& scene, const World& world, const Light& light) {
-  if (!is_delta(light)) return "it shines where u x v points; exchange u and v";
+  if (!is_delta(light)) return "it emits on the side of u x v; exchange u and v";
   const Bounds box = box_of(world);
   std::size_t index = 0;  // in the file, where the channels of an environment are one light
   for (std::size_t l = 0; &scene.lights[l] != &light; ++l)
     index += scene.lights[l].name != scene.lights[l + 1].name ? 1 : 0;
-  return fmt::format("its cone misses all shapes; --set lights.{}.direction={} points it at their middle",
+  return fmt::format("its cone misses all shapes; --set lights.{}.direction={} points it at their centre",
                      override_key(light.name, index),
                      point_text(.5 * (box.low + box.high) - *extent(light).center, scene.mm_per_unit));
 }
@@ -296,9 +297,8 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
   if (values.empty()) return {nothing_in_view(scene, world)};
   if (is_inside(image, scene.camera.position))
     return {
-        "the camera sees the back of a translucent body's surface: it is inside the body, or looks into an "
-        "open "
-        "mesh; move it, or close the mesh"};
+        "the camera sees the back side of a translucent surface; it is inside the body, or views an open "
+        "mesh; move the camera, or close the mesh"};
   const double gain = std::exp2(scene.film.exposure);
   const auto quantile = [&](double share) {
     const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
@@ -308,8 +308,8 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
   const double brightest = quantile(.99), usual = quantile(.5);
   if (brightest < double(kAlmostBlack)) return {too_dark(scene, world, brightest)};
   if (brightest < double(kDark))
-    return {fmt::format("the image is dark: 99 % of what is seen is {:.2g} of white or less{}{}", brightest,
-                        exposure_text(scene, brightest), unit_text(scene, brightest))};
+    return {fmt::format("the image is dark: 99 % of the visible surface is at most {:.2g} x white{}{}",
+                        brightest, exposure_text(scene, brightest), unit_text(scene, brightest))};
   if (usual > double(kOverexposed))
     return {fmt::format("half of the object is overexposed ({:.2g} x white){}{}", usual,
                         exposure_text(scene, usual), unit_text(scene, usual))};

@@ -31,33 +31,33 @@ namespace {
 void check_bounces(const Scene& scene) {
   const Method method = scene.settings.method;
   if (bounces_of(scene) == 0 || method_of(method).supports_bounces()) return;
-  throw Error(
-      ErrorKind::bad_input, scene.file, 0, 0,
-      fmt::format("settings.bounces: 1: with the method {} things are lit by lights alone", name_of(method)),
-      "--set settings.bounces=0, or --method volume_diffusion");
+  throw Error(ErrorKind::bad_input, scene.file, 0, 0,
+              fmt::format("settings.bounces: 1: the method {} renders direct light only", name_of(method)),
+              "--set settings.bounces=0, or --method volume_diffusion");
 }
 
 // Measured: places of the image where bounced light is gathered, and more in corners.
 constexpr std::size_t kBytesOfBouncePlaces = 12'000'000;
 
-/// Of a medium whose textures could differ inside a body; else empty.
+/// Text for a medium with textures that could vary inside a body; else empty.
 std::string medium_stage(const Medium& medium, Method method) {
   if (varies_inside(medium) && method_of(method).follows_textures_inside())
-    return "inside, its medium is at each place that of the nearest place of the surface, by its textures";
+    return "textured medium: each point inside has the medium of the nearest surface point";
   const bool has_color = medium.texture_mix == TextureMix::medium && medium.tint_texture;
   if (!has_color && !medium.radius_texture) return {};
-  std::string text = "a radial profile has one medium throughout: ";
-  if (has_color) text += "of the mean colour, its texture met as by texture_mix \"split\"";
+  std::string text = "a radial profile requires a homogeneous medium: ";
+  if (has_color) text += "mean colour, with the texture applied as by texture_mix \"split\"";
   if (has_color && medium.radius_texture) text += ", and ";
-  if (medium.radius_texture) text += "of the mean radius";
-  return text + "; --method volume_diffusion follows the textures inside";
+  if (medium.radius_texture) text += "mean radius";
+  return text + "; --method volume_diffusion varies the medium inside";
 }
 
 void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) {
   const SubsurfaceMethod& method = method_of(scene.settings.method);
   std::vector<Method> used;  // by bodies
   if (method.needs_samples() && !plan.groups.empty()) {
-    plan.stages.push_back(fmt::format("sampling: {} translucent group(s)", plan.groups.size()));
+    plan.stages.push_back(fmt::format("sampling: {} translucent {}", plan.groups.size(),
+                                      plan.groups.size() == 1 ? "body" : "bodies"));
     plan.stages.push_back(method.light_stage(scene, lights));
     for (const GroupPlan& group : plan.groups) {
       if (!group.reason_against_method.empty())
@@ -109,7 +109,7 @@ std::vector<const EnvironmentPicture*> environments_of(const Scene& scene) {
   return environments;
 }
 
-/// Of environments, and of all textures at their full sizes: a camera may look at less.
+/// Picture bytes of environments, and of all textures at their full sizes: a camera may look at less.
 std::size_t picture_bytes(const Scene& scene, const std::vector<const EnvironmentPicture*>& environments) {
   std::set<const TextureFile*> files;
   for (const Shape& shape : scene.shapes)
@@ -127,7 +127,7 @@ std::size_t picture_bytes(const Scene& scene, const std::vector<const Environmen
 
 /// Warns where rays start visibly off surfaces, in scenes far larger than their smallest shape.
 void warn_of_large_scene(const Scene& scene, const World& world, std::vector<std::string>& warnings) {
-  constexpr double kVisible = 4e-3;  // of the smallest shape; above it a lit sliver shows in contact shadows
+  constexpr double kVisible = 4e-3;  // fraction of the smallest shape that shows in contact shadows
   if (world.boxes.empty()) return;
   const auto size = [&](std::size_t m) { return length(world.boxes[m].high - world.boxes[m].low); };
   std::size_t smallest = 0, farthest = 0;
@@ -146,8 +146,8 @@ void warn_of_large_scene(const Scene& scene, const World& world, std::vector<std
   }
   if (!(offset > kVisible * size(smallest))) return;
   warnings.push_back(fmt::format(
-      "shape '{}' reaches {:.2g} mm from shape '{}', which is {:.2g} mm across: rays start up to {:.2g} "
-      "mm off surfaces, and smaller shadows and gaps are wrong; make '{}' smaller or move it nearer",
+      "shape '{}' extends {:.2g} mm from shape '{}', which is {:.2g} mm across: rays start up to {:.2g} mm "
+      "from surfaces, so smaller shadows and gaps are wrong; make '{}' smaller or move it nearer",
       scene.shapes[farthest].name, reach(farthest), scene.shapes[smallest].name, size(smallest), offset,
       scene.shapes[farthest].name));
 }
@@ -157,10 +157,9 @@ void warn_of_unused_colors(const Scene& scene, const World& world, std::vector<s
     const Shape& shape = scene.shapes[i];
     if (world.meshes[i].colors.empty() || uses_vertex_colors(scene, shape, world.meshes[i])) continue;
     if (std::get<MeshFile>(shape.source).vertex_colors) continue;
-    warnings.push_back(
-        fmt::format("shape '{}': its vertex colours are left out, for a texture gives its colour; "
-                    "\"vertex_colors\": true multiplies both",
-                    shape.name));
+    warnings.push_back(fmt::format(
+        "shape '{}': a texture replaces the vertex colours; \"vertex_colors\": true multiplies both",
+        shape.name));
   }
 }
 
@@ -183,8 +182,8 @@ Plan make_plan(const Scene& scene, const World& world) {
   warn_of_unused_colors(scene, world, plan.warnings);
   warn_of_large_scene(scene, world, plan.warnings);
   if (scene.shapes.empty())
-    plan.warnings.push_back("the scene has no shapes: the picture shows its surroundings");
-  if (scene.lights.empty()) plan.warnings.push_back("the scene has no lights: the picture is black");
+    plan.warnings.push_back("the scene has no shapes; the image shows the surroundings");
+  if (scene.lights.empty()) plan.warnings.push_back("the scene has no lights: the image is black");
   const std::vector<const EnvironmentPicture*> environments = environments_of(scene);
   for (const EnvironmentPicture* environment : environments)
     if (!environment->warning().empty()) plan.warnings.push_back(environment->warning());

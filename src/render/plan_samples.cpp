@@ -39,10 +39,10 @@ double widest_spacing(const DiffuseProfile& profile) {
 
 void warn_of_few_samples(const GroupPlan& group, double wanted, std::vector<std::string>& warnings) {
   if (wanted < kSuspiciouslyFew)
-    warnings.push_back(fmt::format(
-        "{}: the mean free path of {:.4g} mm asks for only {:.1f} samples on {:.4g} mm^2; light crosses the "
-        "whole object and diffusion is a poor model of it; is mm_per_unit right?",
-        group.name, group.smallest_mean_free_path, wanted, group.area));
+    warnings.push_back(
+        fmt::format("{}: the mean free path of {:.4g} mm requires only {:.1f} samples on {:.4g} mm^2; light "
+                    "crosses the whole object, and diffusion is a poor model; check mm_per_unit",
+                    group.name, group.smallest_mean_free_path, wanted, group.area));
 }
 
 /// As the settings have it, if they do.
@@ -88,9 +88,8 @@ void choose_samples(const Scene& scene, double fewest, GroupPlan& group, std::ve
   }
   if (count > double(settings.max_samples)) {
     warnings.push_back(
-        fmt::format("{}: {:.3g} samples wanted ({}), {} taken (settings.max_samples); is mm_per_unit right? "
-                    "The object measures "
-                    "{:.4g} mm^2, the mean free path {:.4g} mm",
+        fmt::format("{}: requires {:.3g} samples ({}) but uses {} (settings.max_samples); check mm_per_unit: "
+                    "the area is {:.4g} mm^2, the mean free path {:.4g} mm",
                     group.name, count, group.reason, settings.max_samples, group.area, mean_free_path));
     count = double(settings.max_samples);
     group.reason = "settings.max_samples";
@@ -103,12 +102,12 @@ void choose_samples(const Scene& scene, double fewest, GroupPlan& group, std::ve
 std::string samples_text(const GroupPlan& group) {
   const std::string count = grouped(group.samples) + (group.samples == 1 ? " sample" : " samples");
   if (group.reason == kTheMinimum) return fmt::format("{} ({})", count, group.reason);
-  return fmt::format("{}, {:.4g} mm apart: {}", count, group.spacing, group.reason);
+  return fmt::format("{}, spacing {:.4g} mm: {}", count, group.spacing, group.reason);
 }
 
 std::string mean_free_path_text(const GroupPlan& group) {
   if (!(group.smallest_mean_free_path > 0)) return "no mean free path (diffuse reflection)";
-  return fmt::format("mean free path {:.4g} mm (its smallest channel)", group.smallest_mean_free_path);
+  return fmt::format("mean free path {:.4g} mm (smallest channel)", group.smallest_mean_free_path);
 }
 
 double widest_cell(const Settings& settings) {
@@ -131,7 +130,7 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
                   std::vector<std::string>& warnings) {
   constexpr double kAcrossThin = 4, kSmallest = .25;
   constexpr double kOfVarying = .5;    // a cell has one medium; light blurs what a mean free path hides
-  constexpr double kFewestFaces = 60;  // of cells, on the surface
+  constexpr double kFewestFaces = 60;  // fewest faces of cells, on the surface
   const double length = group.smallest_mean_free_path;
   const Medium& medium = scene.media[group.medium];
   group.cell = scene.settings.cell_size * (varies_inside(medium)
@@ -145,14 +144,12 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
   group.cell = std::max(group.cell, std::sqrt(group.area / most_faces));
   if (group.cell > widest_cell(scene.settings) * length)
     warnings.push_back(fmt::format(
-        "{}: light leaves within {:.3g} mm and cells smaller than {:.3g} mm would be too many for "
-        "settings.max_samples",
+        "{}: light leaves within {:.3g} mm, but settings.max_samples limits the cells to {:.3g} mm",
         group.name, length, group.cell));
   if (is_too_thin_for_cells(group))
     warnings.push_back(
-        fmt::format("{}: it is {:.3g} mean free paths thick in the mean; light crosses it almost without "
-                    "scattering, which "
-                    "diffusion cannot tell; --method volume can",
+        fmt::format("{}: the mean thickness is {:.3g} mean free paths; diffusion cannot model light that "
+                    "crosses a body almost without scattering; use --method volume",
                     group.name, group.thickness / length));
 }
 
@@ -171,8 +168,7 @@ void choose_cut(const Settings& settings, double fewest, GroupPlan& group,
   group.samples =
       std::max<std::size_t>(1, std::size_t(std::ceil(whole * group.cell_parts * group.cell_parts)));
   group.spacing = std::sqrt(group.area / double(group.samples));
-  group.reason =
-      fmt::format("where cubes of {:.4g} mm cut the surface", group.cell / double(group.cell_parts));
+  group.reason = fmt::format("one per surface cell of {:.4g} mm", group.cell / double(group.cell_parts));
   const double length = group.smallest_mean_free_path;
   warn_of_few_samples(group, length > 0 ? group.area / (length * length) : fewest, warnings);
 }

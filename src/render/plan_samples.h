@@ -10,14 +10,14 @@
 
 namespace opaline {
 
-/// Of volume_diffusion in a body: what memory should hold.
+/// Most cells of volume_diffusion in a body: what memory should hold.
 inline constexpr double kMostCells = 1.2e6;
 /// The widest cell that tells where light goes, mean free paths.
 double widest_cell(const Settings& settings);
-/// Whether cells as wide as that would be too many: the surface is then flat on the scale of a mean free path, and a radial
+/// True if cells as wide as that would be too many: the surface is then flat on the scale of a mean free path, and a radial
 /// profile is right.
 bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group);
-/// Whether light crosses the body almost without scattering, which diffusion cannot tell.
+/// True if light crosses the body almost without scattering, which diffusion cannot tell.
 bool is_too_thin_for_cells(const GroupPlan& group);
 
 /// Samples that a body gets at least: fewer where bodies are many.

@@ -29,14 +29,14 @@ std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, c
   return non_finite;
 }
 
-// Whether so much may be held for each camera ray.
+// True if so much may be held for each camera ray.
 bool fits(const Film& film, std::size_t bytes) {
   return std::size_t(film.resolution[0]) * std::size_t(film.resolution[1]) *
              std::size_t(film.samples_per_pixel) * bytes <=
          kMostHeldBytes;
 }
 
-// What is held of earlier pictures and to be held of this one, if there is room for it.
+// Cache of earlier images and for this one, if memory allows.
 HeldView* view_of(const RenderInput& input, std::size_t tiles) {
   const std::size_t least = sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) +
                             2 * sizeof(float) * recentred_lights(input.scene, input.world).size();

@@ -9,7 +9,7 @@ namespace {
 // Points that follow each other and are alike but for their noise.
 constexpr std::size_t kWindow = 16;
 
-/// Of one channel of the points of a window.
+/// Window of one channel of the points of a window.
 struct Window {
   double refined = 0, change = 0, refined_change = 0, square = 0, noise = 0, count = 0;
 

@@ -14,7 +14,7 @@ namespace opaline {
 struct SelectionBiasInput {
   std::array<float, 3> own_irradiance;     ///< SplitKernel's
   std::span<const RgbF> own;               ///< irradiance of each point, by few shadow rays
-  std::span<const Exitance> exitance;      ///< of each point
+  std::span<const Exitance> exitance;      ///< exitance at each point
   std::span<const Rgb> noise;              ///< variance of the exitance because of `own`
   std::span<const std::uint32_t> refined;  ///< the points that NearFieldSampler chose, ascending
 };

@@ -56,7 +56,7 @@ Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool follows_
 /// Turns a normal that maps have bent back until what it mirrors towards the eye comes from outside.
 /// in    direction: of the ray that met the point, of any length
 void keep_mirrored_outside(SurfacePoint& point, const Vec3f& direction) {
-  constexpr float kLeastCosine = 0.01f;  // of what is mirrored, with the geometric normal
+  constexpr float kLeastCosine = 0.01f;  // least cosine of what is mirrored, with the geometric normal
   const Vec3f d = normalized(direction), mirrored = d - point.normal * (2 * dot(d, point.normal));
   const float cosine = dot(mirrored, point.geometric);
   if (cosine >= kLeastCosine || !(dot(d, point.geometric) < 0)) return;
@@ -75,7 +75,7 @@ RgbF scattered_exit(const AngularExit& exit, float cosine, const SurfaceHits& hi
   return factor;
 }
 
-// Of the cones around some 64 directions over a hemisphere, for textures that they meet.
+// Gathering spread of the cones around some 64 directions over a hemisphere, for textures that they meet.
 constexpr float kGatheringSpread = 0.25f;
 
 constexpr std::uint64_t kGatheringSeed = 1;
@@ -89,7 +89,7 @@ SurfacePoint point_of(const Hit& hit, const RayScene& rays) {
   return rays.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
 }
 
-// Of the rays that hit something.
+// Points of the rays that hit something.
 std::vector<SurfacePoint> points_of(std::span<const TracedRay> traced, const RayScene& rays) {
   std::vector<SurfacePoint> points;
   for (const auto& [ray, hit] : traced)
@@ -154,7 +154,7 @@ std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::
 std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
                                                HeldView::Batch* held) const {
   if (held != nullptr) held->surfaces.resize(fields_.all.size());
-  // Of gathered rays, which are many, the lights alone are held.
+  // Gathered rays are many, so only their lights are cached.
   std::vector<SurfaceHits> all_hits = collect(batch, pass.is_seen ? held : nullptr);
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
     const SurfaceHits& hits = all_hits[f];

@@ -27,7 +27,7 @@ class Shader {
   std::size_t shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                     std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
-  /// What surfaces send back along rays that met them, W/(mm^2 sr): diffusely, and what boundaries mirror of light as if
+  /// Radiance along rays that hit surfaces, W/(mm^2 sr): diffuse reflection, and specular reflection of light taken as
   /// it were even; by a ray to each light. held: how lights reach these surfaces, added to, or null.
   std::vector<RgbF> radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                    HeldView::Batch* held = nullptr) const;
@@ -80,15 +80,15 @@ class Shader {
   void add_textures(const RayBatch& batch, std::size_t ray, bool from_behind, SurfacePoint& point,
                     SurfaceHits& hits) const;
   Appearance appearance_of(const SurfaceHits& hits, std::size_t i) const;
-  /// What leaves where rays meet surfaces, and lights that they meet. Returns the hits of each field.
+  /// Adds diffuse light at hits, and visible lights. Returns the hits of each field.
   std::vector<SurfaceHits> shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
                                          HeldView::Batch* held) const;
-  /// What other surfaces send to hits; empty: nothing.
+  /// Light from other surfaces at hits; empty: none.
   std::vector<RgbF> bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
                                HeldView::Surface* held) const;
   void write(const SurfaceHits& hits, const LeavingLight& light, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;
-  // What boundaries mirror: shade_specular.cpp.
+  // Specular reflection: shade_specular.cpp.
   void add_specular(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass,
                     HeldView::Surface* held) const;
   void add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const;
@@ -101,7 +101,7 @@ class Shader {
   std::vector<PixelSample> seen_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                       const Cones& cones, const Pass& pass, int mirrors,
                                       HeldView::Batch* held = nullptr) const;
-  /// What boundaries mirror where no ray follows it: the irradiance there, as if it came evenly from all sides.
+  /// Specular reflection without rays: the irradiance, taken as uniform over the hemisphere.
   void add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch) const;
   float width_at(const RayBatch& batch, std::size_t ray) const;
   bool mirrors_surfaces() const {
@@ -115,7 +115,7 @@ class Shader {
   std::vector<Light> unit_lights_;       // all, with an emission of 1, where coats can be held
   std::vector<Appearance> appearances_;  // one a mesh
   SurfaceTextures textures_;
-  float pixel_spread_ = 0;  // of camera rays
+  float pixel_spread_ = 0;  // pixel spread of camera rays
   Fields fields_;
   int light_samples_ = 1;  // a camera ray
   const BouncedLight* bounced_ = nullptr;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the boundaries of translucent things mirror: lights, what is all around, and surfaces as they are lit. A smooth
+// Specular reflection at the boundaries of translucent bodies: of lights, environments, and surfaces as they are lit. A smooth
 // boundary is one ray. A rough one draws directions from its lobe and from the lights, weighted by the power
 // heuristic (Veach & Guibas 1995).
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace opaline {
 namespace {
 
-// Of a camera ray where there is one a pixel: facets drawn, and directions to each light.
+// Facets per camera ray, with one ray per pixel, and directions to each light.
 constexpr int kFacets = 16, kLightSamples = 16;
 // These, too, over those of what is seen in a mirror.
 constexpr int kFewerOfMirrored = 4;
@@ -23,7 +23,7 @@ constexpr int kFewerOfMirrored = 4;
 constexpr int kMostMirrors = 4, kMostCoats = 2;
 // Shadow rays towards a surface that is seen in a mirror, over those where it is seen: a mirror takes most away.
 constexpr int kFewerInMirrors = 4;
-// Of the cones around directions of a lobe, for textures that they meet.
+// Glossy spread of the cones around directions of a lobe, for textures that they meet.
 constexpr float kGlossySpread = .1f;
 
 TracedRay leaving(const SurfacePoint& point, const Vec3f& direction) {
@@ -58,7 +58,7 @@ void add_hit(const SurfaceHits& hits, std::size_t i, SurfaceHits& to) {
   if (!hits.textures.empty()) to.textures.push_back(hits.textures[i]);
 }
 
-// Of a light that has an area; is_free: the ray meets no surface.
+// Seen radiance of a light that has an area; is_free: the ray meets no surface.
 RgbF seen_radiance(const Light& light, const Ray& ray, bool is_free) {
   const EmitterHit emitter = intersect_emitter(light, ray.origin, ray.direction, ray.far);
   return emitter.hit ? emitter.radiance : is_free ? background(light, ray.direction) : RgbF{};
@@ -166,9 +166,9 @@ struct Shader::GlossyHits {
   std::vector<const Appearance*> appearances;
   int facets, to_lights;
   std::uint64_t seed;
-  std::vector<std::uint64_t> keys;  // of directions, in the sequence of the pixel
+  std::vector<std::uint64_t> keys;  // keys of directions, in the sequence of the pixel
   std::vector<Lobe> lobes;
-  std::vector<RoomLobe> rooms;  // what the lobes mirror of a room, where there is one
+  std::vector<RoomLobe> rooms;  // reflections of an environment by the lobes, if any
 
   GlossyHits(const Shader& shader, const SurfaceHits& all, const RayBatch& rays)
       : hits(all),
@@ -210,7 +210,7 @@ struct Shader::GlossyHits {
     }
   }
   const RoughBoundary& boundary(std::size_t i) const { return *appearances[i]->rough; }
-  // Of what is mirrored from a direction, local.
+  // Color of what is mirrored from a direction, local.
   RgbF color(std::size_t i, const Vec3f& light) const {
     if (!(appearances[i]->metalness > 0)) return RgbF(1);
     return appearances[i]->mirror_color(dot(frames[i].view, normalized(frames[i].view + light)),
@@ -315,7 +315,7 @@ void Shader::add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) cons
 // By directions of the lobe.
 void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldView::Coat* coat) const {
   struct Met {
-    float weight;  // of all rays that met surfaces
+    float weight;  // weight of all rays that met surfaces
     RgbF share;    // these, each in its colour
     std::uint32_t hit;
   };
@@ -323,7 +323,7 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldVie
   const std::vector<GlossyHits::LobeRay> drawn = glossy.draw_from_lobes(rays);
   input_.rays.intersect(rays);
 
-  // Of the surfaces that a hit's rays meet, one stands for all.
+  // One surface represents all surfaces that the rays of a hit meet.
   std::vector<Met> met;
   Cones cones{kGlossySpread, {}};
   std::vector<TracedRay> met_rays;

@@ -14,8 +14,8 @@ inline Image read_sums_file(const std::string& path) {
   try {
     return read_image(path);
   } catch (const Error& failure) {
-    throw Error(failure.kind, failure.file, 0, 0, "holds no sums to go on from: " + failure.message,
-                "those of an earlier run, or a new file name", failure.got);
+    throw Error(failure.kind, failure.file, 0, 0, "holds no sums to resume from: " + failure.message,
+                "the sums of an earlier run, or a new file name", failure.got);
   }
 }
 

@@ -100,7 +100,7 @@ TangentFrame frame_of(const SurfaceTextures::Place& place, const SurfacePoint& p
   return {tangent, cross(point.normal, tangent) * (side > 0 ? 1.0f : -1.0f)};
 }
 
-/// Of what leans on a surface: 1, or -1 where it is seen from behind.
+/// Orientation of a tilted normal: 1, or -1 if seen from behind.
 float outward(const SurfaceTextures::Place& place) {
   return place.from_behind ? -1.0f : 1.0f;
 }
@@ -116,11 +116,11 @@ void map_normal(const Texture& texture, const SurfaceTextures::Place& place, Sur
       normalized(tangent * x + bitangent * y + point.normal * std::max(2 * texel[2] - 1, 1.0f / 255));
 }
 
-/// Of the height over the surface, mm per world unit.
+/// Height gradient of the height over the surface, mm per world unit.
 Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& place) {
   const auto [along_u, along_v] =
       texture.file->slope(texture_place(texture, *place.uv, place.footprint), texture.channel);
-  // Of the picture's u and v, by the mesh's.
+  // Angle of the picture's u and v, by the mesh's.
   const double angle = texture.uv_rotation * std::numbers::pi / 180;
   const double cosine = std::cos(angle), sine = std::sin(angle);
   const Vec3f x = place.uv->gradient_u * float(texture.uv_scale[0]),

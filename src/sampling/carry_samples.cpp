@@ -46,7 +46,7 @@ double most_apart(const Mesh& mesh) {
   return 1e-6 * length(box.high - box.low);
 }
 
-/// Whether some edges, of all there are, have lengths that no motion leaves them.
+/// True if some edges, of all there are, have lengths that no motion leaves them.
 bool has_other_edges(const CarryInput& input) {
   constexpr std::size_t kLooks = 64;
   for (std::size_t m = 0; m < input.from_meshes.size(); ++m) {
@@ -185,7 +185,7 @@ std::vector<SurfacePoint> points_after(const CarryInput& input) {
   return points;
 }
 
-/// Whether samples may have to go or come.
+/// True if samples may have to go or come.
 bool may_need_mending(const CarryInput& input, std::span<const PlainTriangle> before,
                       std::span<const PlainTriangle> after, std::span<const SurfacePoint> points) {
   for (std::size_t t = 0; t < after.size(); ++t)
@@ -213,7 +213,7 @@ CarriedSamples bent_along(const CarryInput& input, std::span<const PlainTriangle
   return {.surface = std::move(result), .divided = divide};
 }
 
-/// What is needed of a world to carry samples from it, in another unit.
+/// World in another unit, as far as carrying samples requires.
 World in_unit(const World& world, double unit) {
   const double factor = world.unit / unit;
   World scaled;

@@ -89,7 +89,7 @@ SurfaceSamples draft_samples(const World& world, std::span<const std::uint32_t> 
   result.radius = .7 * std::sqrt(share);
   std::vector<SurfaceSample>& samples = result.samples;
   samples.reserve(count);
-  double missing = share;  // of the part under way
+  double missing = share;  // missing area of the current part
   Vec3d moment{};
   std::uint32_t middle = 0;
   const auto take = [&](std::uint32_t p, double area) {

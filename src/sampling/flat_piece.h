@@ -20,7 +20,7 @@ struct FlatPiece {
 
   std::array<Vec3d, kCorners> points;
   std::array<Vec3f, kCorners> corners;
-  __m128 x, y, z;  // of the corners
+  __m128 x, y, z;  // coordinates of the corners
   Vec3f center;
   float extent;  // radius of the ball around the centre, rounded up so that floats lose no owner
 

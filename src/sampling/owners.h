@@ -19,7 +19,7 @@ namespace opaline {
 struct Owner {
   static constexpr std::uint32_t kNone = ~0u;
   std::uint32_t sample = kNone;
-  float sum = INFINITY;                    // of the squared distances
+  float sum = INFINITY;                    // sum of the squared distances
   __m128 squared = _mm_set1_ps(INFINITY);  // distances from the piece's corners
 
   Owner() = default;

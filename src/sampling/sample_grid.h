@@ -148,7 +148,7 @@ class SampleGrid {
   };
 
   static constexpr std::size_t kManyBoxes = 512;
-  static constexpr int kBlockBits = 18;  // of a block's coordinate
+  static constexpr int kBlockBits = 18;  // block bits of a block's coordinate
 
   struct BlockOnCurve {
     std::uint64_t key;

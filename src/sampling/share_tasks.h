@@ -18,8 +18,8 @@ inline TrianglePiece whole_piece(const TriangleList& triangles, std::size_t tria
 /// Some triangles, or a part of one: about as much work as any other task.
 struct Task {
   std::size_t first, last;
-  std::optional<TrianglePiece> part = {};  ///< of the triangle `first`
-  std::optional<NeedlePiece> slice = {};   ///< of the same, if it is a needle
+  std::optional<TrianglePiece> part = {};  ///< part of the triangle `first`
+  std::optional<NeedlePiece> slice = {};   ///< slice of the same triangle, if it is a needle
 
   bool is_whole() const { return !part && !slice; }
 };

@@ -91,7 +91,7 @@ class CloseCells {
     for (const Standing& s : standing) low_ = component_min(low_, s.position);
   }
 
-  /// Whether any place before the i-th is close to it and of its sheet; to be asked of each in turn.
+  /// True if any place before the i-th is close to it and of its sheet; to be asked of each in turn.
   bool is_close(std::uint32_t i) {
     constexpr float kLast = 0x1p20f;  // cells beyond are one, which is only slower
     const Vec3f c = component_min((standing_[i].position - low_) * scale_, Vec3f(kLast)) + Vec3f(1);
@@ -117,7 +117,7 @@ class CloseCells {
   static constexpr std::uint32_t kNone = ~0u;
   struct Entry {
     std::uint64_t key = 0;
-    std::uint32_t newest = kNone;  // of the cell's places
+    std::uint32_t newest = kNone;  // newest place of the cell
   };
 
   std::size_t slot_of(std::uint64_t key) const {

@@ -19,7 +19,7 @@ struct Standing {
   Vec3f position, normal;
 };
 
-/// Whether any two of one sheet are closer than this, mm.
+/// True if any two of one sheet are closer than this, mm.
 bool any_closer(std::span<const Standing> standing, float distance);
 
 class StretchedCloud {

@@ -18,7 +18,7 @@ struct SurfaceShare {
                     ///< centroid
 };
 
-/// What a sample owns of one triangle, or of a part of it that was a task of its own.
+/// Part of a triangle that belongs to a sample, or of a part of it with a task of its own.
 struct SurfacePiece {
   std::uint32_t triangle, sample;  ///< in the list, in the grid
   float share, u, v;               ///< as in CellPart

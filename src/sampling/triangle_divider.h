@@ -17,7 +17,7 @@
 
 namespace opaline {
 
-/// What a sample owns of a triangle.
+/// Part of a triangle that belongs to a sample.
 struct Share {
   std::uint32_t sample, triangle;
   double area;
@@ -38,7 +38,7 @@ class TriangleDivider {
                   std::vector<Share>& out)
       : triangles_(triangles), grid_(grid), radius_(radius), monitor_(monitor), out_(out) {}
 
-  // Of the task's part of it, or of the whole triangle.
+  // Divides the task's part of a triangle, or the whole triangle.
   void divide(std::size_t triangle, const Task& task) {
     triangle_ = std::uint32_t(triangle);
     normal_ = triangles_.geometric_normal(triangle);

@@ -42,7 +42,7 @@ bool coincide(const TriangleList::Corners& s, const TriangleList::Corners& t) {
 
 /// Leaves out triangles that coincide with one of another mesh before them.
 void drop_coincident(std::vector<Keyed>& keyed, const TriangleList& triangles) {
-  constexpr std::size_t kCompared = 64;  // of one key
+  constexpr std::size_t kCompared = 64;  // maximum number of compared triangles per key
   std::vector<std::size_t> kept;
   std::vector<bool> is_dropped(keyed.size());
   for (std::size_t i = 0; i < keyed.size(); ++i) {

@@ -27,7 +27,7 @@ Node* member_of(Node& object, std::string_view key) {
 
 void warn(Document& document, const Node& node, const std::string& old, const std::string& now) {
   document.warnings.push_back(text_at(place_at(document, node.key_offset, node.override_index),
-                                      fmt::format("'{}' is an old spelling of '{}'", old, now)));
+                                      fmt::format("'{}' is deprecated; use '{}'", old, now)));
 }
 
 void erase(Node& object, const Node* member) {
@@ -40,8 +40,8 @@ void replace_eta(Document& document, Node& medium, const std::string& path) {
   warn(document, *eta, path + "eta", path + "specular_ior");
   const Node* present = member_of(medium, "specular_ior");
   if (present != nullptr && present->override_index == eta->override_index)
-    throw error_at(document, eta->key_offset, eta->override_index, "'eta' and 'specular_ior' are the same",
-                   "one of the two");
+    throw error_at(document, eta->key_offset, eta->override_index,
+                   "'eta' and 'specular_ior' have the same meaning", "one of the two");
   eta->key = "specular_ior";
   if (present != nullptr) erase(medium, present);
 }

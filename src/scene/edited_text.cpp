@@ -8,7 +8,7 @@
 namespace opaline {
 namespace {
 
-/// What is to stand in place of some bytes of the text.
+/// Replacement of some bytes of the text.
 struct Replacement {
   std::size_t begin, end;
   std::string text;
@@ -18,7 +18,7 @@ std::string member_text(const Node& member) {
   return nlohmann::json(member.key).dump() + ": " + to_json(member);
 }
 
-/// What stands between the start of a byte's line and the byte.
+/// Text between the start of a byte's line and the byte.
 std::string_view start_of_line(std::string_view text, std::size_t offset) {
   const std::size_t newline = offset > 0 ? text.rfind('\n', offset - 1) : std::string_view::npos;
   const std::size_t begin = newline == std::string_view::npos ? 0 : newline + 1;

@@ -82,8 +82,8 @@ std::string expected_number(std::string_view text, std::size_t offset) {
   const std::string_view rest = text.substr(std::min(offset, text.size()));
   const char before = offset > 0 && offset <= text.size() ? text[offset - 1] : ' ';
   if (rest.size() > 1 && rest[0] == '.' && is_digit(rest[1]))
-    return "a digit in front of the point: 0" + std::string(rest.substr(0, 2));
-  if (before == '.') return "a digit behind the point, as in 1.0";
+    return "a digit before the decimal point: 0" + std::string(rest.substr(0, 2));
+  if (before == '.') return "a digit after the decimal point, as in 1.0";
   if (rest.starts_with('+')) return "a number without a plus sign";
   const bool is_taken_for_null = before == 'n' && begins_with_word(rest, "an");
   const bool is_number = is_taken_for_null || begins_with_word(rest, "nan") || begins_with_word(rest, "inf");
@@ -97,10 +97,10 @@ std::string expected_for_usual_mistake(std::string_view text, std::size_t offset
   if (rest.starts_with("True") || rest.starts_with("False") || rest.starts_with("None"))
     return "true, false or null in lower case";
   if (std::string hint = expected_number(text, offset); !hint.empty()) return hint;
-  if (rest.starts_with('#')) return "// in front of a comment";
+  if (rest.starts_with('#')) return "// before a comment";
   const std::string_view before = text.substr(0, text.find_last_not_of(" \t\r\n", offset - 1) + 1);
   const bool is_end = rest.starts_with('}') || rest.starts_with(']');
-  if (is_end && offset > 0 && before.ends_with(',')) return "no comma before it";
+  if (is_end && offset > 0 && before.ends_with(',')) return "no trailing comma";
   return {};
 }
 

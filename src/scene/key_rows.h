@@ -25,11 +25,10 @@ inline KeyInfo textured(KeyInfo info) {
 
 inline constexpr const char
     *kAnisotropyMeaning =
-        "of `specular_roughness`, as OpenPBR's: towards 1 highlights are long along u and "
-        "short across, as on metal that is brushed across u",
+        "anisotropy of `specular_roughness`, as in OpenPBR: towards 1, highlights stretch along u, as on "
+        "metal brushed across u",
     *kRotationMeaning =
-        "turns u for `specular_anisotropy`, counterclockwise; where a mesh has no UVs u runs "
-        "level, around y";
+        "rotates u for `specular_anisotropy`, counter-clockwise; without UVs, u is horizontal, around y";
 
 /// The section "medium".
 std::vector<KeyInfo> medium_rows();

@@ -27,7 +27,7 @@ class KeyedValue {
     const auto twice = std::ranges::adjacent_find(keys_, {}, &Key::frame);
     if (twice != keys_.end()) {
       const Node &first = *twice->value, &second = *std::next(twice)->value;
-      fail(second, "'" + printable(first.key) + "' and '" + printable(second.key) + "' are the same frame",
+      fail(second, "'" + printable(first.key) + "' and '" + printable(second.key) + "' denote the same frame",
            "each frame once");
     }
     for (const Node& member : node.children) {
@@ -75,7 +75,7 @@ class KeyedValue {
     return frame;
   }
 
-  /// Of each key's value; they sum to 1.
+  /// Weights of each key's value; they sum to 1.
   std::vector<double> weights_at(double frame) const {
     std::vector<double> weights(keys_.size());
     const auto after = std::ranges::upper_bound(keys_, frame, {}, &Key::frame);

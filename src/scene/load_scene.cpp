@@ -36,7 +36,7 @@ void check_is_no_other_file(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   for (const char* picture : {".png", ".exr", ".hdr", ".jpg", ".jpeg", ".tif"})
     if (extension == picture)
-      throw bad_file(path, "is a picture, not a scene",
+      throw bad_file(path, "is an image, not a scene",
                      "a scene file (JSON), or an asset: .glb, .gltf, .obj, .ply, .stl or .off");
   if (const std::string unread = unread_format(path); !unread.empty()) throw bad_file(path, unread);
 }
@@ -47,8 +47,8 @@ void check_begins_as_scene(const std::string& path, const std::string& text) {
     throw bad_file(path, "is UTF-16", "a scene file in UTF-8");
   const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   if (first == std::string::npos || text[first] == '{' || text[first] == '/') return;
-  throw bad_file(path, "does not begin as a scene does",
-                 "a scene file (JSON: '{'), or an asset under a name that ends in .glb, .gltf, .obj, .ply, "
+  throw bad_file(path, "is not a scene file",
+                 "JSON that begins with '{', or an asset with a name that ends in .glb, .gltf, .obj, .ply, "
                  ".stl or .off");
 }
 
@@ -63,8 +63,8 @@ std::vector<T> read_named(const std::optional<Value>& list, const std::string& d
     const std::string& name = records.back().name;
     if (names.insert(name).second) continue;
     if (const std::optional<Value> own = value.member("name", value.info()))
-      own->fail("is taken", "a name used once");
-    value.fail("gets a default name that is taken: '" + printable(name) + "'");
+      own->fail("is already in use", "a unique name");
+    value.fail("has a default name that is already in use: '" + printable(name) + "'");
   }
   return records;
 }
@@ -127,9 +127,9 @@ void take_thickness_of_plates(Scene& scene) {
     const double thickness = plate->thickness * length(shape.to_world.y);
     if (std::isfinite(medium.thickness) && std::abs(thickness / medium.thickness - 1) > 1e-6)
       throw Error(ErrorKind::bad_input, shape.place.file, shape.place.line, shape.place.column,
-                  fmt::format("{}: the plates of the multipole medium {} differ in thickness", shape.name,
+                  fmt::format("{}: plates of the multipole medium {} have different thicknesses", shape.name,
                               medium.name),
-                  "a medium for each thickness, or medium.thickness",
+                  "one medium per thickness, or medium.thickness",
                   fmt::format("{:g} and {:g} mm", medium.thickness, thickness));
     medium.thickness = thickness;
   }

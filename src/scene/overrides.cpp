@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-/// What a list's element is called: its own name, or the default one ("shape0" in "shapes").
+/// Name of a list's element: its own, or the default one ("shape0" in "shapes").
 std::string element_name(const Node& list, std::size_t i) {
   const Node* name = find_member(list.children[i], "name");
   if (name != nullptr && name->kind == Node::Kind::string) return name->text;
@@ -52,7 +52,7 @@ bool is_json(std::string_view value) {
 /// The next name of a path.
 struct PathName {
   std::string_view name;
-  std::size_t end = 0;  ///< of it in the path, with its quotes
+  std::size_t end = 0;  ///< end of it in the path, with its quotes
 };
 
 class Override {
@@ -100,7 +100,8 @@ class Override {
     if (rest.starts_with('"') || rest.starts_with('\'')) {
       const std::size_t close = rest.find(rest[0], 1);
       const bool is_closed = close != rest.npos && (close + 1 == rest.size() || rest[close + 1] == '.');
-      if (!is_closed) fail("a quoted name in the path does not end", "path.\"name.with.points\".key=value");
+      if (!is_closed)
+        fail("a quoted name in the path has no closing quote", "path.\"name.with.points\".key=value");
       return {rest.substr(1, close - 1), begin + close + 1};
     }
     std::size_t length = std::min(rest.find('.'), rest.size());
@@ -220,7 +221,7 @@ void check_new_media(const Document& document, const std::set<std::string>& name
     const std::string hint = did_you_mean(medium.key, views);
     if (hint.empty() || has_shape_of(document.root, medium.key)) continue;
     throw error_at(document, 0, medium.override_index, "no '" + printable(medium.key) + "' in 'media'" + hint,
-                   "a medium of the file, or a new one that a shape is made of");
+                   "a medium of the file, or a new one used by a shape");
   }
 }
 

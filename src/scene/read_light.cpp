@@ -33,7 +33,8 @@ Light read_light(const Value& value, const std::string& name, double mm_per_unit
   const auto own_name = reader.find("name");
   Light light{own_name ? own_name->string() : name, {}, value.place()};
   read_kind(type, reader, mm_per_unit, light, static_cast<const LightSource*>(nullptr));
-  if (light.name == "surroundings") own_name->fail("is taken by the scene's surroundings", "another name");
+  if (light.name == "surroundings")
+    own_name->fail("is reserved for the surroundings of the scene", "another name");
   return light;
 }
 

@@ -35,15 +35,16 @@ std::string_view form_of(const ObjectReader& medium) {
     for (const Form& f : forms()) {
       if (member.key != f.decisive) continue;
       if (form != nullptr)
-        medium.need(member.key).fail_key("cannot stand beside '" + std::string(form->decisive) + "'", ways);
+        medium.need(member.key)
+            .fail_key("cannot be combined with '" + std::string(form->decisive) + "'", ways);
       form = &f;
     }
-  if (form == nullptr) medium.fail("does not say what the medium is", ways);
+  if (form == nullptr) medium.fail("does not define the medium", ways);
   for (const Form& other : forms())
     for (const std::string_view key : other.companions)
       if (std::find(form->companions.begin(), form->companions.end(), key) == form->companions.end())
         if (const std::optional<Value> value = medium.find(key))
-          value->fail_key("has no meaning beside '" + std::string(form->decisive) + "'", ways);
+          value->fail_key("has no effect with '" + std::string(form->decisive) + "'", ways);
   return form->decisive;
 }
 
@@ -75,7 +76,7 @@ Rgb take_mean(Texture& texture) {
   return taken;
 }
 
-/// Of a texture the medium is that of the mean colour, and what its texels are over it a tint.
+/// Take color of a texture the medium is that of the mean colour, and what its texels are over it a tint.
 void take_color(const Value& value, ArtistMedium& coefficients, Medium& medium) {
   ColorReading color = read_color(value);
   coefficients.subsurface_color = color.color;
@@ -107,9 +108,9 @@ void read_tint(const ObjectReader& reader, Medium& medium) {
   const auto value = reader.find("tint");
   if (!value) return;
   if (medium.texture_mix == TextureMix::medium)
-    reader.need("texture_mix").fail("is of 'subsurface_color' alone", "another value beside 'tint'");
+    reader.need("texture_mix").fail("applies to 'subsurface_color' only", "another value with 'tint'");
   if (medium.tint_texture)
-    value->fail_key("cannot stand beside a texture of 'subsurface_color'", "one of the two");
+    value->fail_key("cannot be combined with a texture of 'subsurface_color'", "one of the two");
   ColorReading tint = read_color(*value);
   medium.tint = tint.color;
   medium.tint_texture = std::move(tint.texture);
@@ -118,7 +119,7 @@ void read_tint(const ObjectReader& reader, Medium& medium) {
 void read_weight(const ObjectReader& reader, Medium& medium) {
   const auto weight = reader.find("subsurface_weight"), base = reader.find("base_color");
   if (base && !weight)
-    base->fail_key("has no meaning where all light scatters", "'subsurface_weight' beside it");
+    base->fail_key("has no effect without a 'subsurface_weight' below 1", "'subsurface_weight' with it");
   if (weight) {
     NumberReading reading = read_number(*weight);
     medium.subsurface_weight = reading.number;
@@ -151,7 +152,7 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   Medium medium;
   medium.name = value.node().key;
   medium.place = value.place();
-  if (medium.name.empty()) value.fail_key("has no name", "a name that is not empty");
+  if (medium.name.empty()) value.fail_key("has no name", "a nonempty name");
   const std::string_view form = form_of(reader);
   if (form == "preset") {
     const Value name = reader.need("preset");
@@ -185,7 +186,8 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   if (thickness && choice == 0) medium.profile = ProfileKind::multipole;
   if (const auto fit = reader.find("fit")) {
     medium.fit = NormalizedDiffusionFit(fit->choice());
-    if (thickness && choice == 0) fit->fail_key("cannot stand beside 'thickness'", "a 'profile' beside them");
+    if (thickness && choice == 0)
+      fit->fail_key("cannot be combined with 'thickness'", "a 'profile' with them");
     if (choice == 0) medium.profile = ProfileKind::normalized_diffusion;
   }
   return medium;

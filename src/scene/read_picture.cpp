@@ -24,7 +24,7 @@ void check_pixels(const Film& film, const Value& value) {
       film.crop.value_or(std::array<int, 4>{0, 0, film.resolution[0], film.resolution[1]});
   if (std::uint64_t(part[2] - part[0]) * std::uint64_t(part[3] - part[1]) > kMostPixels)
     value.fail("has too many pixels",
-               "at most 2^28 = " + std::to_string(kMostPixels) + " in all, or a 'crop' of so many");
+               "at most 2^28 = " + std::to_string(kMostPixels) + " in total, or a smaller 'crop'");
 }
 
 }  // namespace
@@ -45,11 +45,11 @@ Camera read_camera(const std::optional<Value>& value, double mm_per_unit) {
     (look_at    ? *look_at
      : position ? *position
                 : *value)
-        .fail("gives no direction to look in", "'look_at' away from 'position'");
+        .fail("defines no view direction", "'look_at' different from 'position'");
   if (length(cross(view, normalized(camera.up))) < 1e-6)
     (up ? *up : *value)
-        .fail("leaves the camera's roll open: 'up' is along the view or zero",
-              "'up' across the line from 'position' to 'look_at'");
+        .fail("leaves the camera roll undefined: 'up' is parallel to the view direction or zero",
+              "'up' not parallel to the line from 'position' to 'look_at'");
   return camera;
 }
 

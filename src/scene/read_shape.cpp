@@ -58,7 +58,7 @@ TorusShape read_torus(const ObjectReader& reader, double mm_per_unit) {
   const Value minor_value = reader.need("minor_radius");
   const double major = reader.need("major_radius").length(mm_per_unit),
                minor = minor_value.length(mm_per_unit);
-  if (minor >= major) minor_value.fail("closes the hole", "less than 'major_radius'");
+  if (minor >= major) minor_value.fail("leaves no hole in the torus", "less than 'major_radius'");
   return {read_center(reader, mm_per_unit), major, minor};
 }
 
@@ -68,7 +68,7 @@ ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context, 
   place = shape.need(kind).place();
   if (kind == "file") return read_mesh_file(shape, context);
   for (const std::string_view option : {"part", "fill_holes", "fit_size", "vertex_colors", "crease_angle"})
-    if (const auto value = shape.find(option)) value->fail_key("has no meaning without 'file'");
+    if (const auto value = shape.find(option)) value->fail_key("has no effect without 'file'");
   const ObjectReader source(shape.need(kind), "shape." + std::string(kind));
   const double mm_per_unit = context.mm_per_unit;
   if (kind == "sphere") return read_sphere(source, mm_per_unit);
@@ -87,12 +87,12 @@ std::size_t find_medium(const Value& value, const std::vector<Medium>& media) {
   }
   const bool is_preset = std::ranges::any_of(presets(), [&](const Preset& p) { return p.name == name; });
   if (is_preset && value.node().override_index >= 0)
-    value.fail("names no medium of this scene: there is no '" + name + "' yet; add --set media." + name +
+    value.fail("is not a medium of this scene: there is no '" + name + "' yet; add --set media." + name +
                ".preset=" + name);
   if (is_preset)
-    value.fail("names no medium of this scene: '" + name + "' is a preset: say \"media\": {\"" + name +
+    value.fail("is not a medium of this scene: '" + name + "' is a preset: write \"media\": {\"" + name +
                "\": {\"preset\": \"" + name + "\"}}");
-  value.fail("names no medium of this scene" + did_you_mean(name, names),
+  value.fail("is not a medium of this scene" + did_you_mean(name, names),
              names.empty() ? "a name from 'media', which is empty" : "one of " + printable(join(names)));
 }
 
@@ -101,10 +101,10 @@ void read_gloss(const ObjectReader& reader, Shape& shape) {
              ior = reader.find("specular_ior"), weight = reader.find("specular_weight");
   const auto anisotropy = reader.find("specular_anisotropy"), rotation = reader.find("specular_rotation");
   for (const auto& key : {metalness, roughness, ior, weight, anisotropy, rotation})
-    if (key && shape.medium) key->fail_key("is the medium's to say", "it in 'media', or an opaque shape");
+    if (key && shape.medium) key->fail_key("belongs to the medium", "the key in 'media', or an opaque shape");
   for (const auto& key : {ior, weight, anisotropy, rotation})
     if (key && !metalness && !roughness)
-      key->fail_key("has no meaning on a matte shape", "'specular_roughness' beside it");
+      key->fail_key("has no effect on a diffuse shape", "'specular_roughness' with it");
   if (!metalness && !roughness) return;
   Gloss& gloss = shape.gloss.emplace();
   if (metalness) {
@@ -119,7 +119,7 @@ void read_gloss(const ObjectReader& reader, Shape& shape) {
   }
   gloss.grain = read_grain(reader);
   if (ior) gloss.eta = ior->number();
-  constexpr double kTrace = 1e-4;  // of a coat of no weight, so that metals keep a boundary
+  constexpr double kTrace = 1e-4;  // minimum weight of the dielectric, so that metals keep a boundary
   if (weight) gloss.eta = weighted_ior(gloss.eta, std::max(weight->number(), kTrace));
 }
 
@@ -127,7 +127,7 @@ void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shap
   const auto medium = reader.find("medium"), reflectance = reader.find("reflectance");
   const auto group = reader.find("group");
   if (medium && reflectance)
-    reflectance->fail_key("cannot stand beside 'medium'", "one of the two: translucent or opaque");
+    reflectance->fail_key("cannot be combined with 'medium'", "either a translucent or an opaque shape");
   if (medium) shape.medium = find_medium(*medium, *context.media);
   if (reflectance) {
     ColorReading color = read_color(*reflectance);
@@ -140,11 +140,11 @@ void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shap
   read_gloss(reader, shape);
   if (!group) return;
   shape.group = group->string();
-  if (!medium) group->fail_key("has no meaning without 'medium'");
+  if (!medium) group->fail_key("has no effect without 'medium'");
   const auto [first, is_new] = context.group_media.try_emplace(shape.group, *shape.medium);
   if (!is_new && first->second != *shape.medium)
-    group->fail("mixes two media", "the medium of the group's first shape, '" +
-                                       printable((*context.media)[first->second].name) + "'");
+    group->fail("contains two media", "the medium of the first shape of the group, '" +
+                                          printable((*context.media)[first->second].name) + "'");
 }
 
 }  // namespace

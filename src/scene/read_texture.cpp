@@ -12,7 +12,7 @@ bool is_texture(const Value& value) {
   return value.node().kind == Node::Kind::object;
 }
 
-/// What a value takes of a texel.
+/// Part of a texel used by a value.
 enum class TexturePart { color, triple, number };
 
 std::array<double, 2> read_pair(const Value& value) {
@@ -42,7 +42,7 @@ void check_channels(const Value& file, const std::optional<Value>& channel, cons
   const std::string expected = "a channel of the image: " + there;
   if (part == TexturePart::number && channel)
     channel->fail("is not in " + printable(texture.file->path()), expected);
-  file.fail("is an image without the channel " + missing.substr(0, 1),
+  file.fail("refers to an image without the channel " + missing.substr(0, 1),
             part == TexturePart::number ? "\"channel\": " + expected
                                         : "the channels R, G and B, or Y, or one alone");
 }
@@ -63,7 +63,7 @@ Texture read_texture(const Value& value, TexturePart part) {
   if (const auto scale = reader.find("scale")) texture.scale = scale->number_or_triple();
   const std::optional<Value> channel = reader.find("channel");
   if (channel && part != TexturePart::number)
-    value.fail(part == TexturePart::color ? "is a colour" : "is three numbers", "no 'channel'");
+    value.fail(part == TexturePart::color ? "is a colour" : "requires three numbers", "no 'channel'");
   if (channel) texture.channel = channel->choice();
   check_channels(file, channel, texture, part);
   if (const auto uv_scale = reader.find("uv_scale")) texture.uv_scale = read_pair(*uv_scale);
@@ -76,11 +76,11 @@ Texture read_texture(const Value& value, TexturePart part) {
 double checked(const Value& value, double number) {
   const Range& range = value.info().range;
   if (!(number >= range.low && number <= range.high))
-    value.fail("is out of range everywhere", "a texture times its scale that suits the key's range");
+    value.fail("is out of range at every texel", "a texture and scale within the range of the key");
   return number;
 }
 
-/// Of a texture with red, green and blue, whose texels are all alike; else empty.
+/// Constant value of an RGB texture with equal texels; else empty.
 std::optional<Vec3d> constant_of(const Value& value, const Texture& texture) {
   const std::optional<Texel>& constant = texture.file->constant();
   if (!constant) return {};

@@ -71,7 +71,7 @@ Transform read_transform(const Value& value, double mm_per_unit) {
     total = compose(read_step(step, mm_per_unit), total);
     const double volume = dot(cross(total.x, total.y), total.z);
     if (!std::isfinite(volume) || volume == 0 || !is_finite(total.translation))
-      step.fail("flattens the shape or blows it up", "a transform that can be undone");
+      step.fail("is singular or too large", "an invertible transform");
   }
   return total;
 }

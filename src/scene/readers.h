@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// What a shape needs to know about the scene around it.
+/// Properties of the scene that a shape depends on.
 struct ShapeContext {
   double mm_per_unit = 1;
   const std::vector<Medium>* media = nullptr;
@@ -45,7 +45,7 @@ std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit);
 /// from  OpenPBR Surface 1.1, specular_weight
 double weighted_ior(double ior, double weight);
 
-/// Of `specular_anisotropy` and `specular_rotation`.
+/// Read grain of `specular_anisotropy` and `specular_rotation`.
 Grain read_grain(const ObjectReader& reader);
 
 Medium read_medium(const Value& value, double mm_per_unit);

@@ -42,13 +42,14 @@ void add_light_rows(std::vector<KeyInfo>& rows) {
   KeyInfo name{.key = "name",
                .type = ValueType::text,
                .default_value = "\"light0\", ...",
-               .meaning = "what layers, messages and `--set` call it"};
+               .meaning = "name in layers, messages and `--set`"};
   keys.insert(keys.begin() + 1, std::move(name));
   if (kCanBeSeen<Kind>)
-    keys.push_back({.key = "visible",
-                    .type = ValueType::flag,
-                    .default_value = "true",
-                    .meaning = "false hides it from the camera; it shines, and is reflected, all the same"});
+    keys.push_back(
+        {.key = "visible",
+         .type = ValueType::flag,
+         .default_value = "true",
+         .meaning = "`false` hides it from the camera; it still emits light and appears in reflections"});
   for (KeyInfo& info : keys) {
     info.section = section;
     rows.push_back(std::move(info));
@@ -72,14 +73,16 @@ std::vector<KeyInfo> scene_rows() {
   return {
       row("scene", "mm_per_unit", number, "mm", {1e-12, 1e12}, "1", "length of one scene unit"),
       row("scene", "media", object, "", kFiniteNumber, "none",
-          "translucent materials: `{\"name\": {...}, ...}`, see medium"),
-      row("scene", "shapes", list, "", kFiniteNumber, "none", "list of things to see, see shape"),
+          "translucent media: `{\"name\": {...}, ...}`, see medium"),
+      row("scene", "shapes", list, "", kFiniteNumber, "none", "list of shapes, see shape"),
       row("scene", "lights", list, "", kFiniteNumber, "none", "list of lights, see light"),
       row("scene", "surroundings", color, "W/(mm² sr)", kNonNegative, "0 (black)",
-          "the same radiance from every direction; works as a light called \"surroundings\""),
-      row("scene", "camera", object, "", kFiniteNumber, "see camera", "where the picture is taken from"),
-      row("scene", "film", object, "", kFiniteNumber, "see film", "the picture itself"),
-      row("scene", "settings", object, "", kFiniteNumber, "see settings", "how it is computed"),
+          "constant radiance from every direction, as a light named \"surroundings\""),
+      row("scene", "camera", object, "", kFiniteNumber, "see camera",
+          "position, direction and angle of view"),
+      row("scene", "film", object, "", kFiniteNumber, "see film",
+          "resolution, sampling and colours of the image"),
+      row("scene", "settings", object, "", kFiniteNumber, "see settings", "method, samples and accuracy"),
       row("scene", "$schema", text, "", kFiniteNumber, "none",
           "JSON Schema of the file, for an editor; opaline ignores it"),
   };
@@ -89,105 +92,105 @@ std::vector<KeyInfo> shape_rows() {
   using enum ValueType;
   return {
       row("shape", "name", text, "", kFiniteNumber, "\"shape0\", \"shape1\", ...",
-          "what messages and `--set` call it; no two alike"),
+          "unique name in messages and `--set`"),
       row("shape", "file", file, "", kFiniteNumber, "", mesh_file_meaning()),
       row("shape", "part", text, "", kFiniteNumber, "all of the file",
-          "with `file`: a part of it; of GLB and glTF, which must have it, `\"mesh/primitive\"` by their "
-          "indices, or `\"mesh/primitive/node\"` in the pose of that node, of OBJ the material whose faces "
-          "are meant"),
-      row("shape", "sphere", object, "", kFiniteNumber, "", "a built-in sphere, see below"),
-      row("shape", "box", object, "", kFiniteNumber, "", "a built-in box"),
-      row("shape", "quad", object, "", kFiniteNumber, "", "a built-in parallelogram"),
-      row("shape", "slab", object, "", kFiniteNumber, "", "a built-in plate"),
-      row("shape", "torus", object, "", kFiniteNumber, "", "a built-in ring"),
+          "with `file`: one part of it. GLB and glTF (required): the indices `\"mesh/primitive\"`, or "
+          "`\"mesh/primitive/node\"` in the pose of that node. OBJ: the name of a material, for its faces"),
+      row("shape", "sphere", object, "", kFiniteNumber, "", "built-in sphere, see below"),
+      row("shape", "box", object, "", kFiniteNumber, "", "built-in box"),
+      row("shape", "quad", object, "", kFiniteNumber, "", "built-in parallelogram"),
+      row("shape", "slab", object, "", kFiniteNumber, "", "built-in plate"),
+      row("shape", "torus", object, "", kFiniteNumber, "", "built-in torus"),
       row("shape", "fill_holes", flag, "", kFiniteNumber, "false",
-          "with `file`: close every hole of the mesh; light leaks through an open one"),
+          "with `file`: closes every hole of the mesh; light leaks through an open mesh"),
       row("shape", "fit_size", length, "", kFiniteNumber, "as it is in the file",
-          "with `file`: first scale the mesh until the largest side of its bounding box has this length, "
-          "centre it on x = z = 0 and stand it on y = 0"),
-      row("shape", "transform", list, "", kFiniteNumber, "none",
-          "list of steps, applied in the order of the list"),
+          "with `file`: scales the mesh until the largest side of its bounding box has this length, centres "
+          "it on x = z = 0 and places it on y = 0, before `transform`"),
+      row("shape", "transform", list, "", kFiniteNumber, "none", "list of steps, applied in order"),
       row("shape", "normals", choice, "", kFiniteNumber, "`\"smooth\"`",
-          "`\"smooth\"`: shaded round, with the file's normals where it has them, else up to its creases; "
-          "`\"faceted\"`: each triangle flat",
+          "`\"smooth\"`: normals of the file, or computed vertex normals with sharp creases; `\"faceted\"`: "
+          "normals of the triangles",
           kNormalNames),
       row("shape", "crease_angle", number, "degrees", {0, 180},
-          "STL: 30; OBJ: by its smoothing groups; else 180",
-          "with `file`: where it has no normals, edges that bend by more are sharp"),
+          "STL: 30; OBJ: from its smoothing groups; others: 180",
+          "with `file`, without normals: edges with a larger angle between their faces are sharp"),
       row("shape", "medium", text, "", kFiniteNumber, "opaque", "name of a medium"),
-      textured(row("shape", "reflectance", color, "", kUnitInterval, "0.5",
-                   "colour of an opaque shape, times `vertex_colors`; not together with `medium`")),
-      row("shape", "vertex_colors", flag, "", kFiniteNumber, "true; false under a texture",
-          "with `file`: its vertex colours are the colour of an opaque shape, times a `reflectance` that is "
-          "given; they multiply a medium's `tint` and `base_color`"),
       textured(
-          row("shape", "metalness", number, "", kUnitInterval, "0",
-              "of an opaque shape: 1 mirrors in its `reflectance`, 0 under a clear coat; makes it glossy")),
-      textured(row("shape", "specular_roughness", number, "", kUnitInterval, "matte; beside `metalness` 1",
-                   "of an opaque shape as it mirrors: 0 smooth, .3 satin; makes it glossy")),
-      row("shape", "specular_ior", number, "", {.1, 10}, "1.5", "of a glossy opaque shape's coat"),
+          row("shape", "reflectance", color, "", kUnitInterval, "0.5",
+              "diffuse reflectance of an opaque shape, multiplied by `vertex_colors`; excludes `medium`")),
+      row("shape", "vertex_colors", flag, "", kFiniteNumber, "true; false under a texture",
+          "with `file`: vertex colours are the reflectance of an opaque shape, multiplied by `reflectance` "
+          "if given; they multiply a medium's `tint` and `base_color`"),
+      textured(row("shape", "metalness", number, "", kUnitInterval, "0",
+                   "opaque shapes: 1: metal with the specular colour `reflectance`, 0: dielectric; makes the "
+                   "shape glossy")),
+      textured(row("shape", "specular_roughness", number, "", kUnitInterval, "diffuse; with `metalness`: 1",
+                   "opaque shapes: roughness of the specular reflection: 0 smooth, 0.3 satin; makes the "
+                   "shape glossy")),
+      row("shape", "specular_ior", number, "", {.1, 10}, "1.5",
+          "glossy opaque shapes: index of refraction of the dielectric boundary"),
       row("shape", "specular_weight", number, "", {0, 1}, "1",
-          "how much of its light the coat of a glossy opaque shape mirrors at right angles: 0 next to "
-          "nothing; metals stay"),
+          "glossy opaque shapes: factor of the dielectric's specular reflectance at normal incidence; metals "
+          "ignore it"),
       row("shape", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning),
       row("shape", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning),
       textured(row("shape", "normal_map", object, "", kFiniteNumber, "none",
-                   "normals of the file's details, around the mesh's own: red to the right, green up, blue "
-                   "out, 0 to 1 "
-                   "for -1 to 1; `scale` is of its slopes")),
-      textured(
-          row("shape", "bump_map", object, "", kFiniteNumber, "none",
-              "heights of the file's details over the mesh: its numbers times `scale`, in scene units "
-              "whatever the `transform`; they turn normals, around those of `normal_map`, and move nothing")),
+                   "tangent-space normal map: red right, green up, blue out, 0 to 1 for -1 to 1; `scale` "
+                   "multiplies the slopes")),
+      textured(row("shape", "bump_map", object, "", kFiniteNumber, "none",
+                   "height map that perturbs the normals, after `normal_map`; does not displace the surface. "
+                   "Heights are the texture times `scale`, in scene units, regardless of `transform`")),
       row("shape", "group", text, "", kFiniteNumber, "alone",
-          "translucent shapes with the same group blend as one object, others never bleed into each other; a "
-          "group has one medium"),
+          "translucent shapes of one group are one body, with one medium; light does not scatter from one "
+          "body to another"),
   };
 }
 
 std::vector<KeyInfo> built_in_shape_rows() {
   using enum ValueType;
   return {
-      row("shape.sphere", "center", point, "", kFiniteNumber, "[0, 0, 0]", "its centre"),
-      row("shape.sphere", "radius", length, "", kFiniteNumber, "", "its radius"),
-      row("shape.box", "low", point, "", kFiniteNumber, "", "the corner with the smallest x, y and z"),
+      row("shape.sphere", "center", point, "", kFiniteNumber, "[0, 0, 0]", "centre"),
+      row("shape.sphere", "radius", length, "", kFiniteNumber, "", "radius"),
+      row("shape.box", "low", point, "", kFiniteNumber, "", "corner with the smallest x, y and z"),
       row("shape.box", "high", point, "", kFiniteNumber, "",
-          "the corner with the largest; beyond `low` in all three"),
+          "corner with the largest x, y and z; greater than `low` in all three"),
       row("shape.quad", "corner", point, "", kFiniteNumber, "", "one corner"),
-      row("shape.quad", "u", point, "", kFiniteNumber, "", "from it along one side"),
+      row("shape.quad", "u", point, "", kFiniteNumber, "", "vector from the corner along one side"),
       row("shape.quad", "v", point, "", kFiniteNumber, "",
-          "from it along the other, not parallel to `u`; the front is where u x v points"),
-      row("shape.slab", "center", point, "", kFiniteNumber, "[0, 0, 0]", "its centre"),
-      row("shape.slab", "width", length, "", kFiniteNumber, "", "along x"),
-      row("shape.slab", "depth", length, "", kFiniteNumber, "", "along z"),
-      row("shape.slab", "thickness", length, "", kFiniteNumber, "", "along y"),
-      row("shape.torus", "center", point, "", kFiniteNumber, "[0, 0, 0]", "its centre"),
+          "vector from the corner along the other side, not parallel to `u`; u x v points to the front"),
+      row("shape.slab", "center", point, "", kFiniteNumber, "[0, 0, 0]", "centre"),
+      row("shape.slab", "width", length, "", kFiniteNumber, "", "extent along x"),
+      row("shape.slab", "depth", length, "", kFiniteNumber, "", "extent along z"),
+      row("shape.slab", "thickness", length, "", kFiniteNumber, "", "extent along y"),
+      row("shape.torus", "center", point, "", kFiniteNumber, "[0, 0, 0]", "centre"),
       row("shape.torus", "major_radius", length, "", kFiniteNumber, "",
-          "from the centre to the middle of the tube"),
+          "distance from the centre to the middle of the tube"),
       row("shape.torus", "minor_radius", length, "", kFiniteNumber, "",
-          "of the tube; less than `major_radius`"),
-      row("shape.transform", "translate", point, "", kFiniteNumber, "", "move by [x, y, z]"),
+          "radius of the tube; less than `major_radius`"),
+      row("shape.transform", "translate", point, "", kFiniteNumber, "", "translates by [x, y, z]"),
       row("shape.transform", "scale", number_or_triple, "not 0", kFiniteNumber, "",
-          "stretch about the origin by a number or [x, y, z]; negative mirrors"),
+          "scales about the origin, by one number or [x, y, z]; negative numbers mirror"),
       row("shape.transform", "rotate", object, "", kFiniteNumber, "",
-          "turn about an axis through the origin, see below"),
+          "rotates about an axis through the origin, see below"),
       row("shape.transform", "matrix", list, "last column in scene units", kFiniteNumber, "",
-          "three rows of four numbers; the last column moves"),
-      row("shape.transform.rotate", "axis", triple, "", kFiniteNumber, "", "[x, y, z], of any length but 0"),
+          "three rows of four numbers; the last column translates"),
+      row("shape.transform.rotate", "axis", triple, "", kFiniteNumber, "",
+          "[x, y, z], of any nonzero length"),
       row("shape.transform.rotate", "degrees", number, "degrees", kFiniteNumber, "",
-          "counter-clockwise when the axis points at you"),
+          "angle, counter-clockwise when the axis points towards the viewer"),
   };
 }
 
 std::vector<KeyInfo> camera_rows() {
   using enum ValueType;
   return {
-      row("camera", "position", point, "", kFiniteNumber, "[0, 0, 5]", "of the eye"),
-      row("camera", "look_at", point, "", kFiniteNumber, "[0, 0, 0]",
-          "the point in the middle of the picture"),
+      row("camera", "position", point, "", kFiniteNumber, "[0, 0, 5]", "position of the camera"),
+      row("camera", "look_at", point, "", kFiniteNumber, "[0, 0, 0]", "point at the centre of the image"),
       row("camera", "up", triple, "", kFiniteNumber, "[0, 1, 0]",
-          "what is up in the picture; not along the view"),
-      row("camera", "field_of_view", number, "degrees", {0, 180, true, true}, "40", "full vertical angle"),
+          "up direction of the image; not parallel to the view direction"),
+      row("camera", "field_of_view", number, "degrees", {0, 180, true, true}, "40",
+          "full vertical angle of view"),
   };
 }
 
@@ -195,23 +198,22 @@ std::vector<KeyInfo> texture_rows() {
   using enum ValueType;
   return {
       row("texture", "texture", file, "", kFiniteNumber, "",
-          "EXR, HDR, PNG, JPEG or TIFF, relative to the scene file's folder; `<UDIM>` in its name stands for "
-          "1001 + "
-          "column + 10 row; `asset.glb#image/0` is an asset's image; colours are converted from the "
-          "chromaticities of an EXR to Rec.709 and divided by premultiplied alpha"),
+          "EXR, HDR, PNG, JPEG or TIFF, relative to the scene file's folder. `<UDIM>` in the name stands for "
+          "1001 + column + 10 row. `asset.glb#image/0` is an image of an asset. Colours are converted from "
+          "the chromaticities of an EXR to Rec.709, and divided by premultiplied alpha"),
       row("texture", "color_space", choice, "", kFiniteNumber, "`\"automatic\"`",
-          "what its numbers are: `\"srgb\"` or `\"linear\"`; automatic: linear in files of floats, sRGB in "
-          "others, of "
-          "values that are no colours always linear",
+          "`\"srgb\"` or `\"linear\"`; automatic: linear for float files and non-colour values, otherwise "
+          "sRGB",
           kColorSpaceNames),
-      row("texture", "scale", number_or_triple, "", kNonNegative, "1", "times what it says"),
+      row("texture", "scale", number_or_triple, "", kNonNegative, "1", "factor of the values"),
       row("texture", "channel", choice, "", kFiniteNumber, "`\"r\"`",
-          "which a number is: `\"r\"`, `\"g\"`, `\"b\"` or `\"a\"`", kTextureChannels),
+          "channel of a number: `\"r\"`, `\"g\"`, `\"b\"` or `\"a\"`", kTextureChannels),
       row("texture", "uv_scale", list, "", kFiniteNumber, "[1, 1]",
-          "how often it is repeated, to the right and down from its upper left corner"),
+          "repeats to the right and down, from the upper left corner"),
       row("texture", "uv_rotation", number, "degrees", kFiniteNumber, "0",
-          "then turns the UVs about that corner"),
-      row("texture", "uv_offset", list, "", kFiniteNumber, "[0, 0]", "then moves them, right and down"),
+          "rotates the UVs about that corner, after `uv_scale`"),
+      row("texture", "uv_offset", list, "", kFiniteNumber, "[0, 0]",
+          "moves the UVs right and down, after `uv_rotation`"),
   };
 }
 

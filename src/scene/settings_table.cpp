@@ -92,7 +92,7 @@ constexpr double kLeastTolerance = 1e-4;  // asked for 1e-5, the p99 on a sphere
 void read_tolerance(Settings& settings, const Value& value, double) {
   settings.tolerance = value.number({0, 1, true});
   if (settings.tolerance < kLeastTolerance)
-    value.fail("cannot be kept: sums in single precision are off by .006 %",
+    value.fail("is below the limit of single precision: sums have an error of 0.006 %",
                "at least 1e-4; \"evaluator\": \"brute_force\" is exact");
 }
 
@@ -123,7 +123,7 @@ void read_crop(Film& film, const Value& value, double) {
   std::array<int, 4>& crop = film.crop.emplace();
   for (std::size_t i = 0; i < 4; ++i)
     crop[i] = static_cast<int>(ends[i].whole_number(0, static_cast<std::uint64_t>(film.resolution[i % 2])));
-  if (crop[0] >= crop[2] || crop[1] >= crop[3]) value.fail("holds no pixel", "x0 < x1 and y0 < y1");
+  if (crop[0] >= crop[2] || crop[1] >= crop[3]) value.fail("contains no pixels", "x0 < x1 and y0 < y1");
 }
 
 void read_pixel_type(Film& film, const Value& value, double) {
@@ -148,45 +148,47 @@ std::string pixel_type_json(const Film& film) {
 
 std::span<const Member<Film>> film_members() {
   using enum ValueType;
-  static const KeyInfo resolution{
-      "film",       "resolution",     list, "pixels, each 1 to 65536, at most 2^28 in all", {1, kLargestSide},
-      "[512, 512]", "[width, height]"},
+  static const KeyInfo resolution{"film",
+                                  "resolution",
+                                  list,
+                                  "pixels, each 1 to 65536, at most 2^28 in total",
+                                  {1, kLargestSide},
+                                  "[512, 512]",
+                                  "[width, height]"},
       crop{"film",
            "crop",
            list,
            "pixels",
            {0, kLargestSide},
            "everything",
-           "[x0, y0, x1, y1], counted from the top left, x1 and y1 excluded: compute this part only"},
+           "renders only the pixels [x0, y0, x1, y1], counted from the top left, without x1 and y1"},
       pixel_type{"film",
                  "pixel_type",
                  choice,
                  "",
                  kFiniteNumber,
                  "`\"half\"`",
-                 "`\"half\"`: 16 bits a value in the EXR; `\"float\"`: 32 bits",
+                 "bits per value of the EXR: `\"half\"`: 16; `\"float\"`: 32",
                  kPixelTypes};
   static const std::vector<Member<Film>> table{
       {resolution, read_resolution, resolution_json},
       {crop, read_crop, crop_json},  // after the resolution, which it lies within
       member<&Film::samples_per_pixel>("samples_per_pixel", whole_number, "", {1, 65536}, "",
-                                       "rays for each pixel"),
+                                       "camera rays per pixel"),
       member<&Film::filter>("filter", choice, "", kFiniteNumber, "",
-                            "`\"box\"`: one pixel wide; `\"gaussian\"`: softer, standard deviation 0.5, "
-                            "radius 1.5 pixels"),
+                            "pixel filter: `\"box\"`: one pixel wide; `\"gaussian\"`: softer, standard "
+                            "deviation 0.5, radius 1.5 pixels"),
       {pixel_type, read_pixel_type, pixel_type_json},
       member<&Film::exposure>("exposure", number, "stops", {-100, 100}, "",
-                              "brightens the PNG only, by a factor of 2 each"),
+                              "exposure of the PNG; one stop is a factor of 2"),
       member<&Film::view>(
           "view", choice, "", kFiniteNumber, "",
-          "how the PNG shows what is brighter than white: `\"soft\"`: colours below .8 of white as they are, "
-          "what is brighter bends towards white; `\"neutral\"`: Khronos PBR Neutral, the same after .04 of "
-          "white "
-          "is taken off; `\"agx\"`: AgX, filmic, of less contrast and colour; `\"srgb\"`: all as it is, cut "
-          "at white"),
-      member<&Film::color_space>(
-          "color_space", choice, "", kFiniteNumber, "",
-          "of the EXR's colours: `\"lin_rec709\"`, as the scene's; `\"acescg\"`: converted to ACEScg (AP1)"),
+          "tone mapping of the PNG: `\"soft\"`: unchanged below 0.8 of white, compressed above; "
+          "`\"neutral\"`: Khronos PBR Neutral, compressed above 0.8 of white, after subtracting up to 0.04; "
+          "`\"agx\"`: AgX, filmic, with less contrast and saturation; `\"srgb\"`: clipped at white"),
+      member<&Film::color_space>("color_space", choice, "", kFiniteNumber, "",
+                                 "colour space of the EXR: `\"lin_rec709\"`: that of the scene; "
+                                 "`\"acescg\"`: converted to ACEScg (AP1)"),
   };
   return table;
 }
@@ -203,65 +205,58 @@ std::span<const Member<Settings>> settings_members() {
   static const std::vector<Member<Settings>> table{
       member<&Settings::method>(
           "method", choice, "", kFiniteNumber, "",
-          "`\"hierarchical\"`: light under the surface; `\"lambert\"`: the same scene as plain paint, fast; "
-          "`\"direct\"`: the same light under the surface at random, slow, noisy and without bias: the "
-          "reference; `\"volume\"`: random walks inside the bodies, slow and noisy: the truth; "
-          "`\"volume_diffusion\"`: diffusion solved inside the bodies, without a kernel: near the truth"),
-      member<&Settings::evaluator>("evaluator", choice, "", kFiniteNumber, "",
-                                   "`\"dual_tree\"`: clusters of points against the octree's nodes, to a "
-                                   "tolerance; `\"surface_cache\"`: "
-                                   "the same at places all over the surface, interpolated for each point; "
-                                   "`\"automatic\"`: the one or the "
-                                   "other, by the number of points; `\"classic\"`: traversal of the octree "
-                                   "for each point, as published; "
-                                   "`\"brute_force\"`: the exact sum, slow"),
+          "`\"hierarchical\"`: BSSRDF with a radial profile, by hierarchical evaluation; `\"lambert\"`: "
+          "diffuse reflection, fastest; `\"direct\"`: the same BSSRDF by unbiased Monte Carlo sampling, slow "
+          "and noisy; `\"volume\"`: random walks inside the bodies, slow and noisy, the reference; "
+          "`\"volume_diffusion\"`: the diffusion equation solved inside the bodies, close to the reference"),
+      member<&Settings::evaluator>(
+          "evaluator", choice, "", kFiniteNumber, "",
+          "hierarchical evaluation: `\"dual_tree\"`: clusters of shading points against octree nodes, to "
+          "`tolerance`; `\"surface_cache\"`: the same at points all over the surface, interpolated at "
+          "shading points; `\"automatic\"`: one of the two, depending on the number of points; "
+          "`\"classic\"`: octree traversal per shading point, as published; `\"brute_force\"`: the exact "
+          "sum, slow"),
       read_by(read_tolerance,
               member<&Settings::tolerance>(
                   "tolerance", number, "", {kLeastTolerance, 1}, "",
-                  "dual tree, and a surface cache that is asked for: 99 % of the points are at least this "
-                  "close to "
-                  "the exact sum, relatively; what is smaller single precision does not keep")),
+                  "evaluators `dual_tree` and `surface_cache`: maximum relative error against the exact sum, "
+                  "at 99 % of the points; single precision sets the lower limit")),
       member<&Settings::sample_spacing>("sample_spacing", length, "", kFiniteNumber,
                                         "from the medium's mean free path",
                                         "distance between samples, sqrt(area / samples)"),
-      member<&Settings::samples>(
-          "samples", whole_number, "", {1, kMostSamples}, "from the spacing",
-          "number of samples for each group; goes before `sample_spacing`; volume_diffusion has one "
-          "at least where a cell cuts the surface"),
+      member<&Settings::samples>("samples", whole_number, "", {1, kMostSamples}, "from the spacing",
+                                 "number of samples per body; overrides `sample_spacing`; `volume_diffusion` "
+                                 "uses at least one per surface cell"),
       member<&Settings::max_samples>("max_samples", whole_number, "", {1, kMostSamples}, "",
-                                     "never more than this for each group"),
+                                     "maximum number of samples per body"),
       member<&Settings::light_samples>("light_samples", whole_number, "", {1, 65536}, "",
-                                       "shadow rays from each sample, and from each pixel of an opaque "
-                                       "surface, to each area light and to the "
-                                       "surroundings; where lights are more than 16, to all area lights "
-                                       "together, and a third of them to all others"),
+                                       "shadow rays per sample, and per pixel of an opaque surface, to each "
+                                       "area light and to the surroundings; with more than 16 lights: to all "
+                                       "area lights together, and a third as many to all other lights"),
       member<&Settings::entry_samples>(
           "entry_samples", whole_number, "", {1, kMostSamples},
-          fmt::format("{}, or as many as `until_error` takes", kDefaultEntrySamples),
-          "direct: such places for each pixel, in whole passes of 16"),
-      member<&Settings::until_error>(
-          "until_error", number, "", {0, 1, true}, "none",
-          "direct, volume: stop when the estimated noise of the pixels or cells (rms "
-          "of the standard error, relative) is this small"),
-      member<&Settings::cell_size>("cell_size", number, "mean free paths", {.05, 100}, "",
-                                   "volume_diffusion: edge of the cells at the surface; .45 diffuse mean "
-                                   "free paths count for one where they are less; smaller is slower and "
-                                   "closer to the truth"),
+          fmt::format("{}, or enough for `until_error`", kDefaultEntrySamples),
+          "`direct`: sampled points of entry per pixel, rounded to whole passes of 16"),
+      member<&Settings::until_error>("until_error", number, "", {0, 1, true}, "none",
+                                     "`direct`, `volume`: relative noise at which to stop (rms of the "
+                                     "estimated standard error of the pixels or cells)"),
+      member<&Settings::cell_size>(
+          "cell_size", number, "mean free paths", {.05, 100}, "",
+          "`volume_diffusion`: size of the cells at the surface; the unit is 0.45 diffuse mean free paths if "
+          "that is shorter; smaller cells are slower and more accurate"),
       member<&Settings::reenter>(
           "reenter", flag, "", kFiniteNumber, "",
-          "volume: light that has left a body, or was mirrored by it, may meet the same "
-          "body again and enter, as in hollows and between ears; `false`: it is gone. Other methods: "
-          "`bounces`"),
+          "`volume`: light that leaves a body, or reflects off it, may enter the same body again, as in "
+          "concavities; `false`: it is lost. Other methods: `bounces`"),
       member<&Settings::bounces>(
-          "bounces", whole_number, "", {0, 1}, "1 where one thing can light another",
-          "all methods but volume: 1: light that leaves a surface lights others, once: "
-          "a floor the thing that stands on "
-          "it, a red wall the marble beside it, and a body itself; 0: things are lit by lights alone"),
+          "bounces", whole_number, "", {0, 1}, "1 if one surface can light another",
+          "all methods but `volume`: 1: one bounce of light between surfaces, such as from a floor to the "
+          "object on it, or within one body; 0: direct light only"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
-                              "of all random numbers; the same seed gives the same picture"),
-      member<&Settings::reference_frame>("reference_frame", whole_number, "", {0, 1e9}, "",
-                                         "of frame ranges: samples are placed on the surfaces of this frame "
-                                         "and go along with them to all others"),
+                              "random seed; the same seed gives the same image"),
+      member<&Settings::reference_frame>(
+          "reference_frame", whole_number, "", {0, 1e9}, "",
+          "frame ranges: samples are placed on the surfaces of this frame and move with them in all others"),
       {laboratory, read_laboratory, laboratory_json},
   };
   return table;
@@ -270,27 +265,23 @@ std::span<const Member<Settings>> settings_members() {
 std::span<const Member<Laboratory>> laboratory_members() {
   using enum ValueType;
   static const std::vector<Member<Laboratory>> table{
-      member<&Laboratory::instruction_set>(
-          "instruction_set", choice, "", kFiniteNumber, "",
-          "instructions of the dual tree: `\"automatic\"`, the widest of the machine; `\"baseline\"`, "
-          "`\"avx2\"` or `\"avx512\"`"),
-      member<&Laboratory::max_solid_angle>(
-          "max_solid_angle", number, "sr", {0, 1e30, true}, "",
-          "largest solid angle of a node that evaluator `classic` does not open; a smaller one is slower and "
-          "closer to the exact sum"),
-      member<&Laboratory::near_field>("near_field", flag, "", kFiniteNumber, "",
-                                      "integrate the kernel near the shading point separately; `false` needs "
-                                      "far more samples"),
+      member<&Laboratory::instruction_set>("instruction_set", choice, "", kFiniteNumber, "",
+                                           "SIMD instructions of the dual tree: `\"automatic\"` (the widest "
+                                           "of the processor), `\"baseline\"`, `\"avx2\"` or `\"avx512\"`"),
+      member<&Laboratory::max_solid_angle>("max_solid_angle", number, "sr", {0, 1e30, true}, "",
+                                           "evaluator `classic`: maximum solid angle of an octree node that "
+                                           "is evaluated as a whole; smaller is slower and more accurate"),
+      member<&Laboratory::near_field>(
+          "near_field", flag, "", kFiniteNumber, "",
+          "integrates the kernel near the shading point separately; `false` requires many more samples"),
       member<&Laboratory::near_irradiance>(
           "near_irradiance", choice, "", kFiniteNumber, "",
-          "irradiance of the near field: `\"samples\"`, the mean of the samples around the point; "
-          "`\"point\"`, "
-          "traced at the point; `\"mixed\"`, as much of each as preserves the width of the kernel, traced at "
+          "irradiance of the near field: `\"samples\"`: mean of the samples around the point; `\"point\"`: "
+          "traced at the point; `\"mixed\"`: a blend that preserves the width of the kernel, traced at "
           "points around where the two differ"),
       member<&Laboratory::entry_strategy>("entry_strategy", choice, "", kFiniteNumber, "",
-                                          "sampling of entry points by method `direct`: `\"disc_axes\"`, "
-                                          "lines through discs along three axes; "
-                                          "`\"chords\"`, chords of spheres"),
+                                          "method `direct`, sampling of entry points: `\"disc_axes\"`: lines "
+                                          "through discs along three axes; `\"chords\"`: chords of spheres"),
   };
   return table;
 }

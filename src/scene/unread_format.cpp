@@ -36,7 +36,7 @@ std::string unread_format(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
   const auto found = std::ranges::find(kFormats, std::string_view(extension), &Format::extension);
-  return found == kFormats.end() ? "" : std::string(found->name) + " is not read; export GLB";
+  return found == kFormats.end() ? "" : std::string(found->name) + " is not supported; export GLB";
 }
 
 }  // namespace opaline

@@ -101,7 +101,7 @@ bool Value::flag() const {
 std::string Value::string() const {
   const Node& node = require_kind(Node::Kind::string, "a string");
   if (node.text.empty() || node.text.find('\0') != std::string::npos)
-    fail("is no usable text", "a string that is not empty");
+    fail("is not usable text", "a nonempty string");
   return node.text;
 }
 
@@ -116,7 +116,7 @@ std::size_t Value::choice() const {
   const std::string& name = require_kind(Node::Kind::string, "one of " + join(names)).text;
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    fail("has no choice '" + printable(name) + "'" + did_you_mean(name, names), "one of " + join(names));
+    fail("does not allow '" + printable(name) + "'" + did_you_mean(name, names), "one of " + join(names));
   return static_cast<std::size_t>(found - names.begin());
 }
 
@@ -137,7 +137,7 @@ Rgb Value::color() const {
   if (node_->kind == Node::Kind::number || node_->kind == Node::Kind::array) return number_or_triple();
   if (const std::optional<Rgb> color = hex_color(require_kind(Node::Kind::string, expected).text))
     return *color;
-  fail("is no colour", expected);
+  fail("is not a colour", expected);
 }
 
 double Value::length(double mm_per_unit) const {
@@ -262,7 +262,7 @@ std::string_view ObjectReader::exactly_one_of(std::span<const std::string_view> 
   for (const Node& child : node_->children) {
     if (std::find(keys.begin(), keys.end(), child.key) == keys.end()) continue;
     if (!first.empty())
-      find(child.key)->fail_key("cannot stand beside '" + std::string(first) + "'",
+      find(child.key)->fail_key("cannot be combined with '" + std::string(first) + "'",
                                 "exactly one of " + join(keys));
     first = child.key;
   }

@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kWidest = 100;  // of what stands on one line, bytes
+constexpr std::size_t kWidest = 100;  // maximum bytes of a value on one line
 
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

@@ -16,15 +16,15 @@ struct SampleOrigin {
   std::vector<std::uint32_t> meshes;  // in that world
   StageKey key;
   std::uint64_t seed = 0;
-  std::size_t count = 0;       // asked for
-  double area = 0;             // of the surface then, mm^2
-  SurfaceSamples surface;      // while the body's own are carried; else the body's own are these
-  SurfaceCells cells;          // of these samples; empty until a surface bends where no edits were expected
+  std::size_t count = 0;   // asked for
+  double area = 0;         // area of the surface then, mm^2
+  SurfaceSamples surface;  // while the body's own are carried; else the body's own are these
+  SurfaceCells cells;      // cells of these samples; empty until a surface bends where no edits were expected
   bool count_was_set = false;  // by settings.samples
   std::optional<double> spacing_setting;
 };
 
-/// Whether the body no longer suits the spacing that carried samples keep: there would be more of them than
+/// True if the body no longer suits the spacing that carried samples keep: there would be more of them than
 /// the scene allows, or, where the scene sets their number, a small part of that.
 bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings);
 
@@ -33,8 +33,8 @@ struct BodyKeys {
   SampleOrigin origin;
   StageKey samples_key, tint_key;
   std::vector<std::uint32_t> meshes;  // that the samples name
-  std::vector<StageKey> light_keys;   // of the transfers
-  std::vector<Vec3f> cut_normals;     // of the samples, where cells cut the surface
+  std::vector<StageKey> light_keys;   // keys of the transfers
+  std::vector<Vec3f> cut_normals;     // cut normals of the samples, where cells cut the surface
 
   bool is_carried() const { return samples_key != origin.key; }
 };

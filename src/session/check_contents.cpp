@@ -24,7 +24,7 @@ bool is_close(double a, double b, double relative) {
   return std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b));
 }
 
-/// Whether all of 0 to below `size` fulfil the condition; by all threads.
+/// True if all of 0 to below `size` fulfil the condition; by all threads.
 template <class Condition>
 bool all_of(std::size_t size, const Condition& condition) {
   std::atomic<bool> holds = true;
@@ -52,7 +52,7 @@ bool stands_on_its_triangle(const SurfaceSample& s, const World& world) {
   return dot(apart, apart) <= far * far && dot(turned, turned) <= 1e-6f;
 }
 
-/// Of node i and all below it, given that they lie before `end`.
+/// Checks node i and all nodes below it, which lie before `end`.
 struct TreeCheck {
   const Octree& tree;
 

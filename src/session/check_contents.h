@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether what an entry holds can be what its key stands for: every count, index and range that later stages
+// Plausibility of a cache entry for its key: every count, index and range that later stages
 // rely on, and what the surface alone says of the values. It costs a pass over them.
 #pragma once
 
@@ -21,7 +21,7 @@ bool is_light_of(const LightTransfer& transfer, std::size_t samples);
 /// One a sample, finite and >= 0.
 bool are_values_of(std::span<const RgbF> values, std::size_t samples);
 
-/// Whether the byte at `offset` of every item is 0 or 1, so that it may be read as a bool.
+/// True if the byte at `offset` of every item is 0 or 1, so that it may be read as a bool.
 bool has_flags(std::span<const char> items, std::size_t item_bytes, std::size_t offset);
 
 /// Nodes divide their parents' samples between them, in depth-first order, to a depth that build_octree can

@@ -18,7 +18,7 @@ namespace opaline {
 namespace {
 
 constexpr std::array<std::string_view, 3> kKinds{"diffuse", "specular", "emission"};
-// Of a sum of floats, over what the sum is.
+// Rounding of a sum of floats, over what the sum is.
 constexpr float kRounding = 1e-6f;
 
 std::string layer_name(const std::string& light) {
@@ -36,7 +36,7 @@ Error refused(const SourcePlace& place, const std::string& what, const std::stri
 /// First red channel of each kind that a group has, in a picture's pixels.
 struct GroupPlaces {
   std::array<std::size_t, 3> kinds;
-  std::size_t count;  ///< of kinds; emission is last
+  std::size_t count;  ///< count of kinds; emission is last
 };
 
 std::vector<GroupPlaces> append_layers(Image& picture, std::span<const LightGroup> groups) {
@@ -134,7 +134,7 @@ Scene lit_by(Scene scene, const LightGroup& group) {
 std::vector<LightGroup> light_groups(const Scene& scene) {
   const Method method = scene.settings.method;
   if (!method_of(method).separates_lights())
-    throw refused({scene.file}, "the method's noise is another for each light",
+    throw refused({scene.file}, "noise differs between lights with this method",
                   "--method hierarchical, lambert or volume_diffusion", std::string(name_of(method)));
   if (scene.lights.empty()) throw refused({scene.file}, "the scene has no lights", "a light");
   std::vector<LightGroup> groups;

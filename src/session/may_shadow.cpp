@@ -22,7 +22,7 @@ Ball ball_around(std::span<const MeshKeys> meshes, const GroupPlan& group) {
   return ball;
 }
 
-/// Whether the hull of both balls meets the third: their mix at t is a ball of the hull, and its gap to the
+/// True if the hull of both balls meets the third: their mix at t is a ball of the hull, and its gap to the
 /// third is a convex function of t.
 bool hull_meets(const Ball& a, const Ball& b, const Ball& third) {
   const auto gap = [&](double t) {

@@ -240,7 +240,7 @@ RenderResult Session::State::render(Monitor* monitor) {
   return result;
 }
 
-/// What is held of earlier pictures and still holds; null: nothing is to be held.
+/// Valid cache of earlier images; null: caching is off.
 HeldView* Session::State::held_view() {
   if (!holds_view_) {
     view_ = {};

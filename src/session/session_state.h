@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session keeps, and how each part of it is brought up to date with the scene.
+// Cached state of a session, and the update of each part of it after an edit.
 #pragma once
 
 #include "methods/method.h"
@@ -12,14 +12,14 @@ namespace opaline {
 struct Session::State {
   explicit State(StageCache* cache) : cache_(cache) {}
 
-  /// What loading a shape found; the key is its source's, of zeros where loading failed.
+  /// Cached result of loading a shape, with the key of its source; zeros if loading failed.
   struct ShapeMemory {
     std::string name;
     StageKey source;
     MeshMemory mesh;
   };
 
-  // What Session's functions of the same names do.
+  // Implementations of Session's functions of the same names.
   void anchor(Scene scene, Monitor* monitor);
   void edit(Scene scene);
   void prepare_rays();
@@ -58,7 +58,7 @@ struct Session::State {
   StageCache* cache_;
   Scene scene_;
   std::shared_ptr<const World> world_;
-  std::vector<StageKey> shape_keys_;  // what each mesh was loaded from
+  std::vector<StageKey> shape_keys_;  // source of each mesh
   std::vector<ShapeMemory> shape_memories_;
   std::vector<MeshKeys> mesh_keys_;
   Plan plan_;
@@ -70,11 +70,11 @@ struct Session::State {
   std::size_t pictures_ = 1;
   bool holds_view_ = false;
   HeldView view_;
-  std::shared_ptr<const BouncedPlaces> bounced_;  // of the last picture in which light bounced
+  std::shared_ptr<const BouncedPlaces> bounced_;  // places of the last image with bounces
   StageKey bounced_key_;
   StageKey view_key_, view_surfaces_key_, view_coats_key_, view_near_key_, view_samples_key_;
   std::vector<StageKey> view_light_keys_;
-  std::vector<GroupPlan> reference_;  ///< of the anchor; empty: none
+  std::vector<GroupPlan> reference_;  ///< plans of the anchor; empty: none
   bool edits_ = true, prepared_ = false, anchored_ = false, matches_new_ = false;
   SourceKeys source_keys_;
   WalkStore walk_store_;

@@ -13,7 +13,7 @@ namespace {
 
 struct AddSource {
   KeyBuilder& key;
-  const StageKey& contents;  // of a mesh file
+  const StageKey& contents;  // contents of a mesh file
   void operator()(const MeshFile& mesh) const {
     key.add(mesh.path).add(contents).add(mesh.part);
     key.add(mesh.fill_holes).add(mesh.fit_size.value_or(0));

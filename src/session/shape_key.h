@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a shape's mesh is loaded from.
+// Key of the source of a shape's mesh.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace opaline {
 /// the time of its last change, is another, or so young that a change could have left it as it is.
 class SourceKeys {
  public:
-  /// Of the file's bytes or the built-in shape's measures, and how UVs are asked for.
+  /// Key of the file's bytes or the built-in shape's measures, and how UVs are asked for.
   /// error Error{bad_input} naming a mesh file that is none
   StageKey key(const Shape& shape, MeshUvs uvs = MeshUvs::unread);
 
@@ -27,7 +27,7 @@ class SourceKeys {
   std::map<std::string, Hashed> hashed_;  ///< by path
 };
 
-/// Of the source and all that loading does with it.
+/// Shape key of the source and all that loading does with it.
 StageKey shape_key(const Shape& shape, const StageKey& source);
 
 }  // namespace opaline

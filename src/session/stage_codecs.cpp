@@ -247,7 +247,7 @@ std::optional<SurfaceCache> SurfaceCacheCodec::get(const BlobReader& entry) cons
 }
 
 namespace {
-constexpr std::uint64_t kAroundSets = 1 << 16;  // what HDF5 adds, generously
+constexpr std::uint64_t kAroundSets = 1 << 16;  // overhead of HDF5, upper estimate
 }
 
 std::uint64_t SamplesCodec::most_bytes() const {

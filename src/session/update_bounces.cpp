@@ -63,11 +63,11 @@ void Session::State::update_bounces(std::span<BodyStages> bodies) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     tint_bounced(bodies_[b], bounced[b]);
     method_of(bodies_[b].plan.method).add_bounced(bodies[b], bounced[b], wanted[b]);
-    note_decision(bodies_[b], "light of other surfaces gathered");
+    note_decision(bodies_[b], "light from other surfaces gathered");
   }
 }
 
-/// What is held, with what the bodies' samples as they are now gathered; null: nothing is to be held.
+/// Cached view with the gathering of the bodies' current samples; null: caching is off.
 HeldView* Session::State::held_view_of_samples(const PrecomputeInput& input) {
   HeldView* const view = held_view();
   if (view == nullptr) return nullptr;

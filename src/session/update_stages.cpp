@@ -32,7 +32,7 @@ std::size_t carried_count(const SampleOrigin& origin, const GroupPlan& plan) {
 
 bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings) {
   constexpr double kMore = 2;          // times the number, where the scene allows no more than that
-  constexpr double kFewer = 1.0 / 16;  // of the number: four times as far apart as asked for
+  constexpr double kFewer = 1.0 / 16;  // fraction of the number: spacing four times as large as requested
   if (!(origin.area > 0)) return false;
   const double count = double(origin.count), carried = count * (plan.area / origin.area);
   const bool by_number = origin.count_was_set || origin.count >= settings.max_samples;
@@ -84,7 +84,7 @@ void Session::State::cut_anew(Body& body, BodyKeys& known, const PrecomputeInput
   known.meshes = body.plan.meshes;
   known.samples_key = key;
   work_.samples_placed += body.surface.samples.size();
-  note_decision(body, fmt::format("{} samples placed anew", body.surface.samples.size()));
+  note_decision(body, fmt::format("{} samples placed", body.surface.samples.size()));
 }
 
 void Session::State::place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
@@ -117,8 +117,8 @@ void Session::State::place_anew(Body& body, BodyKeys& known, const PrecomputeInp
                     settings.samples.has_value(),
                     settings.sample_spacing};
   known.samples_key = key;
-  note_decision(body, fmt::format("{} samples {}", body.surface.samples.size(),
-                                  found ? "from the cache" : "placed anew"));
+  note_decision(
+      body, fmt::format("{} samples {}", body.surface.samples.size(), found ? "from the cache" : "placed"));
 }
 
 void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input,
@@ -140,8 +140,8 @@ void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeIn
     work_.samples_divided += carried.divided ? body.surface.samples.size() : 0;
     store_.keep(key, body.surface, codec);
     note_decision(body, carried.rigid
-                            ? fmt::format("{} samples went along", body.surface.samples.size())
-                            : fmt::format("{} samples went along, {} added, {} removed",
+                            ? fmt::format("{} samples moved with the surface", body.surface.samples.size())
+                            : fmt::format("{} samples moved with the surface, {} added, {} removed",
                                           body.surface.samples.size(), carried.added, carried.removed));
   }
   known.meshes = body.plan.meshes;
@@ -160,14 +160,14 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
     const auto old = std::ranges::find(known.light_keys, keys[l]);
     if (old != known.light_keys.end()) {
       transfers[l] = body.transfers[std::size_t(old - known.light_keys.begin())];
-      note_decision(body, fmt::format("light of {} reused", lights[l].name));
+      note_decision(body, fmt::format("irradiance of {} reused", lights[l].name));
     } else if (auto found = store_.find(keys[l], codec)) {
       transfers[l] = std::move(*found);
-      note_decision(body, fmt::format("light of {} from the cache", lights[l].name));
+      note_decision(body, fmt::format("irradiance of {} from the cache", lights[l].name));
     } else {
       missing.push_back(lights[l]);
       places.push_back(l);
-      note_decision(body, fmt::format("light of {} traced", lights[l].name));
+      note_decision(body, fmt::format("irradiance of {} traced", lights[l].name));
     }
   }
   if (!missing.empty()) {

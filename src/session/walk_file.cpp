@@ -34,7 +34,7 @@ std::string line_of(const StageKey& key, const SourceSums& source) {
 }
 
 Error not_walks(const std::string& path) {
-  return bad_file(path, "not the sums of random walks", "a file that --resume wrote");
+  return bad_file(path, "does not hold the sums of random walks", "a file written by --resume");
 }
 
 /// Takes the next of the arrays that lie one after the other.

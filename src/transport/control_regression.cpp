@@ -43,7 +43,7 @@ ControlRegression::ControlRegression(const std::vector<std::vector<double>>& con
 }
 
 void ControlRegression::take_in(Column column, bool is_balance) {
-  constexpr double kDependent = 1e-6;  // of its own spread
+  constexpr double kDependent = 1e-6;  // relative to its own spread
   constexpr double kMostOff = 5;       // standard errors of its mean
   constexpr double kFewBatches = 40;
   const double spread = norm(column.values);

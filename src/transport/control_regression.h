@@ -32,14 +32,14 @@ class ControlRegression {
 
  private:
   struct Column {
-    std::vector<double> values;  ///< of each batch, centred; orthonormal to the other columns
-    double mean = 0;             ///< of the same sum of controls, before it was centred
+    std::vector<double> values;  ///< values of each batch, centred; orthonormal to the other columns
+    double mean = 0;             ///< mean of the same sum of controls, before it was centred
   };
   void take_in(Column column, bool is_balance);
 
   std::vector<Column> columns_;
-  std::vector<double> shares_;    ///< of each batch in the mean
-  std::vector<double> leverage_;  ///< of each batch on its own prediction
+  std::vector<double> shares_;    ///< shares of each batch in the mean
+  std::vector<double> leverage_;  ///< leverage of each batch on its own prediction
 };
 
 }  // namespace opaline

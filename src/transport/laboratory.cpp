@@ -30,7 +30,7 @@ struct SlabBody {
 
 struct EnteredLight {
   double cosine = 1;  ///< outside
-  double weight = 1;  ///< of mean 1
+  double weight = 1;  ///< weight of mean 1
 };
 
 /// in    u uniform in [0, 1)

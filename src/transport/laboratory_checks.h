@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all experiments of the laboratory have in common.
+// Checks shared by all experiments of the laboratory.
 #pragma once
 
 #include <cstddef>

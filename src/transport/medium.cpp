@@ -11,7 +11,7 @@ namespace opaline {
 
 void check_value(bool is_good, const char* name, const char* expected, double value) {
   if (is_good) return;
-  throw Error(ErrorKind::bad_input, {}, 0, 0, fmt::format("'{}' is out of its range", name), expected,
+  throw Error(ErrorKind::bad_input, {}, 0, 0, fmt::format("'{}' is out of range", name), expected,
               fmt::format("{}", value));
 }
 
@@ -22,7 +22,7 @@ void check_medium(const HomogeneousMedium& medium) {
   coefficient("sigma_a", medium.sigma_a);
   coefficient("sigma_s", medium.sigma_s);
   check_value(std::abs(medium.g) < 1, "g", "a number between -1 and 1", medium.g);
-  check_value(medium.eta >= .1 && medium.eta <= 10, "eta", "a number from .1 to 10", medium.eta);
+  check_value(medium.eta >= .1 && medium.eta <= 10, "eta", "a number from 0.1 to 10", medium.eta);
 }
 
 }  // namespace opaline

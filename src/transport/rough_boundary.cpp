@@ -14,11 +14,11 @@ namespace {
 constexpr float kPi = std::numbers::pi_v<float>;
 // Against facets that are level in one direction, whose density has no bound.
 constexpr float kLeastAcross = 1e-3f;
-// Of roughness .001: what is smoother spreads light by less than single precision tells directions apart.
+// Least alpha of roughness .001: what is smoother spreads light by less than single precision tells directions apart.
 constexpr float kLeastAlpha = 1e-6f;
 constexpr std::size_t kSides = 9;
 
-/// Of a view by its tangent_share.
+/// Seen alpha of a view by its tangent_share.
 float seen_alpha(const FacetAlphas& alphas, float tangent_share) {
   const float along2 = alphas.along * alphas.along, across2 = alphas.across * alphas.across;
   return std::sqrt(across2 + (along2 - across2) * tangent_share);

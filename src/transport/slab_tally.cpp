@@ -17,7 +17,7 @@ class BatchMeans {
   BatchMeans(std::span<const SlabTally> batches, std::size_t walks_each)
       : batches_(batches), walks_each_(double(walks_each)), regression_(controls_of(batches)) {}
 
-  /// of(batch): the sum over its walks.
+  /// Function of(batch): the sum over its walks.
   template <class Of>
   WalkedValue mean(const Of& of) const {
     return regression_.mean(values_of(of));
@@ -67,7 +67,7 @@ using Face = FaceTally SlabTally::*;
 
 std::vector<WalkedRing> summarize_rings(const TallyBins& bins, const BatchMeans& means, Face face) {
   std::vector<WalkedRing> rings(bins.radii.size());
-  std::vector<double> inner(means.batches().size());  // of each batch: weight within the rings so far
+  std::vector<double> inner(means.batches().size());  // per batch: weight within the rings so far
   for (std::size_t i = 0; i < rings.size(); ++i) {
     WalkedRing& ring = rings[i];
     ring.low = i == 0 ? 0 : bins.radii[i - 1];

@@ -46,7 +46,7 @@ std::string allowed_path(const HttpRequest& request, const AccessRules& rules,
   const bool is_socket = beast::websocket::is_upgrade(request);
   if (is_socket && text_of(request[http::field::origin]) != "http://" + host)
     return refuse(http::status::forbidden, "foreign Origin");
-  if (is_socket != (path == "/socket")) return refuse(http::status::not_found, "no such path");
+  if (is_socket != (path == "/socket")) return refuse(http::status::not_found, "unknown path");
   return path;
 }
 
@@ -66,7 +66,7 @@ void HttpConnection::start() {
   http::async_read(stream_, in_, parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
     if (!error) return self->answer();
     if (error != http::error::end_of_stream && error != beast::error::timeout)
-      self->events_.refused("no HTTP request: " + error.message());
+      self->events_.refused("not an HTTP request: " + error.message());
   });
 }
 

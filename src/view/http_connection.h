@@ -14,7 +14,7 @@ namespace opaline {
 /// Who may ask for what.
 struct AccessRules {
   std::string token;               ///< first part of every path
-  std::vector<std::string> hosts;  ///< what the header Host may say; empty: anything
+  std::vector<std::string> hosts;  ///< allowed values of the header Host; empty: any
 };
 
 /// Why a request is refused; the status and a text.

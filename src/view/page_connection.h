@@ -21,7 +21,7 @@ namespace opaline {
 using SharedText = std::shared_ptr<const std::string>;
 using HttpRequest = boost::beast::http::request<boost::beast::http::empty_body>;
 
-/// What a page is to know, in the order in which it is sent. A text that waits is replaced by a newer one of its
+/// Messages for a page, in the order of sending. A newer text of a kind replaces a waiting one, so
 /// kind, so that no page makes the server store more than one of each.
 enum class PageText : std::size_t {
   schema,

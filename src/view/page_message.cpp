@@ -19,7 +19,7 @@ constexpr const char* kFile = "message";
 class MessageReader {
  public:
   explicit MessageReader(const Document& document) : document_(document) {
-    if (document.root.kind != Node::Kind::object) fail(document.root, "is no object", "{\"do\": ...}");
+    if (document.root.kind != Node::Kind::object) fail(document.root, "is not an object", "{\"do\": ...}");
   }
 
   [[noreturn]] void fail(const Node& node, const std::string& message, const std::string& expected) const {
@@ -37,7 +37,7 @@ class MessageReader {
   }
   std::uint64_t whole(std::string_view key) const {
     const Node& node = need(key, Node::Kind::number, "a whole number");
-    if (!node.whole) fail(node, "is no whole number", "a whole number");
+    if (!node.whole) fail(node, "is not a whole number", "a whole number");
     return *node.whole;
   }
   bool flag(std::string_view key) const { return need(key, Node::Kind::boolean, "true or false").boolean; }
@@ -55,7 +55,7 @@ SetValues read_values(const MessageReader& reader) {
   SetValues message{{}, reader.whole("stroke")};
   for (const Node& child : reader.need("values", Node::Kind::object, "{\"path\": value}").children) {
     if (child.key.empty() || child.key.find('=') != std::string::npos)
-      reader.fail(child, "is no path", "a path such as media.marble.specular_ior");
+      reader.fail(child, "is not a path", "a path such as media.marble.specular_ior");
     message.values.push_back({child.key, to_json(child)});
   }
   return message;
@@ -64,7 +64,7 @@ SetValues read_values(const MessageReader& reader) {
 Restore read_edits(const MessageReader& reader) {
   Restore message;
   for (const Node& child : reader.need("edits", Node::Kind::array, "[\"path=value\"]").children) {
-    if (child.kind != Node::Kind::string) reader.fail(child, "is no text", "path=value");
+    if (child.kind != Node::Kind::string) reader.fail(child, "is not a string", "path=value");
     message.edits.push_back(child.text);
   }
   return message;
@@ -73,7 +73,7 @@ Restore read_edits(const MessageReader& reader) {
 WorkBehind read_work(const MessageReader& reader) {
   const WorkBehind message{reader.flag("trade"), reader.text("reference")};
   if (!message.reference.empty() && message.reference != "direct" && message.reference != "volume")
-    reader.fail(reader.need("reference", Node::Kind::string, "a string"), "has no such choice",
+    reader.fail(reader.need("reference", Node::Kind::string, "a string"), "is not a valid choice",
                 "direct, volume or nothing");
   return message;
 }
@@ -81,7 +81,7 @@ WorkBehind read_work(const MessageReader& reader) {
 ChooseSettings read_choice(const MessageReader& reader) {
   const Node& node = reader.need("error", Node::Kind::number, "a number");
   if (!(node.number > 0 && node.number < 1))
-    reader.fail(node, "is out of range", "a share above 0 and below 1");
+    reader.fail(node, "is out of range", "a fraction above 0 and below 1");
   return {node.number};
 }
 

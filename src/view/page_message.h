@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a page may ask for, as data.
+// Requests of a page.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct RenderFile {
 struct ChooseLayer {
   std::string name;
 };
-/// What is to be worked out behind the final picture, for all pages.
+/// Background work behind the final image, for all pages.
 struct WorkBehind {
   bool trade = false;
   std::string reference;  ///< "direct", "volume" or none

@@ -48,7 +48,7 @@ void check_pixels(const Scene& scene) {
   const auto [x0, y0, x1, y1] = film.crop.value_or(std::array{0, 0, film.resolution[0], film.resolution[1]});
   const std::size_t pixels = std::size_t(x1 - x0) * std::size_t(y1 - y0);
   if (pixels > kMostViewPixels)
-    throw bad_file({}, "'film.resolution' is too large to be viewed",
+    throw bad_file({}, "'film.resolution' is too large for the view",
                    "at most " + std::to_string(kMostViewPixels) + " pixels, or a 'film.crop' of so many",
                    std::to_string(pixels));
 }
@@ -62,7 +62,7 @@ void check_opens_nothing(const std::string& file, const std::string& edit) {
            value.find('"' + std::string(key) + '"') != std::string::npos;
   });
   if (opens || value.find('\\') != std::string::npos)
-    throw bad_file(file, "a view does not change files", "those of the scene that was opened");
+    throw bad_file(file, "the view cannot change files", "the files of the opened scene");
 }
 
 bool is_keyed(const Json& value) {
@@ -89,12 +89,12 @@ const Json* value_at(const Json& scene, const std::string& path) {
   return value;
 }
 
-/// Whether a value of this path places the scene's camera.
+/// True if a value of this path places the scene's camera.
 bool moves_camera(const std::string& path) {
   return path == "camera" || path.starts_with("camera.position") || path.starts_with("camera.look_at");
 }
 
-/// Whether an override is of the path, or of what is in it.
+/// True if an override is of the path, or of what is in it.
 bool is_within(const std::string& override, const std::string& path) {
   return override.starts_with(path) && (override.at(path.size()) == '=' || override.at(path.size()) == '.');
 }
@@ -118,7 +118,7 @@ Scene SceneEdits::parsed(const Edits& edits, const Look& look) const {
   for (const std::string& edit : edits) check_opens_nothing(file_, edit);
   Scene scene = read(edits, look, frame_);
   if (mesh_files(scene) != mesh_files(scene_))
-    throw bad_file(file_, "a view does not change mesh files", "those of the scene that was opened");
+    throw bad_file(file_, "the view cannot change mesh files", "the files of the opened scene");
   return scene;
 }
 

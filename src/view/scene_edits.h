@@ -81,7 +81,7 @@ class SceneEdits {
   Edits given_;
   std::vector<Edits> history_{Edits{}};
   std::size_t at_ = 0;
-  std::uint64_t stroke_ = 0;  // of the last step; 0: it is closed
+  std::uint64_t stroke_ = 0;  // stroke of the last step; 0: closed
   std::uint32_t revision_ = 1;
   std::vector<int> frames_;
   int frame_ = 1;

@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kRest{400};  // a hand that has stopped
 constexpr double kBetween = 1.5;                 // s of work between two pictures of a reference
 constexpr std::size_t kMostEntries = 1 << 16;    // then a reference is done
-constexpr double kFirstNoise = 1, kLessNoise = .8, kLeastNoise = .005;  // of walks
+constexpr double kFirstNoise = 1, kLessNoise = .8, kLeastNoise = .005;  // relative noise of random walks
 
 /// The scene without what a point of the trade sets, and what no error depends on.
 Scene without_trade(Scene scene) {
@@ -32,7 +32,7 @@ Scene without_trade(Scene scene) {
   return scene;
 }
 
-/// Whether the scene has the point's settings: lengths go through the scene's unit and back.
+/// True if the scene has the point's settings: lengths go through the scene's unit and back.
 bool is_at(const Settings& settings, const TradePoint& point) {
   const auto is_near = [](double a, double b) { return std::abs(a - b) <= 1e-6 * std::abs(b); };
   if (settings.method != point.method) return false;
@@ -135,7 +135,7 @@ void ViewBackground::choose(const Job& job, double target_error) {
   const bool is_volume = settings.method == Method::volume_diffusion;
   if (!is_volume && (settings.method != Method::hierarchical || settings.evaluator == EvaluatorKind::classic))
     throw Error(ErrorKind::bad_input, {}, 0, 0,
-                "settings for an error are how light under the surface is summed",
+                "a target error requires hierarchical evaluation or volume_diffusion",
                 "the method volume_diffusion, or hierarchical with an evaluator other than classic");
   const auto reach = is_volume ? reach_volume_error : reach_error;
   ChosenSettings chosen{job.shown->revision, reach(*session_, job.scene, target_error, &monitor_), {}};
@@ -147,7 +147,7 @@ void ViewBackground::choose(const Job& job, double target_error) {
 
 // ---- the trade ----------------------------------------------------------------------------------------------
 
-/// Whether the points are those of the scene: then it has taken one of them, or is back where it was.
+/// True if the points are those of the scene: then it has taken one of them, or is back where it was.
 bool ViewBackground::keeps_trade(const Job& job) const {
   if (!trade_scene_ || without_trade(*trade_scene_) != without_trade(job.scene)) return false;
   return trade_scene_->settings == job.scene.settings ||

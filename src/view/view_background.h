@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is worked out behind a final picture while nobody changes anything: settings for an error, the trade of error
+// Background work behind a final image without edits: settings for an error, the trade of error
 // against time, and a reference that goes on refining.
 #pragma once
 
@@ -21,7 +21,7 @@
 
 namespace opaline {
 
-/// What is asked for; nothing at first, and then nothing is done.
+/// Requested background work; initially none.
 struct BackgroundWork {
   bool trade = false;
   std::optional<Method> reference;     ///< direct or volume
@@ -39,7 +39,7 @@ struct ReferenceState {
       0;  ///< error_beyond_noise of the final picture's diffuse light, over translucent pixels, or all where the method tells none
 };
 
-/// Of a scene: what is known of its trade.
+/// State of the error-against-time table of a scene.
 struct TradeState {
   std::uint32_t revision = 0;
   double mm_per_unit = 1;
@@ -50,7 +50,7 @@ struct TradeState {
 
 /// Settings for an error.
 struct ChosenSettings {
-  std::uint32_t revision = 0;  ///< of the scene that they are for
+  std::uint32_t revision = 0;  ///< revision of their scene
   TargetError outcome;
   std::vector<std::string> overrides;  ///< as `--set` takes them
 };
@@ -99,14 +99,14 @@ class ViewBackground {
   void publish(const Job& job, RenderResult result, const Layer& variance, ReferenceState state);
 
   BackgroundEvents events_;
-  // Of the thread alone.
+  // Used by the thread only.
   std::unique_ptr<Session> session_;
   std::optional<Scene> trade_scene_;  ///< that the points are of, whole
   std::vector<TradePoint> points_;
-  DirectState direct_;  ///< of the scene of this revision: other wishes do not start it anew
+  DirectState direct_;  ///< sums for the scene of this revision; other requests keep them
   std::uint32_t direct_revision_ = 0;
   Monitor monitor_;
-  std::mutex mutex_;  // of the next three
+  std::mutex mutex_;  // guards the next three
   BackgroundWork asked_;
   std::optional<Job> job_;
   bool stopped_ = false, changed_ = false;

@@ -51,7 +51,7 @@ std::string_view name_of(ValueType type) {
 
 /// Ends of a slider: those of the range, or a thousandth inside where the range is without them.
 Json slider_json(const Range& range) {
-  constexpr double kWidest = 1e6;  // of what a slider is for
+  constexpr double kWidest = 1e6;  // maximum range of a slider
   const double width = range.high - range.low, inside = width < kWidest ? 1e-3 * width : 0;
   return {range.low + (range.without_low ? inside : 0), range.high - (range.without_high ? inside : 0)};
 }
@@ -81,7 +81,7 @@ Json preset_json(std::string_view name) {
 }
 
 Json group_json(const Scene& scene, const GroupPlan& group) {
-  std::string text = fmt::format("{} in {}: {:.4g} mm², {}", group.name, scene.media[group.medium].name,
+  std::string text = fmt::format("{} of {}: {:.4g} mm², {}", group.name, scene.media[group.medium].name,
                                  group.area, mean_free_path_text(group));
   if (method_of(scene.settings.method).needs_samples()) text += "; " + samples_text(group);
   text += "; profile " + model_text(group.model);
@@ -197,10 +197,10 @@ std::string told_text(bool good, const std::string& text) {
 
 std::string told_choice(double target, const TargetError& chosen) {
   if (!chosen.sees_translucent)
-    return told_text(false, "nothing translucent is seen: there is no error to choose for");
-  return told_text(chosen.reached, fmt::format("{:.3g} %: {} samples are predicted to be {} off{}",
-                                               100 * target, chosen.samples, short_percent(chosen.predicted),
-                                               chosen.reached ? "" : ", the least that can be had"));
+    return told_text(false, "no translucent object is visible, so a target error has no effect");
+  return told_text(chosen.reached, fmt::format("{:.3g} %: {} samples, predicted error {}{}", 100 * target,
+                                               chosen.samples, short_percent(chosen.predicted),
+                                               chosen.reached ? "" : ", the least possible"));
 }
 
 }  // namespace opaline

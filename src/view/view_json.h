@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the server tells its pages, each a JSON text with the member "is".
+// Messages to the pages, each a JSON text with the member "is".
 #pragma once
 
 #include <cstdint>

@@ -59,8 +59,8 @@ double pixels_of(const Film& film) {
 void check_memory(const Plan& plan) {
   const std::size_t taken = resident_memory(), left = available_memory();
   if (plan.bytes > taken && plan.bytes - taken > left)
-    throw run_failed({}, "out of memory: the picture needs about " + short_bytes(plan.bytes) +
-                             ", and there are " + short_bytes(left + taken));
+    throw run_failed({}, "out of memory: the image needs about " + short_bytes(plan.bytes) +
+                             ", available: " + short_bytes(left + taken));
 }
 
 ViewRenderer::ViewRenderer(ViewEvents events)

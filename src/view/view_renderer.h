@@ -31,14 +31,14 @@ struct ViewPicture {
   PictureStep step = PictureStep::moving;
   double seconds = 0;                          ///< from the change to this picture
   Image image;                                 ///< R G B A first
-  std::vector<std::uint8_t> translucent = {};  ///< of a final picture, as in RenderResult; empty: not known
+  std::vector<std::uint8_t> translucent = {};  ///< mask of a final image, as in RenderResult; empty: unknown
 };
 
-/// What is known once a final picture is there.
+/// Report on a final image.
 struct ViewReport {
   std::uint32_t revision = 0;
   double error = 0;                 ///< estimated_relative_error, or `direct`'s noise
-  std::vector<StageCost> costs;     ///< of this change
+  std::vector<StageCost> costs;     ///< costs of this change
   std::vector<std::string> reused;  ///< Session::decisions
   std::vector<std::string> warnings;
 };
@@ -82,9 +82,9 @@ class ViewRenderer {
     std::uint32_t revision = 0;
     Clock::time_point since;
   };
-  /// What a scene differs by from the one before decides how much is computed again.
+  /// Kind of a change; it decides which stages are computed again.
   enum Change : std::size_t { camera, lights, media, anything, kChanges };
-  /// Of the last such change, s.
+  /// Cost of the last change of each kind, s.
   struct Spent {
     double prepare = std::numeric_limits<double>::infinity();
     double final = std::numeric_limits<double>::infinity();
@@ -111,10 +111,10 @@ class ViewRenderer {
   std::shared_ptr<const ViewPicture> final_;  ///< the last one, of final_scene_
   std::optional<Scene> final_scene_;
   std::array<Spent, kChanges> spent_;
-  double seconds_per_pixel_ = 2e-6;  // of drafts
+  double seconds_per_pixel_ = 2e-6;  // cost of drafts
   Monitor monitor_;
-  Monitor brief_;     ///< of work that follows the hand
-  std::mutex mutex_;  // of the next four
+  Monitor brief_;     ///< monitor of interactive work
+  std::mutex mutex_;  // guards the next four
   std::optional<Wanted> wanted_;
   Clock::time_point drawing_since_;
   bool stopped_ = false, is_drawing_ = false;

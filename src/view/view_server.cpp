@@ -50,12 +50,12 @@ std::string path_beside(const std::string& scene, const std::string& name,
   const bool is_plain = file.filename() == file && !name.starts_with('.') && name.size() <= kLongestName &&
                         std::ranges::none_of(name, [](char c) { return (unsigned char)(c) < ' '; });
   if (!is_plain || std::ranges::find(extensions, file.extension().string()) == extensions.end())
-    throw bad_file("", "this is no name for the file",
+    throw bad_file("", "invalid file name",
                    fmt::format("a name without a folder that ends in {}", fmt::join(extensions, " or ")),
                    "'" + printable(name) + "'");
   const std::string path = (std::filesystem::path(scene).parent_path() / file).string();
   if (std::filesystem::exists(std::filesystem::symlink_status(path)) && !written.contains(path))
-    throw bad_file(path, "is there already, and not from this view", "another name");
+    throw bad_file(path, "exists, and was not written by this view", "another name");
   return path;
 }
 
@@ -95,7 +95,7 @@ struct ViewServer::State {
   SharedText schema;
   std::map<PageText, SharedText> texts;  ///< the newest of each kind
   std::shared_ptr<const ViewPicture> picture, reference;
-  std::map<std::string, PackedFrame> packed;  ///< of `picture`, by layer
+  std::map<std::string, PackedFrame> packed;  ///< packed frames of `picture`, by layer
   std::uint32_t frames = 0;
   std::set<PageConnection*> pages;
   std::shared_ptr<std::size_t> connections = std::make_shared<std::size_t>(0);
@@ -105,7 +105,7 @@ struct ViewServer::State {
   std::jthread file_thread;
   std::unique_ptr<ViewRenderer> renderer;
   std::unique_ptr<ViewBackground> background;
-  BackgroundWork asked;  ///< of it
+  BackgroundWork asked;  ///< requested background work
 };
 
 ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, ViewHooks view_hooks)
@@ -253,7 +253,7 @@ void ViewServer::State::work_behind(const WorkBehind& wanted) {
   tell(PageText::behind, behind_text(wanted));
 }
 
-/// What was chosen is an edit as any other, unless the scene is another by now: then it is chosen again.
+/// Applies chosen settings as an edit, unless the scene has changed meanwhile: then they are chosen again.
 void ViewServer::State::take(const ChosenSettings& chosen) {
   if (chosen.revision != edits.revision() || !asked.target_error) return;
   const double target = *std::exchange(asked.target_error, {});
@@ -281,9 +281,9 @@ void ViewServer::State::after_edit() {
   if (!std::exchange(shows_progress, true)) show_progress();
 }
 
-/// What files hold where that is not what the view shows.
+/// Note on written files that differ from the view.
 std::string ViewServer::State::by_scene_camera() const {
-  return edits.own_camera() ? ", by the scene's camera, not the view's" : "";
+  return edits.own_camera() ? ", with the scene camera" : "";
 }
 
 void ViewServer::State::save(PageConnection& page, const std::string& name) {
@@ -301,7 +301,7 @@ void ViewServer::State::render_file(PageConnection& page, const std::string& nam
   const std::string path =
       path_beside(edits.file(), frame ? with_frame(numbered, *frame) : name, {".exr", ".png"}, written);
   const std::string pattern = frame ? (std::filesystem::path(path).parent_path() / numbered).string() : path;
-  if (renders_file) throw bad_file(path, "another file is being rendered", "one after the other");
+  if (renders_file) throw bad_file(path, "another file is being rendered", "one render at a time");
   file_thread = std::jthread([this, path, pattern, frame, overrides = edits.overrides()] {
     std::string failure;
     try {

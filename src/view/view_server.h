@@ -20,7 +20,7 @@ struct ViewOptions {
   std::string token;                  ///< empty: a random one
 };
 
-/// What the server leaves to its caller.
+/// Tasks that the server leaves to its caller.
 struct ViewHooks {
   /// A request or page that is refused, and why; one line. On the thread of `run`.
   std::function<void(const std::string& text)> refused;

@@ -46,7 +46,7 @@ BodyInside::BodyInside(const RayScene& rays, const World& world, std::span<const
 // Meshes whose boxes meet may lie within each other. From some thousand triangles straight into the body: a sheet that is
 // met from outside lies within.
 bool BodyInside::find_overlaps(const World& world, std::span<const std::uint32_t> meshes) const {
-  constexpr std::size_t kTriangles = 4096;  // of a mesh
+  constexpr std::size_t kTriangles = 4096;  // maximum triangles of a mesh
   std::vector<Bounds> boxes;
   for (const std::uint32_t m : meshes) {
     const Bounds box = bounds(world.meshes[m]);

@@ -35,7 +35,7 @@ class BodyInside {
   BodyInside(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes);
 
   const Bounds& box() const { return box_; }
-  /// Whether some of the body's sheets lie inside of it.
+  /// True if some of the body's sheets lie inside of it.
   bool overlaps() const { return overlaps_; }
 
   /// The first boundary within `reach` along a ray from inside.

@@ -11,8 +11,8 @@ constexpr double kReach = 2;         // a boundary beyond is met by chance, not 
 constexpr double kDeep = .5;         // where no surface is nearer than that flights go without a ray
 constexpr double kVoxel = 1;         // edge of FreeDistance's voxels, in the channel where it is least
 constexpr double kMediumVoxel = .5;  // edge of MediumVoxels' in the mean medium
-constexpr double kLeast = .2;        // of its first weight: below that roulette ends a walk
-constexpr double kOutside = .5;      // of its first weight: less than that outside is rounded by roulette
+constexpr double kLeast = .2;        // Russian roulette below this fraction of the first weight
+constexpr double kOutside = .5;      // the same for a walk that leaves
 constexpr std::uint64_t kMostFlights = 1'000'000;
 constexpr int kMostBounces = 16;  // outside, from one place of the body to another
 
@@ -136,7 +136,7 @@ class BodyWalks::Walker {
     return numbers_.next() * sigma_t_ < double(local.sigma_t);
   }
 
-  // Whether the flight ends in a collision. Free paths have no memory: one that is longer than `most` goes on from
+  // True if the flight ends in a collision. Free paths have no memory: one that is longer than `most` goes on from
   // there.
   bool fly_free(WalkState& state, double most) {
     const double distance = free_path(numbers_) / sigma_t_;

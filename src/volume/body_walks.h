@@ -27,7 +27,7 @@ struct WalkJob {
   std::uint64_t seed = 0;
 };
 
-/// What walks brought.
+/// Results of random walks.
 struct WalkCounts {
   std::vector<float> flux;  ///< one a sample; times area_of_start() it is W
   double entered = 0, lost = 0, stopped = 0;
@@ -53,7 +53,7 @@ class BodyWalks {
 
  private:
   class Walker;
-  /// Of one channel; where the medium varies, that of the densest place.
+  /// Medium of one channel; where the medium varies, that of the densest place.
   const HomogeneousMedium& medium(std::size_t channel) const {
     return voxels_ ? voxels_->densest(channel) : input_.media[channel];
   }

@@ -23,8 +23,8 @@ constexpr std::uint32_t kNone = ~0u;
 struct ElementSum {
   Vec3d position{}, normal{};  // times area
   double area = 0;
-  std::uint32_t next = kNone;  // of the same cell
-  bool faces_back = false;     // of another element of the cell
+  std::uint32_t next = kNone;  // next element of the same cell
+  bool faces_back = false;     // true if it faces another element of the cell
 };
 
 /// The elements of each cell of a lattice.
@@ -56,7 +56,7 @@ class ElementTable {
     return found;
   }
 
-  /// Whether another sheet in the element's cell faces the other way: a thin part, or a fold.
+  /// True if another sheet in the element's cell faces the other way: a thin part, or a fold.
   bool faces_back(std::uint32_t element) const { return sums_[element].faces_back; }
 
   std::vector<BoundaryElement> elements() const {
@@ -69,7 +69,7 @@ class ElementTable {
 
  private:
   bool is_of(const ElementSum& sum, const Vec3d& position, const Vec3d& normal) const {
-    constexpr double kLeastAgreement = .9;  // of normals in one element
+    constexpr double kLeastAgreement = .9;  // least agreement of normals in one element
     constexpr double kFarthest = .3;        // cells, above or below it
     const double along = length(sum.normal);
     if (dot(sum.normal, normal) < kLeastAgreement * along) return false;
@@ -134,7 +134,7 @@ void cut(Polygon polygon, std::size_t axis, const Found& found) {
   found(polygon);
 }
 
-/// What a triangle has of an element.
+/// Part of a triangle in an element.
 struct Part {
   Vec3f position;  // mean
   std::uint32_t mesh, triangle, element;
@@ -198,7 +198,7 @@ class Cutter {
   }
 
  private:
-  static constexpr double kLeastArea = 1e-9;  // of a cell's face
+  static constexpr double kLeastArea = 1e-9;  // least area of a cell's face
 
   void add(const Polygon& part, const Vec3d& normal, std::uint32_t mesh, std::uint32_t triangle) {
     Vec3d sum{};
@@ -265,7 +265,7 @@ class Cutter {
   }
 
   void add_pieces(const Polygon& part, const Vec3d& normal, std::uint32_t mesh, std::uint32_t triangle) {
-    constexpr int kSplit = 3;  // of each side of a triangle of the part
+    constexpr int kSplit = 3;  // subdivision of each side of a triangle
     for (std::size_t i = 2; i < part.count; ++i) {
       const Vec3d &a = part.corners[0], b = part.corners[i - 1] - a, c = part.corners[i] - a;
       const double area = .5 * dot(cross(b, c), normal) / (kSplit * kSplit);
@@ -291,8 +291,8 @@ class Cutter {
     parts_.push_back({Vec3f(position), mesh, triangle, element, true, is_turned});
   }
 
-  // Of each element the part next to its middle; the light that enters is found by the triangle's normal, so one that is
-  // turned stands for the element only where there is no other.
+  // Part of each element nearest to its centre; transmitted light uses the triangle's normal, so a flipped triangle
+  // represents the element only without an alternative.
   std::vector<const Part*> middles_of(std::span<const BoundaryElement> elements) const {
     std::vector<const Part*> middles(elements.size());
     std::vector<float> distances(elements.size(), INFINITY);

@@ -16,10 +16,10 @@ struct CalibratedMedium {
   /// calibrated: a medium of the same eta and about the same albedo
   CalibratedMedium(const HomogeneousMedium& medium, const CalibratedMedium& calibrated);
 
-  /// What leaves per unit area, over the fluence at a depth under the boundary.
+  /// Exitance over the fluence at a depth under the boundary.
   double conductance(double depth) const { return 1 / (2 * mismatch + depth / diffusion); }
 
-  /// What a half space returns of light that entered with this cosine, over what diffusion says.
+  /// Albedo of a half space for light that enters at this cosine, over that of diffusion.
   double entry_factor(double cos_inside) const;
 
   double eta = 1;

@@ -7,7 +7,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kLeast = .001;  // of a normal's component: it divides, three times
+constexpr double kLeast = .001;  // minimum component of a normal; it is a divisor, three times
 
 }  // namespace
 

@@ -10,8 +10,8 @@
 namespace opaline {
 namespace {
 
-constexpr double kTolerance = 1e-3;  // of the solver; moves the bunny's picture by .03 %
-constexpr double kRough = 1e-2;      // of the fluence that tells the oblique flow
+constexpr double kTolerance = 1e-3;  // tolerance of the solver; moves the bunny's picture by .03 %
+constexpr double kRough = 1e-2;      // tolerance of the fluence for the oblique flow
 
 DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice,
                         const Boundary& boundary) {
@@ -25,7 +25,7 @@ DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshe
 }  // namespace
 
 Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell) {
-  constexpr int kMultiple = 2 * DiffusionGrid::kLargest;  // of cells twice as large, too
+  constexpr int kMultiple = 2 * DiffusionGrid::kLargest;  // multiple that allows cells of twice the size
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (const std::uint32_t m : meshes)
     for (const Vec3d& p : world.meshes[m].positions) {

@@ -16,7 +16,7 @@ namespace opaline {
 /// cell: their edge, world units
 Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell);
 
-/// Of what a body is made.
+/// Media of a body.
 struct BodyMedia {
   std::array<std::array<CalibratedMedium, 3>, 1> throughout;
   MediaInside inside;                          ///< instead; empty: one medium throughout

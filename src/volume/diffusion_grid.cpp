@@ -11,9 +11,9 @@
 namespace opaline {
 namespace {
 
-constexpr double kLeastVolume = .05;                    // of a lattice cell: what is less belongs to no cell
-constexpr double kLeastDistance = .25;                  // of two centres
-constexpr float kLeastAcross = 1e-6f;                   // squared; less is rounding
+constexpr double kLeastVolume = .05;    // least volume of a lattice cell: what is less belongs to no cell
+constexpr double kLeastDistance = .25;  // least distance of two centres
+constexpr float kLeastAcross = 1e-6f;   // squared; less is rounding
 constexpr std::array<double, 3> kThirds{.25, .5, .25};  // trapezoids through three lines
 
 /// A flag for each cell of one size.
@@ -82,7 +82,7 @@ struct DiffusionGrid::Builder {
     for (Flags& level : levels) level = level.widened();
   }
 
-  /// Of the surface in a cell of size 1.
+  /// Plane of the surface in a cell of size 1.
   struct Plane {
     Vec3d normal{};     // outward
     double height = 0;  // over the cell's middle
@@ -114,7 +114,7 @@ struct DiffusionGrid::Builder {
         const int column = 2 * i + x, row = 2 * j + y;
         const double covered = lines.covered(column, row, k, k + 1);
         if (!(covered > 0)) continue;
-        // What is covered lies against one end of the cell or, where it is whole, in its middle.
+        // The covered part touches one end of the cell or, if whole, its centre.
         const bool low = lines.contains(column, row, k);
         const bool high = lines.contains(column, row, k + 1);
         const double z = low == high ? .5 : low ? .5 * covered : 1 - .5 * covered;
@@ -149,7 +149,7 @@ struct DiffusionGrid::Builder {
   // Lines tell how much of a cell is inside to a quarter where the surface runs along them. Where it is one plane, its
   // facets tell it exactly.
   void weigh_by_planes(std::span<const Facet> surface) {
-    constexpr double kLeastAgreement = .97;  // of the facets' normals
+    constexpr double kLeastAgreement = .97;  // least agreement of the facets' normals
     std::vector<Plane> sums(grid.cells_.size());
     std::vector<double> areas(grid.cells_.size());
     for (const auto& [position, normal, area] : surface) {
@@ -172,14 +172,14 @@ struct DiffusionGrid::Builder {
     }
   }
 
-  // Of a cell of size 1.
+  // Middle of a cell of size 1.
   Vec3d middle_of(std::uint32_t cell) const {
     const auto& [i, j, k] = corners[cell];
     return {i + .5, j + .5, k + .5};
   }
   int size_of(std::uint32_t cell) const { return grid.cells_[cell].size; }
 
-  // Of a lattice face between two cells, how much is inside: behind the planes of both, if they have one.
+  // Aperture of a lattice face between two cells, how much is inside: behind the planes of both, if they have one.
   // in    corner: of the lattice cell above the face
   double aperture(std::uint32_t below, std::uint32_t above, const std::array<int, 3>& corner,
                   std::size_t axis) const {
@@ -195,7 +195,7 @@ struct DiffusionGrid::Builder {
     return aperture_by_lines(corner[0], corner[1], corner[2], int(axis));
   }
 
-  // Of the lattice face below (i, j, k) along an axis, how much is inside.
+  // Fraction of the lattice face below (i, j, k) along an axis that is inside.
   double aperture_by_lines(int i, int j, int k, int axis) const {
     double sum = 0;
     for (std::size_t n = 0; n < 3; ++n) {
@@ -297,10 +297,10 @@ struct DiffusionGrid::Builder {
   const CancelCheck check;
   DiffusionGrid& grid;
   const InsideLines& lines;
-  std::vector<Flags> levels;                 // of sizes 2, 4, 8: what must be divided
+  std::vector<Flags> levels;                 // cells of sizes 2, 4, 8 to divide
   std::size_t brick = 0;                     // under way
-  std::vector<std::array<int, 3>> corners;   // of the cells
-  std::vector<std::optional<Plane>> planes;  // of the cells that have just one
+  std::vector<std::array<int, 3>> corners;   // corners of the cells
+  std::vector<std::optional<Plane>> planes;  // planes of the cells that have just one
 };
 
 DiffusionGrid::DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Facet> surface)

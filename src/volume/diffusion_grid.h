@@ -19,9 +19,9 @@ class DiffusionGrid {
   static constexpr int kLargest = 8;
 
   struct Cell {
-    Vec3f centre;      ///< of what is inside, lattice units, as all here
+    Vec3f centre;      ///< centre of what is inside, lattice units, as all here
     float volume = 0;  ///< that loses light as its centre does
-    int size = 1;      ///< of its edge
+    int size = 1;      ///< size of its edge
   };
   /// To a neighbour. Both cells have one.
   struct Link {
@@ -36,7 +36,7 @@ class DiffusionGrid {
     Vec3f across;  ///< from a's centre to b's, along their common face
   };
 
-  /// Of the surface in one cell: its middle, its normal, outward, and its area, of any unit.
+  /// Facet of the surface in one cell: its middle, its normal, outward, and its area, of any unit.
   struct Facet {
     Vec3f position, normal;
     float area;
@@ -50,7 +50,7 @@ class DiffusionGrid {
   std::span<const Link> links(std::size_t cell) const {
     return std::span(links_).subspan(first_link_[cell], first_link_[cell + 1] - first_link_[cell]);
   }
-  /// Of a cell's links among all; of the number of cells their end.
+  /// Index of the first link of a cell; for the number of cells, the end of all links.
   std::size_t first_link(std::size_t cell) const { return first_link_[cell]; }
   std::span<const ObliqueLink> oblique() const { return oblique_; }
   /// The cell around a point; kNone outside the body.

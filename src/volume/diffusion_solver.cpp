@@ -167,7 +167,7 @@ class ConjugateGradients {
   Channels diffusivity_;
   std::vector<Channels> conductances_;  // one a link of the grid, or none
   std::vector<Channels> x_, residual_, inverse_, direction_, product_;
-  Sums squared_{}, source_{};  // of the residual and of the source
+  Sums squared_{}, source_{};  // norms of the residual and of the source
 };
 
 }  // namespace

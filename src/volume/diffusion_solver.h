@@ -24,7 +24,7 @@ struct DiffusionProblem {
   std::vector<Channels> source;              ///< one a cell
   std::vector<Channels> diffusivities = {};  ///< one a cell, > 0; empty: `diffusivity` everywhere
 
-  /// Of what lies between two cells' centres: half of it is the one's and half the other's, by their size.
+  /// Coefficient between two cells' centres: half of the distance belongs to each, by their sizes.
   Channels between(std::uint32_t a, std::uint32_t b) const;
 };
 

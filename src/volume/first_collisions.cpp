@@ -14,9 +14,9 @@
 namespace opaline {
 namespace {
 
-constexpr double kLeastCosine = 1e-3;   // of light inside: against division by 0 where eta < 1
+constexpr double kLeastCosine = 1e-3;   // least cosine of light inside: against division by 0 where eta < 1
 constexpr double kSpread = 1.2;         // cells around an exit
-constexpr double kLeastAgreement = .5;  // of normals of one sheet
+constexpr double kLeastAgreement = .5;  // least agreement of normals of one sheet
 constexpr double kFarthest = 5;         // free paths; what goes farther ends there
 constexpr double kStep = .4;            // cells
 
@@ -27,7 +27,7 @@ double golden_point(std::size_t i) {
 }
 
 constexpr std::size_t kDirections = 8;  // towards what is no point
-constexpr std::size_t kAllAround = 3;   // of light from all sides; neighbours' are others
+constexpr std::size_t kAllAround = 3;   // directions of uniform light; neighbours use others
 
 /// Directions that light comes from, each with its share of what enters there.
 struct Directions {
@@ -122,7 +122,7 @@ class Depositor {
   /// Where a way leaves the body.
   struct Exit {
     double length;
-    std::uint32_t element;  // of the boundary, nearest
+    std::uint32_t element;  // nearest boundary element
     std::uint32_t cell;     // the last
   };
   Vec3d at(const Way& way, double length) const {
@@ -133,13 +133,13 @@ class Depositor {
     double length = 0;
     std::array<double, 3> share{}, middle{}, scattered{};  // scattered: of what collides
   };
-  // Of what collides. In one medium throughout what is absorbed is taken off at the entry.
+  // Scattered fraction of a collision. In a homogeneous medium, absorption is applied at the entry instead.
   double scattered_of(const CalibratedMedium& medium) const { return space_.varies() ? medium.albedo : 1; }
   Stretch stretch_of(double length, std::uint32_t cell) const;
   std::optional<Exit> exit_at(const Way& way, double length, double least, std::uint32_t last,
                               std::uint32_t next) const;
   std::optional<Exit> collide(const Way& way, double start, std::uint32_t first, Rgb& flux);
-  /// What collides at a place of its own in each channel; they lie near each other.
+  /// Collisions of the three channels at separate, close positions.
   struct Collided {
     std::array<Vec3d, 3> places;
     Rgb flux{};
@@ -156,7 +156,7 @@ class Depositor {
     std::uint32_t element;
     double per_area;
   };
-  std::vector<Share> spread_;  // of the exit at hand
+  std::vector<Share> spread_;  // spread of the current exit
   double longest_ = 0;         // free path
   Stretch step_;               // in the smallest cells, where the medium is the same in all
   FirstCollisions result_;
@@ -229,7 +229,7 @@ std::optional<Depositor::Exit> Depositor::collide(const Way& way, double start, 
   return {};
 }
 
-// What collides on a stretch, each channel at its mean place.
+// Deposits the collisions on a segment, each channel at its mean position.
 void Depositor::deposit(const Way& way, double start, const Stretch& stretch, std::uint32_t fallback,
                         Rgb& flux) {
   Collided collided;
@@ -269,7 +269,7 @@ void Depositor::deposit(const Collided& collided, const Vec3d& about, std::uint3
   for (std::size_t c = 0; c < 3; ++c) result_.source[home].c[c] += float(left[c]);
 }
 
-// Of one channel.
+// Deposits one channel.
 void Depositor::deposit(const Vec3d& place, std::uint32_t fallback, std::size_t channel, double flux) {
   Collided collided{{place, place, place}, {}};
   collided.flux[channel] = flux;
@@ -301,7 +301,7 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
   for (Share& share : spread_) share.per_area /= sum;
 }
 
-// What the boundary reflects collides on its further way, which is taken to be inside.
+// Reflected light collides on its further path, which is assumed to be inside.
 void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, const Rgb& flux) {
   const Vec3d normal(space_.boundary.elements[exit.element].normal), place = at(way, exit.length);
   const double reflectance =
@@ -353,7 +353,7 @@ void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) 
   leave(way, *exit, i, arriving);
 }
 
-// What enters at each element, W: all that enters at the samples.
+// Light that enters at each element, W: the sum over the samples.
 template <class OfSample>
 std::vector<Rgb> entering_flux(const DiffusionSpace& space, const OfSample& entering) {
   std::vector<Rgb> flux(space.boundary.elements.size());

@@ -16,7 +16,7 @@
 
 namespace opaline {
 
-/// What enters at the samples, of lights or from all around.
+/// Transmitted light at the samples, from lights or uniform.
 struct EnteringLight {
   std::span<const Light> lights;             ///< recentred
   std::span<const LightTransfer> transfers;  ///< one a light
@@ -27,7 +27,7 @@ struct EnteringLight {
 /// A boundary element's cell.
 struct AttachedElement {
   std::uint32_t cell = DiffusionGrid::kNone;
-  double depth = 0;  ///< of the cell's centre under it, world units
+  double depth = 0;  ///< depth of the cell's centre under it, world units
 };
 
 /// A body's cells and boundary.

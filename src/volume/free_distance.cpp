@@ -38,7 +38,7 @@ double share_inside(const Bounds& box, const Vec3d& a, const Vec3d& b, const Vec
   return share;
 }
 
-/// Whether the plane of a triangle may cross a box: (middle, half edge), normal of any length.
+/// True if the plane of a triangle may cross a box: (middle, half edge), normal of any length.
 bool crosses(const Vec3d& corner, const Vec3d& normal, const Vec3d& middle, double half) {
   const double reach = half * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
   return std::abs(dot(normal, middle - corner)) <= reach * (1 + 1e-9);

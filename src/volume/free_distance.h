@@ -44,7 +44,7 @@ class FreeDistance {
   /// To any side.
   double around(const Place& place) const { return distances_[steps_[place.voxel]]; }
 
-  /// Whether it is at least the planes' reach in this direction.
+  /// True if it is at least the planes' reach in this direction.
   bool is_free(const Place& place, const Vec3d& direction) const {
     const Plane& plane = planes_[place.voxel];
     const Vec3d normal(double(plane.x), double(plane.y), double(plane.z));
@@ -94,7 +94,7 @@ class FreeDistance {
   double edge_, inverse_edge_, reach_, reach_steps_;
   std::size_t nx_, ny_, nz_;
   std::vector<std::uint8_t> steps_;      ///< squared distance to a voxel that a triangle crosses, in edges
-  std::array<double, 256> distances_{};  ///< of the squared distances
+  std::array<double, 256> distances_{};  ///< distances by their squares
   std::vector<Plane> planes_;
 };
 

@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-/// What a light would bring.
+/// Possible contribution of a light.
 struct Offer {
   LightSample sample{};
   Rgb irradiance{};

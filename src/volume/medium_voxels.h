@@ -25,7 +25,7 @@ class MediumVoxels {
   /// position: of the box; of others the nearest cube counts
   const Local& at(const Vec3d& position, std::size_t channel) const;
 
-  /// What no cube's sigma_t exceeds, with the g and eta of all.
+  /// Upper bound of sigma_t over all cubes, with the common g and eta.
   const HomogeneousMedium& densest(std::size_t channel) const { return densest_[channel]; }
 
  private:

@@ -11,9 +11,9 @@
 namespace opaline {
 namespace {
 
-constexpr int kBits = 21;               // of a cube's coordinate
+constexpr int kBits = 21;               // bits of a cube's coordinate
 constexpr float kWidest = 0x1p20f - 4;  // cubes along an axis
-constexpr std::int32_t kMostRings = 6;  // of cubes around a point that are looked into
+constexpr std::int32_t kMostRings = 6;  // maximum rings of cubes searched around a point
 constexpr std::uint32_t kNone = ~0u;
 
 Vec3f sheet_normal(const SurfaceSample& sample, const World* world) {

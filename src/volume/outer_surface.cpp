@@ -95,7 +95,7 @@ OuterSurface::Windings OuterSurface::windings_at(const BoundaryPiece& piece, con
   return windings;
 }
 
-/// Whether another sheet of the body faces it from nearby: light that leaves enters again.
+/// True if another sheet of the body faces it from nearby: light that leaves enters again.
 bool OuterSurface::touches(const BoundaryPiece& piece, const Vec3d& outward) const {
   bool found = false;
   follow(rays_, Vec3d(piece.middle) + outward * offset(piece), outward, least_gap_,

@@ -17,7 +17,7 @@ namespace opaline {
 class SphereExits {
  public:
   struct Exit {
-    float cosine;              ///< of the direction with the outward normal, > 0
+    float cosine;              ///< cosine of the direction with the outward normal, > 0
     std::uint32_t collisions;  ///< on the way; the last flight ends at the surface
   };
 

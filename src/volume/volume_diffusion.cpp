@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-// Of the difference from cells of twice the size: the error falls with the power 1.2 of the cells.
+// Remaining fraction of the difference to cells of twice the size: the error falls with the power 1.2 of the cells.
 constexpr float kLeft = .8f;
 
 BodyMedia calibrated(const VolumeDiffusionInput& input) {

@@ -38,7 +38,7 @@ std::size_t sources_of(const VolumeInput& input) {
   return walks_by_light(input) ? input.lights.size() : std::min<std::size_t>(1, input.lights.size());
 }
 
-/// What the sums of a source are multiplied by.
+/// Factor of the sums of a source.
 Rgb weight_of(const VolumeInput& input, std::size_t source) {
   return walks_by_light(input) ? emission(input.lights[source]) : Rgb(1);
 }
@@ -88,7 +88,7 @@ PassMean pass_mean_of(const WalkSums& sums, std::size_t i) {
 
 /// The relative error, and what makes it.
 struct Noise {
-  std::array<double, 3> relative{};     ///< of each channel
+  std::array<double, 3> relative{};     ///< relative error of each channel
   std::array<std::size_t, 3> walked{};  ///< the channel whose walks it has
   std::vector<double> shares;           ///< one a job: its part in relative^2, the largest of its channels'
 

@@ -125,15 +125,15 @@ TEST(AssetFiles, OldMaterialXSaysSo) {
   }
 }
 
-// Claim: where a path leads nowhere, as one of another machine, the file of that name beside is taken, with a warning that
+// Claim: where a path leads nowhere, as one of another machine, the file of that name in the same folder, with a warning that
 // names both. Fails if the texture is missing, or nothing is said.
 TEST(AssetFiles, AreFoundBeside) {
   const ImportedAsset windows = import_asset(OPALINE_TEST_INPUTS "/abswin.obj", "abswin.obj");
   EXPECT_NE(windows.text.find("{\"texture\": \"Skin Color.png\"}"), std::string::npos) << windows.text;
   ASSERT_EQ(windows.warnings.size(), 1u);
   EXPECT_TRUE(windows.warnings[0].ends_with(
-      "abswin.mtl:2: map_Kd 'C:\\Users\\someone\\Documents\\proj\\Skin Color.png': there is no such file; "
-      "'Skin Color.png' beside is taken"))
+      "abswin.mtl:2: map_Kd 'C:\\Users\\someone\\Documents\\proj\\Skin Color.png': no such file; uses "
+      "'Skin Color.png' in the same folder"))
       << windows.warnings[0];
   const TwoFolders folder;
   for (const std::string name : {"/home/x/own.png", "..\\textures\\own.png", "D:own.png", "\"own.png\""}) {
@@ -145,7 +145,7 @@ TEST(AssetFiles, AreFoundBeside) {
   folder.put_textured("/home/x/own.png");
   const Scene glb = load_scene(folder.file("asset/a.glb"));
   EXPECT_TRUE(glb.shapes.at(0).reflectance_texture);
-  EXPECT_TRUE(has(glb.warnings, "'own.png' beside is taken"));
+  EXPECT_TRUE(has(glb.warnings, "'own.png' in the same folder"));
 }
 
 // Claim: an OBJ and an MTL that begin with a byte order mark are read as without. Fails if their first line is lost.

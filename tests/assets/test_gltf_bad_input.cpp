@@ -17,9 +17,9 @@ struct Mistake {
 TEST(GltfBadInput, IsNamed) {
   const std::vector<Mistake> mistakes{
       {[](Json& j) { j["asset"]["version"] = "1.0"; },
-       "test.gltf: asset.version is not one that is read (expected 2.0, got 1.0)"},
+       "test.gltf: asset.version is not supported (expected 2.0, got 1.0)"},
       {[](Json& j) { j["accessors"][0]["bufferView"] = 9; },
-       "test.gltf: accessors[0].bufferView points at nothing (expected 0 to 2, got 9)"},
+       "test.gltf: accessors[0].bufferView refers to nothing (expected 0 to 2, got 9)"},
       {[](Json& j) { j["accessors"][0]["count"] = 1000; },
        "test.gltf: accessors[0] reaches beyond bufferViews[0] (expected within 288 bytes, got 1000 elements, "
        "12 bytes "
@@ -36,12 +36,12 @@ TEST(GltfBadInput, IsNamed) {
        "test.gltf: accessors[0] has no bufferView: its elements are 0 (expected at most 1048576 of them, got "
        "1000000000)"},
       {[](Json& j) { j["accessors"][1]["count"] = 23; },
-       "test.gltf: accessors[1] has a normal too many or too few (expected 24, as there are positions, got "
+       "test.gltf: accessors[1] has the wrong number of normals (expected 24, as there are positions, got "
        "23)"},
       {[](Json& j) { j["accessors"][2]["componentType"] = 5126; },
        "test.gltf: accessors[2] cannot hold indices"},
       {[](Json& j) { j["accessors"][0]["count"] = 4; },
-       "test.gltf: accessors[1] has a normal too many or too few (expected 4"},
+       "test.gltf: accessors[1] has the wrong number of normals (expected 4"},
       {[](Json& j) { j["accessors"][0]["count"] = j["accessors"][1]["count"] = 4; },
        "test.gltf: meshes[0].primitives[0].indices: accessors[2] element 6 points at no vertex (expected "
        "below 4, got "
@@ -50,23 +50,24 @@ TEST(GltfBadInput, IsNamed) {
        "test.gltf: bufferViews[1] reaches beyond its buffer (expected within 648 bytes, got 100000 from "
        "288)"},
       {[](Json& j) { j["bufferViews"][1]["buffer"] = 3; },
-       "test.gltf: bufferViews[1].buffer points at nothing"},
+       "test.gltf: bufferViews[1].buffer refers to nothing"},
       {[](Json& j) { j["buffers"][0]["byteLength"] = 7; },
        "test.gltf: bufferViews[0] reaches beyond its buffer (expected within 7 bytes"},
       {[](Json& j) { j["buffers"][0]["byteLength"] = 700; },
        "test.gltf: buffers[0] is shorter than its byteLength (expected 700, got 648)"},
       {[](Json& j) { j["buffers"][0]["uri"] = "gone.bin"; },
-       "test.gltf: buffers[0].uri names no such file (expected a file in the asset's folder, got gone.bin)"},
+       "test.gltf: buffers[0].uri refers to a missing file (expected a file in the asset's folder, got "
+       "gone.bin)"},
       {[](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 7; },
-       "test.gltf: meshes[0].primitives[0].attributes.POSITION points at nothing"},
+       "test.gltf: meshes[0].primitives[0].attributes.POSITION refers to nothing"},
       {[](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 0; },
-       "test.gltf: meshes[0].primitives[0].material points at nothing (expected nothing: there is none, got "
+       "test.gltf: meshes[0].primitives[0].material refers to nothing (expected nothing: there is none, got "
        "0)"},
       {[](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 1; }, "test.gltf: shows nothing"},
-      {[](Json& j) { j["nodes"][0]["mesh"] = 5; }, "test.gltf: nodes[0].mesh points at nothing"},
+      {[](Json& j) { j["nodes"][0]["mesh"] = 5; }, "test.gltf: nodes[0].mesh refers to nothing"},
       {[](Json& j) { j["nodes"][0]["children"] = {0}; },
        "test.gltf: nodes[0] has two parents, or is its own"},
-      {[](Json& j) { j["nodes"][0]["children"] = {1}; }, "test.gltf: nodes[0].children points at nothing"},
+      {[](Json& j) { j["nodes"][0]["children"] = {1}; }, "test.gltf: nodes[0].children refers to nothing"},
       {[](Json& j) {
          j["nodes"][0]["matrix"] = {1, 2, 3};
        },
@@ -74,15 +75,15 @@ TEST(GltfBadInput, IsNamed) {
       {[](Json& j) {
          j["nodes"][0]["scale"] = {1e17, 1, 1};
        },
-       "test.gltf: reaches too far out"},
+       "test.gltf: extends too far from the origin"},
       {[](Json& j) {
          j["nodes"][0]["rotation"] = {0, 0, 0, 0};
        },
-       "test.gltf: nodes[0].rotation is no rotation"},
-      {[](Json& j) { j["scenes"][0]["nodes"] = {4}; }, "test.gltf: scenes[0].nodes points at nothing"},
-      {[](Json& j) { j["scene"] = 2; }, "test.gltf: scene points at nothing (expected 0 to 0, got 2)"},
+       "test.gltf: nodes[0].rotation is not a rotation"},
+      {[](Json& j) { j["scenes"][0]["nodes"] = {4}; }, "test.gltf: scenes[0].nodes refers to nothing"},
+      {[](Json& j) { j["scene"] = 2; }, "test.gltf: scene refers to nothing (expected 0 to 0, got 2)"},
       {[](Json& j) { j["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
-       "test.gltf: its meshes are compressed by KHR_draco_mesh_compression, which is not read"},
+       "test.gltf: its meshes are compressed by KHR_draco_mesh_compression, which is not supported"},
       {[](Json& j) {
          j["materials"] =
              Json::array({{{"extensions", {{"KHR_materials_scatter", {{"scatterAnisotropy", "x"}}}}}}});
@@ -146,7 +147,7 @@ TEST(GltfBadInput, NumbersAreReadStrictly) {
 TEST(GltfBadInput, AnIndexBeyondAllRecordsPointsAtNothing) {
   const std::string error = error_of(bytes_of(OPALINE_TEST_INPUTS "/silent-index-4294967295.glb"), "a.glb");
   EXPECT_EQ(error,
-            "a.glb: meshes[0].primitives[0].indices points at nothing (expected the index of a record, "
+            "a.glb: meshes[0].primitives[0].indices refers to nothing (expected the index of a record, "
             "got 4294967295)");
 }
 
@@ -168,7 +169,7 @@ TEST(GltfBadInput, NotANumberIsNoPlace) {
   Asset asset = cube_asset();
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(asset.buffer.data() + 12 * 5 + 4, &nan, 4);
-  EXPECT_TRUE(error_of(asset.gltf()).starts_with("test.gltf: accessors[0] element 5 is no place"))
+  EXPECT_TRUE(error_of(asset.gltf()).starts_with("test.gltf: accessors[0] element 5 is not a position"))
       << error_of(asset.gltf());
   Asset normals = cube_asset();
   std::memcpy(normals.buffer.data() + 288 + 4, &nan, 4);
@@ -180,7 +181,7 @@ TEST(GltfBadInput, NotANumberIsNoPlace) {
 TEST(GltfBadInput, BrokenFilesAreNamed) {
   const std::string glb = cube_asset().glb();
   EXPECT_EQ(error_of("{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [3]}"),
-            "test.gltf: nodes[0] is no record (expected an object, got 3)");
+            "test.gltf: nodes[0] is not an object (expected an object, got 3)");
   for (const std::size_t length : {1u, 12u, 19u, 20u, 100u, 700u, unsigned(glb.size()) - 1})
     EXPECT_TRUE(error_of(glb.substr(0, length), "a.glb").starts_with("a.glb: ")) << length;
   EXPECT_EQ(error_of("", "a.glb"), "a.glb: the file is empty");
@@ -210,16 +211,16 @@ TEST(GltfBadInput, ScalesOfZeroAreReported) {
   asset.root(asset.node({{"name", "flat"}, {"mesh", 0}, {"scale", {1, 0, 1}}}));
   const ImportedAsset import = imported(asset);
   EXPECT_TRUE(has(import.warnings,
-                  "node 'flat': its transform flattens the mesh, which is left out; the scale of "
+                  "node 'flat': its transform is singular; the mesh is ignored; the scale of "
                   "node 'flat' is [1, 0, 1]"));
   Asset alone = cube_mesh();
   alone.node({{"name", "inner"}, {"mesh", 0}});
   alone.root(alone.node({{"name", "outer"}, {"scale", {0, 0, 0}}, {"children", {0}}}));
   const std::string error = error_of(alone.gltf());
-  EXPECT_NE(error.find("shows nothing"), std::string::npos) << error;
+  EXPECT_NE(error.find("contains no visible mesh"), std::string::npos) << error;
   EXPECT_NE(
       error.find(
-          "node 'inner': its transform flattens the mesh, which is left out; the scale of node 'outer' is 0"),
+          "node 'inner': its transform is singular; the mesh is ignored; the scale of node 'outer' is 0"),
       std::string::npos)
       << error;
 }
@@ -233,7 +234,7 @@ TEST(GltfBadInput, MissingImagesAreNamed) {
       asset.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
   asset.json["textures"] = Json::array({{{"source", 0}}});
   asset.json["images"] = Json::array({{{"uri", "paint/gone.png"}}});
-  EXPECT_TRUE(has(imported(asset).warnings, "names no such file: 'paint/gone.png'"))
+  EXPECT_TRUE(has(imported(asset).warnings, "refers to a missing file: 'paint/gone.png'"))
       << imported(asset).warnings.at(0);
 }
 

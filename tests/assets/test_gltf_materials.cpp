@@ -105,8 +105,9 @@ TEST(GltfMaterials, OthersAreOpaque) {
   const std::vector<std::string> lines = imported(asset).not_carried;
   for (const char* line :
        {"material 'glass': baseColorTexture: its mesh has no TEXCOORD_0", "texture transmissionTexture",
-        "emissiveFactor", "alphaMode 'BLEND'", "KHR_materials_volume: nothing scatters in it",
-        "KHR_materials_transmission: nothing scatters in it", "material 'glass': KHR_materials_clearcoat"})
+        "emissiveFactor", "alphaMode 'BLEND'", "KHR_materials_volume: a clear, non-scattering body",
+        "KHR_materials_transmission: a clear, non-scattering body",
+        "material 'glass': KHR_materials_clearcoat"})
     EXPECT_TRUE(has(lines, line)) << line;
   EXPECT_EQ(scene_of(cube_asset().glb(), "a.glb").shapes.at(0).reflectance, Rgb(1, 1, 1));
 }
@@ -173,7 +174,7 @@ TEST(GltfMaterials, ValuesOutOfRangeAreSaid) {
   EXPECT_EQ(scene_of(cube_of(material).glb(), "a.glb").media.at(0).eta, 1.5);
   volume.erase("attenuationDistance");
   EXPECT_TRUE(scene_of(cube_of(material).glb(), "a.glb").media.empty());
-  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "nothing scatters; taken as opaque"));
+  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "has no effect; treated as opaque"));
 }
 
 // Claim: primitives of one mesh that share a medium are one body, those of another node another. Fails if light stops

@@ -132,12 +132,12 @@ TEST(GltfMeshes, APartMustBeThere) {
     return {};
   };
   EXPECT_EQ(error("a.glb", ""),
-            "a.glb: which part of the asset is meant is not said (expected \"part\" as \"mesh/primitive\": "
+            "a.glb: requires a part of the asset (expected \"part\" as \"mesh/primitive\": "
             "\"0/0\", "
             "got \"\")");
   for (const char* part : {"0/1", "1/0", "0", "0/0/0", "-1/0", "x"})
     EXPECT_TRUE(error("a.glb", part).starts_with("a.glb: has no such part")) << part;
-  EXPECT_EQ(error("a.off", "0/0"), "a.off: its format has no parts (expected no \"part\", got \"0/0\")");
+  EXPECT_EQ(error("a.off", "0/0"), "a.off: the format has no parts (expected no \"part\", got \"0/0\")");
 }
 
 // Claim: what has no normals is flat (glTF 2.0, section 3.7.2.1), and that is said with how to have it otherwise. Fails if:

@@ -122,15 +122,16 @@ TEST(GltfPoses, BadSkinsAreNamed) {
   weights[4] = -1;
   EXPECT_TRUE(
       error(kFirst, weights).starts_with("a.glb: accessors[4] element 1 is no weight (expected 0 or more"));
-  EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
-                j["accessors"][3]["count"] = 3;
-              }).starts_with("a.glb: accessors[3] has a vertex of the skin too many or too few (expected 4"));
+  EXPECT_TRUE(
+      error(kFirst, kOneJoint, [](Json& j) {
+        j["accessors"][3]["count"] = 3;
+      }).starts_with("a.glb: accessors[3] has the wrong number of vertices for the skin (expected 4"));
   EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
                 j["accessors"][3]["componentType"] = 5120;
               }).starts_with("a.glb: accessors[3] cannot hold indices"));
   EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
                 j["skins"][0]["joints"] = {99};
-              }).starts_with("a.glb: skins[0].joints points at nothing"));
+              }).starts_with("a.glb: skins[0].joints refers to nothing"));
   EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
                 j["skins"][0]["joints"] = Json::array();
               }).starts_with("a.glb: skins[0].joints is empty"));
@@ -139,7 +140,7 @@ TEST(GltfPoses, BadSkinsAreNamed) {
               }).starts_with("a.glb: accessors[0] is of the wrong type (expected MAT4, got VEC3)"));
   EXPECT_TRUE(error(kFirst, kOneJoint, [](Json& j) {
                 j["nodes"][0]["skin"] = 1;
-              }).starts_with("a.glb: nodes[0].skin points at nothing"));
+              }).starts_with("a.glb: nodes[0].skin refers to nothing"));
 }
 
 // Claim: the weights of a node, or else of its mesh, morph it; weights of 0 leave it alone; their number must be that of
@@ -179,7 +180,7 @@ TEST(GltfPoses, InstancesAreShapes) {
   EXPECT_NE(scene.shapes[0].name, scene.shapes[1].name);
   asset.json["accessors"][rotations]["count"] = 2;
   EXPECT_TRUE(
-      error_of(asset.glb(), "a.glb").starts_with("a.glb: accessors[3] has an instance too many or too few"));
+      error_of(asset.glb(), "a.glb").starts_with("a.glb: accessors[3] has the wrong number of instances"));
 }
 
 }  // namespace

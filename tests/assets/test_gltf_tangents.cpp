@@ -133,7 +133,7 @@ TEST(GltfTangents, MistakesAreNamed) {
     return std::string();
   };
   const std::string few = error([](Json& accessor) { accessor["count"] = 3; });
-  EXPECT_NE(few.find("accessors[3] has a tangent too many or too few"), std::string::npos) << few;
+  EXPECT_NE(few.find("accessors[3] has the wrong number of tangents"), std::string::npos) << few;
   const std::string other = error([](Json& accessor) { accessor["type"] = "VEC3"; });
   EXPECT_NE(other.find("accessors[3] is of the wrong type"), std::string::npos) << other;
 }

@@ -187,7 +187,7 @@ TEST(GltfTextures, ThatCannotBeHadAreSaid) {
   expect(textured_triangle(colored(), {{"bufferView", 99}}), "images[0].bufferView");
   Asset other = textured_triangle(colored(), good);
   other.json["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
-  expect(other, "no image that is read");
+  expect(other, "no supported image");
 }
 
 // Claim: OBJ's map_Kd is taken from beside its library, with Kd, where there are UVs; -s and -o scale and move UVs from
@@ -215,7 +215,7 @@ TEST(ObjTextures, AreTakenFromLibraries) {
   EXPECT_EQ(
       scene.warnings,
       (std::vector<std::string>{folder.file("maps/a.mtl") +
-                                ":6: map_Kd 'p.png' of material 'odd': the option '-clamp on' is left out"}));
+                                ":6: map_Kd 'p.png' of material 'odd': the option '-clamp on' is ignored"}));
 }
 
 // Claim: OBJ's bump maps are heights in the OBJ's lengths, times -bm, under any of their names; one that is blue, as

@@ -107,7 +107,7 @@ TEST(MaterialX, StandardSurfaceIsFoundByName) {
   for (const char* name : {"#wax", "#SR_wax"}) {
     const ImportedAsset import = folder.import("tetrahedron.obj", name);
     expect_artist(parse_scene(import.text, "a.json").media.at(0), {1, 1, 1}, {.3, .2, .1}, 0, 1.5);
-    EXPECT_TRUE(has(import.not_carried, "what subsurface_color is connected to: its default is taken"));
+    EXPECT_TRUE(has(import.not_carried, "connection of subsurface_color: ignored, uses the default"));
     EXPECT_TRUE(has(import.translated, "subsurface 0.5 -> subsurface_weight; base colour -> base_color 0.8"));
     const Medium medium = parse_scene(import.text, "a.json").media.at(0);
     EXPECT_EQ(medium.subsurface_weight, .5);
@@ -207,7 +207,7 @@ TEST(MaterialX, BumpsAreBumpMaps) {
   EXPECT_TRUE(has(import(R"(<input name="normal" nodename="n"/>)",
                          R"(<bump name="n"><input name="height" value="1"/></bump>)")
                       .not_carried,
-                  "normal: its heights are no image"));
+                  "normal: its heights are not an image"));
 }
 
 // Claim: what is wrong is named by file, surface and input. Fails if a broken value becomes 0.
@@ -218,9 +218,9 @@ TEST(MaterialX, MistakesAreNamed) {
   };
   EXPECT_EQ(MaterialFolder().error("#blood"),
             "a.mtlx: has no such surface (expected one of 'SR_skin', 'SR_wax', 'SR_paint', got 'blood')");
-  EXPECT_EQ(MaterialFolder("<materialx>\n<a>").error().substr(0, 19), "a.mtlx:2: is no XML");
+  EXPECT_EQ(MaterialFolder("<materialx>\n<a>").error().substr(0, 19), "a.mtlx:2: is not XML");
   EXPECT_EQ(MaterialFolder("<usd/>").error(),
-            "a.mtlx: is no MaterialX file (expected the element materialx)");
+            "a.mtlx: is not a MaterialX file (expected the element materialx)");
   EXPECT_EQ(MaterialFolder("<materialx/>").error(),
             "a.mtlx: has no such surface (expected a file with an open_pbr_surface or standard_surface)");
   EXPECT_EQ(MaterialFolder(surface("<input name=\"subsurface_color\" value=\"1, x, 1\"/>")).error(),

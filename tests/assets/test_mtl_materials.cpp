@@ -48,15 +48,16 @@ TEST(MtlMaterials, ColorsOutOfRangeAreReported) {
     EXPECT_EQ(MtlFolder(library).color(), color) << value;
     EXPECT_EQ(warnings_of(library), "a.mtl:2: Kd '" + value + "' of material 'red' " + complaint + '\n');
   };
-  check("204 25 25", Rgb(1),
-        "is above 1 and is clamped to [1, 1, 1]; the scale seems to end at 255: for a scale of 0 to 1, write "
-        "[0.8, 0.098, 0.098]");
+  check(
+      "204 25 25", Rgb(1),
+      "is above 1 and is clamped to [1, 1, 1]; the values seem to range to 255: for a range of 0 to 1, write "
+      "[0.8, 0.098, 0.098]");
   check("1.5 0.2 0.2", {1, .2, .2}, "is above 1 and is clamped to [1, 0.2, 0.2]");
   check("-1", Rgb(0), "is below 0 and is clamped to [0, 0, 0]");
-  check("0.3 0.2", Rgb(.5), "has 2 numbers where a colour has one or three, and is not used");
-  check("red", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is not used");
-  check("nan 0 0", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is not used");
-  check("spectral a.rfl", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is not used");
+  check("0.3 0.2", Rgb(.5), "has 2 numbers instead of one or three and is ignored");
+  check("red", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is ignored");
+  check("nan 0 0", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is ignored");
+  check("spectral a.rfl", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is ignored");
 }
 
 // Claim: of materials with one name the last is taken, as in Blender, and the warning names both. Source: by hand. Tolerance:
@@ -78,9 +79,9 @@ TEST(MtlMaterials, LastDefinitionReplacesEarlierOnes) {
 TEST(MtlMaterials, UnknownStatementsAreReported) {
   EXPECT_EQ(
       warnings_of("Kd 1 0 0\nnewmtl red\nKd 0.2 0.2 0.2\nmap_Kdd p.png\nxyzzy 3\n"),
-      "a.mtl:1: the statement 'Kd' stands before the first newmtl and is not used\n"
-      "a.mtl:4: the statement 'map_Kdd' of material 'red' is unknown and not used (did you mean 'map_Kd'?)\n"
-      "a.mtl:5: the statement 'xyzzy' of material 'red' is unknown and not used\n");
+      "a.mtl:1: the statement 'Kd' precedes the first newmtl and is ignored\n"
+      "a.mtl:4: the statement 'map_Kdd' of material 'red' is unknown and ignored (did you mean 'map_Kd'?)\n"
+      "a.mtl:5: the statement 'xyzzy' of material 'red' is unknown and ignored\n");
   EXPECT_EQ(warnings_of("newmtl red\nmap_kd p.png\n"),
             "a.mtl:2: map_kd 'p.png' of material 'red': there is no such file\n");
 }

@@ -48,7 +48,7 @@ TEST(ObjAssets, EachMaterialIsAShape) {
   EXPECT_EQ(scene.mm_per_unit, 1);
   const ImportedAsset import = import_asset(folder.obj, "a.obj");
   EXPECT_TRUE(has(import.not_carried, "material 'red': map_Kd (the mesh has no UVs)"));
-  EXPECT_TRUE(has(import.not_carried, "material 'no such': no library has it; taken as grey"));
+  EXPECT_TRUE(has(import.not_carried, "material 'no such': not found in any library; uses grey"));
   EXPECT_TRUE(
       has(import.warnings, "words.mtl:3: Kd '0.8 0.1 2' of material 'red' is above 1 and is clamped"));
   EXPECT_EQ(import.not_carried.size(), 3u);

@@ -122,7 +122,7 @@ TEST(Page, AgainstRandomWalks) {
     EXPECT_EQ(series.at("points").size(), 1u) << series;
     names.insert(series.at("name"));
   }
-  EXPECT_EQ(names, (std::set<std::string>{"hierarchical, as the scene has it", "hierarchical dipole",
+  EXPECT_EQ(names, (std::set<std::string>{"hierarchical, settings of the scene", "hierarchical dipole",
                                           "hierarchical tabulated", "volume_diffusion, by cell_size"}));
   EXPECT_EQ(scene.at("series").back().at("points")[0].at("below_noise"), true);
 }

@@ -55,7 +55,7 @@ TEST(CacheBound, LargerThanAll) {
   cache.keep({0, 3}, some_light(1000), LightCodec{0});
   EXPECT_EQ(folder.there(4), (std::vector<bool>{true, true, true, true}));
   EXPECT_FALSE(std::filesystem::exists(folder.entry(9)));
-  EXPECT_NE(cache.warning().find("larger than the whole cache"), std::string::npos);
+  EXPECT_NE(cache.warning().find("larger than the maximum cache size"), std::string::npos);
 }
 
 // Claim: what has an entry's name and is a folder, a pipe or a link, dangling or not, is listed as bad and
@@ -91,7 +91,7 @@ TEST(CacheBound, HeldLock) {
   StageCache cache(folder.path.string(), 3 * folder.one);
   cache.keep({0, 3}, some_light(1000), LightCodec{0});
   cache.keep({0, 4}, some_light(1000), LightCodec{0});
-  EXPECT_NE(cache.warning().find("another process holds its lock"), std::string::npos) << cache.warning();
+  EXPECT_NE(cache.warning().find("locked by another process"), std::string::npos) << cache.warning();
   EXPECT_EQ(folder.there(5), (std::vector<bool>{true, true, true, true, true}));
   int asked = 0;
   EXPECT_TRUE(prune_cache(folder.path.string(), 0, [&] { return ++asked < 3; }).empty());

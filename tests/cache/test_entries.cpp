@@ -145,7 +145,7 @@ TEST(CacheEntries, NotThisEntry) {
       {whole.substr(1024), "is not a cache entry"},
       {std::string(5000, '\0'), "is not a cache entry"},
       {"PNG" + whole, "is not a cache entry"},
-      {with("format 3", "format 2"), "is of another version"},
+      {with("format 3", "format 2"), "has another version"},
       {with("stage samples", "stage light  "), "is damaged"},
       {with("0123456789abcdef", "0000000000000000"), "is damaged"},
   };
@@ -171,7 +171,7 @@ TEST(CacheEntries, BadOnesAreReplaced) {
   EXPECT_FALSE(cache.find(kKey, LightCodec{1}));
   EXPECT_FALSE(cache.find(kKey, OctreeCodec{{}}));  // there is none: nothing to say
   EXPECT_EQ(cache.warning(), "cache " + spoiled.path.string() + ": " + kName + " is truncated, light" +
-                                 kName.substr(7) + " is truncated, and was computed again");
+                                 kName.substr(7) + " is truncated; computed again");
   cache.keep(kKey, some_samples(12000), SamplesCodec{surface_of(0)});
   EXPECT_TRUE(bytes_of(spoiled.entry) == spoiled.whole);
 }

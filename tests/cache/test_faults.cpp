@@ -125,7 +125,7 @@ TEST(CacheFaults, FullDisk) {
       cache.keep(key(2), samples, SamplesCodec{surface_of(0)});
       cache.keep(key(3), some_light(1), LightCodec{0});  // small enough, but the disk is full: not tried
     }
-    ASSERT_NE(cache.warning().find("not all was kept"), std::string::npos) << limit;
+    ASSERT_NE(cache.warning().find("not all results were stored"), std::string::npos) << limit;
     ASSERT_EQ(folder.entries(), 2u) << limit;
     ASSERT_EQ(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL), 0) << limit;
   }

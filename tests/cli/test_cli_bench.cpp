@@ -108,7 +108,7 @@ TEST(CliBench, GivenHalves) {
   line.insert(line.end(), opaque.begin(), opaque.end());
   const Outcome outcome = run_program(line);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "nothing is translucent: no rung has samples")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "the scene has no translucent shape")) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path / "references"));
   const CsvTable table = table_of(folder);
   EXPECT_EQ(table.rows.size(), 2u);
@@ -161,16 +161,20 @@ TEST(CliBench, MistakesComeFirst) {
       {{folder.scene, "--csv", csv, "--repeats", "2"},
        2,
        "--repeats: expected a whole number from 3 to 1000"},
-      {{folder.scene, "--csv", csv, "--reference-error", "0"}, 2, "2% or .02, got 0"},
+      {{folder.scene, "--csv", csv, "--reference-error", "0"}, 2, "2% or 0.02, got 0"},
       {{folder.scene, "--csv", csv, "--rung", "near_field"}, 2, "near_field=false"},
       {{folder.scene, "--csv", csv, "--rung", "near_feild=false"},
        2,
        "did you mean 'settings.laboratory.near_field'"},
       {{folder.scene, "--csv", csv, "--rung", "tolerance=5"}, 2, "--rung tolerance=5: 'settings.tolerance'"},
-      {{folder.scene, folder.scene, "--csv", csv, "--halves", half, half}, 2, "one scene"},
+      {{folder.scene, folder.scene, "--csv", csv, "--halves", half, half}, 2, "a single scene"},
       {{folder.scene, folder.scene, "--csv", csv}, 2, "given twice"},
-      {{folder.scene, "--csv", csv, "--halves", half, half, "--profiles"}, 2, "leave --profiles out"},
-      {{folder.scene, "--csv", csv, "--halves", half, half, "--reference-error", "2%"}, 2, "leave"},
+      {{folder.scene, "--csv", csv, "--halves", half, half, "--profiles"},
+       2,
+       "cannot be combined with --profiles"},
+      {{folder.scene, "--csv", csv, "--halves", half, half, "--reference-error", "2%"},
+       2,
+       "cannot be combined with --reference-error"},
       {{folder.scene, "--csv", csv, "--halves", half, half, "--resolution", "16x16"}, 2, "16 x 16"},
       {{folder.scene, "--csv", csv, "--set", "media.marbel.eta=2"}, 2, "did you mean 'marble'"},
       {{folder.file("none.json"), "--csv", csv}, 2, "none.json"},

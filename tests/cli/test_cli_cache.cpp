@@ -110,7 +110,7 @@ TEST(CliCache, FullDiskCostsNoPicture) {
                    "settings.samples=20000", "--resolution", "8x8"},
                   ".", {.file_size = 200000, .address_space = {}});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "not all was kept")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "not all results were stored")) << outcome.err;
   EXPECT_TRUE(std::filesystem::exists(folder.file("a.exr")));
   EXPECT_TRUE(folder.entries("").empty());
 }
@@ -131,7 +131,8 @@ TEST(CliCache, ListAndPrune) {
             "0 entries removed of 0.0 MB\n");
   EXPECT_EQ(run_program({"cache", "prune", folder.cache, "--size", "0"}).exit_code, 0);
   EXPECT_EQ(run_program({"cache", "ls", folder.cache}).out, "0 entries of 0.0 MB\n");
-  EXPECT_TRUE(contains(folder.render("b.exr", {"--cache-size", "10KB"}).out, "larger than the whole cache"));
+  EXPECT_TRUE(
+      contains(folder.render("b.exr", {"--cache-size", "10KB"}).out, "larger than the maximum cache size"));
 }
 
 // Claim: a folder that cannot be is said before the work, exit 3; a command that is none, exit 2. Source: the
@@ -142,7 +143,7 @@ TEST(CliCache, BadFolders) {
   const Outcome outcome =
       run_program({"render", folder.scene, "-o", folder.file("a.exr"), "--cache", folder.file("plain")});
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_TRUE(contains(outcome.err, "cannot make the cache's folder")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "cannot create the cache folder")) << outcome.err;
   EXPECT_TRUE(outcome.out.empty());
   EXPECT_EQ(run_program({"cache", "ls", folder.file("none")}).exit_code, 3);
   EXPECT_EQ(run_program({"cache", "list", folder.cache}).exit_code, 2);

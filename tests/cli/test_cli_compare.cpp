@@ -172,7 +172,7 @@ TEST(CliCompare, WhatDoesNotFitIsNamed) {
   for (std::size_t i = 3; i < empty.pixels.size(); i += 7) empty.pixels[i] = 0;
   for (std::size_t i = 1; i < broken.pixels.size(); i += 7)
     broken.pixels[i] = std::numeric_limits<float>::quiet_NaN();
-  put_bytes(gallery.file("notes.exr"), "not a picture");
+  put_bytes(gallery.file("notes.exr"), "not a readable image");
   write_png(gallery.file("a.png"), picture(1), 0);
   const struct {
     std::vector<std::string> rest;
@@ -180,7 +180,7 @@ TEST(CliCompare, WhatDoesNotFitIsNamed) {
     std::vector<std::string> named;
   } cases[] = {
       {{gallery.file("none.exr")}, "none.exr", {"no such image file"}},
-      {{gallery.file("notes.exr")}, "notes.exr", {"not a picture"}},
+      {{gallery.file("notes.exr")}, "notes.exr", {"not a readable image"}},
       {{gallery.put("small.exr", small)}, "a.exr", {"size", "8 x 32", "16 x 16", "small.exr"}},
       {{gallery.put("crop.exr", crop)}, "a.exr", {"crop", "3,0 of 64 x 64", "0,0 of 16 x 16", "crop.exr"}},
       {{gallery.put("empty.exr", empty)}, "empty.exr", {"no pixel shows an object"}},

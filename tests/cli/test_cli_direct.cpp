@@ -36,7 +36,9 @@ TEST(CliDirect, InterruptedAndResumedIsTheSameAsInOneGo) {
   const Outcome stopped = child.wait(20);
   EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
   const std::string said = event_of(events_of(stopped.out), "error")["message"];
-  EXPECT_TRUE(contains(said, "entry samples a pixel are in " + sums + "; go on by ")) << said;
+  EXPECT_TRUE(contains(said, sums + " stores the sums of ") &&
+              contains(said, " entry samples per pixel; resume with "))
+      << said;
   EXPECT_TRUE(said.ends_with("--entry-samples 100000000 --resume " + sums + " --log json")) << said;
   EXPECT_EQ(bytes_of(folder.file("a.exr")), "old");
   const std::size_t passes = passes_in(sums);
@@ -73,7 +75,7 @@ TEST(CliDirect, SumsOfAnotherSceneAreAnError) {
                                                 {"--set", "lights.key.intensity=3"}}) {
     const Outcome outcome = run(other);
     EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_TRUE(contains(outcome.err, sums + ": the sums are of another scene")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, sums + ": the sums belong to another scene")) << outcome.err;
   }
   EXPECT_TRUE(bytes_of(sums) == before);
   put_bytes(sums, before.substr(0, before.size() / 2));

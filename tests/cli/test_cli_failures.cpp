@@ -65,7 +65,7 @@ TEST(CliFailures, UnwritableOutputIsSaidAtOnce) {
   EXPECT_TRUE(contains(run_program({"render", folder.scene, "-o", "/proc/a.png"}).err,
                        "cannot write in the folder '/proc'"));
   EXPECT_TRUE(
-      contains(run_program({"render", folder.scene, "-o", "none/a.png"}).err, "there is no folder 'none'"));
+      contains(run_program({"render", folder.scene, "-o", "none/a.png"}).err, "no such folder 'none'"));
   EXPECT_EQ(folder.entries(), 2u);
 }
 
@@ -133,7 +133,7 @@ TEST(CliFailures, TooLargeForTheMemoryIsSaidBeforeItStarts) {
   };
   const Outcome refused = run({"--resolution", "16384x16384"});
   EXPECT_EQ(refused.exit_code, 3);
-  EXPECT_TRUE(contains(refused.err, "out of memory: the picture needs about ") &&
+  EXPECT_TRUE(contains(refused.err, "out of memory: the image needs about ") &&
               contains(refused.err, "a lower film.resolution"))
       << refused.err;
   EXPECT_EQ(folder.entries(), 1u);
@@ -178,7 +178,7 @@ TEST(CliFailures, InterruptWhileVerifying) {
   EXPECT_EQ(outcome.exit_code, 130) << "signal " << outcome.signal;
   const nlohmann::json error = event_of(events_of(outcome.out), "error");
   EXPECT_EQ(error["kind"], "interrupted");
-  EXPECT_TRUE(contains(error["message"].get<std::string>(), "the picture is written")) << error.dump();
+  EXPECT_TRUE(contains(error["message"].get<std::string>(), "the image is written")) << error.dump();
   EXPECT_EQ(read_image(out).width, 16);
   EXPECT_EQ(folder.entries(), 2u);
 }
@@ -250,7 +250,8 @@ TEST(CliFailures, OutputsAreNoInputs) {
   const std::string before = bytes_of(place + "a.exr");
   const Outcome compared = run_program({"compare", "room.exr", "a.exr", "--error-picture", "a.exr"}, place);
   EXPECT_EQ(compared.exit_code, 2);
-  EXPECT_TRUE(contains(compared.err, "a.exr: is compared and would be overwritten")) << compared.err;
+  EXPECT_TRUE(contains(compared.err, "a.exr: is an input of the comparison and would be overwritten"))
+      << compared.err;
   EXPECT_EQ(bytes_of(place + "a.exr"), before);
 }
 
@@ -261,7 +262,7 @@ TEST(CliFailures, UnusedMediaAreReported) {
   const auto warnings = [&](const std::string& name) {
     return run_program({"info", folder.scene, "--set", "media." + name + ".preset=skin1"}).err;
   };
-  EXPECT_TRUE(contains(warnings("wax"), "no shape has the medium 'wax' of --set media.wax...."))
+  EXPECT_TRUE(contains(warnings("wax"), "no shape uses the medium 'wax' of --set media.wax...."))
       << warnings("wax");
   EXPECT_EQ(warnings("marble"), "");
 }
@@ -279,7 +280,7 @@ TEST(CliFailures, HugeShapesAreReported) {
       "camera": {"position": [0, 40, 60], "look_at": [0, 5, 0]}})");
     return run_program({"info", folder.file("scene.json")}).err;
   };
-  EXPECT_TRUE(contains(warnings("40000"), "shape 'floor' reaches ")) << warnings("40000");
+  EXPECT_TRUE(contains(warnings("40000"), "shape 'floor' extends ")) << warnings("40000");
   EXPECT_EQ(warnings("2000"), "");
 }
 

@@ -34,10 +34,10 @@ TEST(CliInfo, PlanAsTextAndJson) {
 TEST(CliInfo, ModelErrorOfPlates) {
   const std::string plate = std::string(OPALINE_SCENES_DIR) + "/backlit-slab.json";
   const Outcome thin = run_program({"info", plate});
-  EXPECT_TRUE(contains(thin.out,
-                       "model error slab is as thick as a plate of 1.85 mm: 3.08 1.85 2.64 mean free paths"))
+  EXPECT_TRUE(contains(
+      thin.out, "model error slab has the thickness of a plate of 1.85 mm: 3.08 1.85 2.64 mean free paths"))
       << thin.out;
-  EXPECT_TRUE(contains(thin.out, "random walks, the truth: ")) << thin.out;
+  EXPECT_TRUE(contains(thin.out, "random walks (reference): ")) << thin.out;
   const Outcome dipole = run_program({"info", plate, "--log", "json", "--set", "media.jade.profile=dipole"});
   const nlohmann::json event = event_of(events_of(dipole.out), "plate");
   EXPECT_GT(event["channels"][1]["profile"]["back"], .8);
@@ -46,9 +46,10 @@ TEST(CliInfo, ModelErrorOfPlates) {
   const Outcome grouped = run_program({"info", plate, "--set", "shapes.slab.group=\"leaf\"", "--set",
                                        "media.jade.subsurface_radius=[1, 0.1, 1]", "--set",
                                        "media.jade.profile=\"normalized_diffusion\""});
-  EXPECT_TRUE(contains(grouped.out, "leaf is as thick as a plate of 1.85 mm: 3.08 - 2.64 mean free paths"))
+  EXPECT_TRUE(
+      contains(grouped.out, "leaf has the thickness of a plate of 1.85 mm: 3.08 - 2.64 mean free paths"))
       << grouped.out;
-  EXPECT_TRUE(contains(grouped.out, "`normalized_diffusion` sends back")) << grouped.out;
+  EXPECT_TRUE(contains(grouped.out, "`normalized_diffusion` reflects")) << grouped.out;
   const Outcome thick = run_program({"info", plate, "--set", "media.jade.subsurface_radius=0.1"});
   EXPECT_FALSE(contains(thick.out, "\nmodel error")) << thick.out;
   EXPECT_FALSE(contains(run_program({"info", SceneFolder().scene}).out, "\nmodel error"));
@@ -127,7 +128,7 @@ TEST(CliInfo, ScenesOfTheRepository) {
 TEST(CliInfo, WholePassesOfDirect) {
   const SceneFolder folder;
   const Outcome seven = run_program({"info", folder.scene, "--method", "direct", "--entry-samples", "7"});
-  EXPECT_TRUE(contains(seven.out, "direct, 16 entry samples a pixel")) << seven.out;
+  EXPECT_TRUE(contains(seven.out, "direct, 16 entry samples per pixel")) << seven.out;
 }
 
 // Claim: a plan that nobody can read is a failure. Source: commands.h. Fails if: ferror is not looked at.

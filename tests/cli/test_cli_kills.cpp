@@ -95,7 +95,7 @@ TEST(CliFullDisk, KeepsTheOldFile) {
     if (std::distance(std::filesystem::directory_iterator(disk), {}) != 1) return 3;
     const Outcome cached = run_program({"render", folder.scene, "-o", folder.file("b.exr"), "--set",
                                         "settings.samples=9000", "--cache", cache});
-    if (cached.exit_code != 0 || !contains(cached.err, "not all was kept")) return 4;
+    if (cached.exit_code != 0 || !contains(cached.err, "not all results were stored")) return 4;
     return run_program({"cache", "verify", cache}).exit_code == 0 ? 0 : 5;
   });
   if (result == -1) {

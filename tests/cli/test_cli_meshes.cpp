@@ -39,10 +39,11 @@ TEST(CliMeshes, WhatIsNoMeshIsNamedBeforeItIsRead) {
   std::filesystem::resize_file(folder.file("sparse.stl"), std::uintmax_t(3) << 30);
   const struct {
     const char *mesh, *said;
-  } cases[] = {{"folder.obj", "folder.obj: is a folder (expected a regular file)"},
-               {"pipe.ply", "pipe.ply: is a pipe (expected a regular file)"},
-               {"missing.obj", "missing.obj: no such mesh file"},
-               {"sparse.stl", "sparse.stl: the file is far longer than its header says (expected 134 bytes"}};
+  } cases[] = {
+      {"folder.obj", "folder.obj: is a folder (expected a regular file)"},
+      {"pipe.ply", "pipe.ply: is a pipe (expected a regular file)"},
+      {"missing.obj", "missing.obj: no such mesh file"},
+      {"sparse.stl", "sparse.stl: the file is much longer than its header states (expected 134 bytes"}};
   for (const char* command : {"render", "info"})
     for (const auto& c : cases) {
       const Outcome outcome = render_of(folder, c.mesh, command);
@@ -93,7 +94,7 @@ TEST(CliInputs, DangerousFilesAreRefused) {
     const char *file, *said;
   } cases[] = {{"escape-buffer.gltf", "lies outside of the asset's folder"},
                {"silent-env-minus-inf.json", "env-minus-inf.exr: pixel (7, 4) is not finite"},
-               {"slow-png-texture.json", "bomb.png: the picture is too large"}};
+               {"slow-png-texture.json", "bomb.png: the image is too large"}};
   for (const auto& c : cases) {
     const Outcome outcome = run_program({"render", inputs + c.file, "-o", folder.file("a.exr")});
     EXPECT_EQ(outcome.exit_code, 2) << c.file;

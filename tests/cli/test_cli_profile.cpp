@@ -147,7 +147,7 @@ TEST(CliProfile, Mistakes) {
       {{"marble", "--eta", "0"}, 2, "'--eta'"},
       {{"marble", "--g", "1"}, 2, "'--g'"},
       {{"marble", "--thickness", "0"}, 2, "--thickness: expected a length such as 2mm"},
-      {{"marble", "--thickness", "2in"}, 2, "um, .5cm or 1m, got 2in"},
+      {{"marble", "--thickness", "2in"}, 2, "um, 0.5cm or 1m, got 2in"},
       {{"marble", "--walks", "0"}, 2, "--walks: expected a whole number from 1"},
       {{"marble", "--walk", "3"}, 2, "did you mean '--walks'"},
       {{"marble", "-o", folder.file("file/out")}, 3, "file/out"},
@@ -171,7 +171,7 @@ TEST(CliProfile, InterruptLeavesTheOldReport) {
   put_bytes(folder.file("index.html"), "mine");
   const Outcome refused = run_program({"profile", "spectralon", "-o", folder.path.string()});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(contains(refused.err, "is no page of opaline's")) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "is not a page of opaline")) << refused.err;
   put_bytes(folder.file("index.html"), "old, of opaline");
   Child child({"profile", "spectralon", "--walks", "100000000", "-o", folder.path.string()});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));

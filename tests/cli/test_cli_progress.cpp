@@ -65,7 +65,7 @@ class Terminal {
   pid_t child_ = -1;
 };
 
-/// The lines that stood in the place of the progress, one after the other.
+/// The lines that stood in the place of the progress, one render at a time.
 std::vector<std::string> progress_lines(const std::string& text) {
   const std::string clear = "\r\x1b[K";
   std::vector<std::string> lines;
@@ -105,7 +105,7 @@ TEST(CliProgress, FitsTheTerminal) {
     EXPECT_FALSE(contains(text, " 0.0 s left"));
   }
   terminal.interrupt();
-  EXPECT_TRUE(contains(terminal.read_until("--resume FILE"), "interrupted; nothing was kept"));
+  EXPECT_TRUE(contains(terminal.read_until("--resume FILE"), "interrupted; no sums are stored"));
 }
 
 // Claim: where no terminal is, short stages print nothing to standard error, so that a range of frames in a

@@ -76,15 +76,16 @@ TEST(CliQuality, WarnsWhereNothingCanBePromised) {
   const QualityFolder folder;
   const Outcome outcome = folder.render({"--target-error", "0.01%", "--set", "settings.max_samples=3000"});
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_TRUE(contains(outcome.err, "cannot be reached") && contains(outcome.err, "max_samples of 3000"))
+  EXPECT_TRUE(contains(outcome.err, "cannot reach an error of") &&
+              contains(outcome.err, "max_samples of 3000"))
       << outcome.err;
   put_bytes(folder.scene, R"({"shapes": [{"name": "ball", "sphere": {"radius": 10}}],
     "lights": [{"type": "point", "position": [20, 30, 40], "intensity": 1000}],
     "camera": {"position": [0, 0, 50]}, "film": {"resolution": [32, 32]}})");
   const Outcome opaque = folder.render({"--target-error", "1%", "--verify"});
   EXPECT_EQ(opaque.exit_code, 0) << opaque.err;
-  EXPECT_TRUE(contains(opaque.err, "promises nothing")) << opaque.err;
-  EXPECT_TRUE(contains(opaque.err, "--verify has nothing to measure")) << opaque.err;
+  EXPECT_TRUE(contains(opaque.err, "--target-error has no effect")) << opaque.err;
+  EXPECT_TRUE(contains(opaque.err, "--verify measures nothing")) << opaque.err;
 }
 
 /// The closing line of that label; empty if there is none.
@@ -125,13 +126,13 @@ TEST(CliQuality, BudgetStatesWhatWasSpentAndHowToRepeatIt) {
             metadata_of(folder.file("a.exr"), "opaline:scene_hash"));
 
   const Outcome text = folder.render({"--time-budget", "1.5"}, "c.exr");
-  EXPECT_TRUE(contains(closing_line(text.out, "budget"), "s of CPU spent, ")) << text.out;
-  EXPECT_TRUE(contains(closing_line(text.out, "again by"), "--set settings.tolerance=")) << text.out;
+  EXPECT_TRUE(contains(closing_line(text.out, "budget"), "s of CPU, ")) << text.out;
+  EXPECT_TRUE(contains(closing_line(text.out, "repeat with"), "--set settings.tolerance=")) << text.out;
   EXPECT_TRUE(text.out.starts_with("budget      1.5 s: ")) << text.out;
   EXPECT_EQ(folder.entries(), 4u);  // nothing of the trials
 }
 
-// Claim: the command behind "again by" runs as it is printed, in the folder where the first one ran, whatever
+// Claim: the command behind "repeat with" runs as it is printed, in the folder where the first one ran, whatever
 // is in the names of scene and output: the same pixels, and but for a target the same bytes. Source: metadata.h.
 // Fails if: the program's path, an output or a setting that was chosen is left out, or a blank is not quoted.
 struct Choosing {
@@ -149,7 +150,7 @@ TEST_P(CliAgainBy, RunsAsPrinted) {
   words.insert(words.end(), GetParam().options.begin(), GetParam().options.end());
   const Outcome first = run_program(words, folder.path.string());
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  const std::string line = closing_line(first.out, "again by"), before = bytes_of(folder.file(output));
+  const std::string line = closing_line(first.out, "repeat with"), before = bytes_of(folder.file(output));
   const Image picture = read_image(folder.file(output));
   ASSERT_GT(line.size(), 12u) << first.out;
   std::filesystem::remove(folder.file(output));
@@ -205,8 +206,8 @@ TEST(CliQuality, TooLittleTimeIsSaid) {
   for (const char* method : {"hierarchical", "direct"}) {
     const Outcome outcome = folder.render({"--time-budget", "1ms", "--method", method});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, "0.001 s of CPU are too little") &&
-                contains(outcome.err, "and is made"))
+    EXPECT_TRUE(contains(outcome.err, "0.001 s of CPU are too few") &&
+                contains(outcome.err, "opaline renders the cheapest image"))
         << outcome.err;
   }
 }
@@ -228,10 +229,10 @@ TEST(CliQuality, DirectStopsInTime) {
 TEST(CliQuality, SenselessOptionsAreErrors) {
   const QualityFolder folder;
   const std::vector<std::pair<std::vector<std::string>, std::string>> senseless = {
-      {{"--target-error", "banana"}, "expected a share such as 2%"},
-      {{"--target-error", "0"}, "expected a share such as 2%"},
-      {{"--target-error", "-1%"}, "expected a share such as 2%"},
-      {{"--target-error", "150%"}, "expected a share such as 2%"},
+      {{"--target-error", "banana"}, "expected a fraction such as 2%"},
+      {{"--target-error", "0"}, "expected a fraction such as 2%"},
+      {{"--target-error", "-1%"}, "expected a fraction such as 2%"},
+      {{"--target-error", "150%"}, "expected a fraction such as 2%"},
       {{"--target-error", "1%", "--set", "settings.samples=100"}, "chooses settings.samples itself"},
       {{"--target-error", "1%", "--set", "settings.sample_spacing=1"},
        "chooses settings.sample_spacing itself"},
@@ -257,7 +258,7 @@ TEST(CliQuality, SenselessOptionsAreErrors) {
   }
   const Outcome budget = folder.render({"--time-budget", "1s", "--frames", "1-2"}, "a.##.exr");
   EXPECT_EQ(budget.exit_code, 2);
-  EXPECT_TRUE(contains(budget.err, "a single picture first")) << budget.err;
+  EXPECT_TRUE(contains(budget.err, "a single image first")) << budget.err;
   EXPECT_EQ(folder.entries(), 1u);
 }
 

@@ -80,9 +80,8 @@ TEST(CliReport, FolderIsWholeAndKept) {
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_TRUE(contains(again.out, "8 settings compared")) << again.out;
   const CsvTable second = results_of(folder);
-  EXPECT_NE(std::ranges::find(second.notes, std::pair<std::string, std::string>("kept",
-                                                                                "23 runs from before, in "
-                                                                                "this folder")),
+  EXPECT_NE(std::ranges::find(second.notes,
+                              std::pair<std::string, std::string>("kept", "23 reused runs from this folder")),
             second.notes.end());
   for (const auto& [path, time] : times_in(folder.path / "report/runs"))
     EXPECT_EQ(time == before.at(path), !path.string().ends_with("ball-lambert-round2.json")) << path;
@@ -92,7 +91,7 @@ TEST(CliReport, FolderIsWholeAndKept) {
   Child other(report_line(folder, {"--set", "settings.seed=5"}));
   EXPECT_TRUE(other.complains(" hierarchical: "));
   other.send(SIGINT);
-  EXPECT_FALSE(contains(other.wait().err, "kept from before"));
+  EXPECT_FALSE(contains(other.wait().err, "(reused)"));
 }
 
 // Claim: --truth adds a scene of its own to every form of the report: rows whose halves are random walks, the same body as
@@ -154,7 +153,7 @@ TEST(CliReport, Against) {
   put_bytes(old, results.dump());
   const Outcome other = run_program(line);
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_TRUE(contains(other.err, "no rung in common")) << other.err;
+  EXPECT_TRUE(contains(other.err, "no setting in common")) << other.err;
   for (const std::string& file : {folder.scene, folder.file("none.json")}) {
     line.back() = file;
     const Outcome refused = run_program(line);
@@ -188,7 +187,7 @@ TEST(CliReport, InterruptedGoesOn) {
       report_line(folder, {"--set", "shapes.ball={\"sphere\": {\"radius\": 10}}", "--repeats", "4"});
   fs::create_directories(folder.path / "report");
   put_bytes(folder.file("report/index.html"), "mine");
-  EXPECT_TRUE(contains(run_program(line).err, "is no page of opaline's"));
+  EXPECT_TRUE(contains(run_program(line).err, "is not a page of opaline"));
   put_bytes(folder.file("report/index.html"), "old, of opaline");
   {
     Child bench(line);
@@ -196,8 +195,8 @@ TEST(CliReport, InterruptedGoesOn) {
     bench.send(SIGINT);
     const Outcome stopped = bench.wait();
     EXPECT_EQ(stopped.exit_code, 130);
-    EXPECT_TRUE(contains(stopped.err,
-                         "interrupted; references and runs so far are kept, and the same command goes on"))
+    EXPECT_TRUE(contains(
+        stopped.err, "interrupted; finished references and runs are stored; repeat the command to continue"))
         << stopped.err;
   }
   EXPECT_EQ(bytes_of(folder.file("report/index.html")), "old, of opaline");
@@ -205,8 +204,7 @@ TEST(CliReport, InterruptedGoesOn) {
   EXPECT_TRUE(nlohmann::json::parse(bytes_of(record(folder, "lambert-round1"))).contains("done"));
   const Outcome outcome = run_program(line);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "lambert: ") && contains(outcome.err, "(kept from before)"))
-      << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "lambert: ") && contains(outcome.err, "(reused)")) << outcome.err;
   EXPECT_TRUE(contains(bytes_of(folder.file("report/index.html")), "</html>"));
 }
 

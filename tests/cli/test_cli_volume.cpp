@@ -39,7 +39,9 @@ TEST(CliVolume, InterruptedAndResumedIsTheSameAsInOneGo) {
   const Outcome stopped = child.wait(60);
   EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
   const std::string said = event_of(events_of(stopped.out), "error")["message"];
-  EXPECT_TRUE(contains(said, "passes of random walks are in " + sums + "; go on by ")) << said;
+  EXPECT_TRUE(contains(said, sums + " stores the sums of ") &&
+              contains(said, " passes of random walks; resume with "))
+      << said;
   EXPECT_TRUE(said.ends_with("--until-error .01% --resume " + sums + " --log json")) << said;
   EXPECT_EQ(bytes_of(folder.file("a.exr")), "old");
   const std::size_t passes = walked_passes(sums);
@@ -79,18 +81,18 @@ TEST(CliVolume, SumsOfAnotherSceneAreAnError) {
                                                 {"--set", "settings.reenter=false"}}) {
     const Outcome outcome = run(other);
     EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_TRUE(contains(outcome.err, sums + ": the sums are of another scene")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, sums + ": the sums belong to another scene")) << outcome.err;
   }
   EXPECT_TRUE(bytes_of(sums) == before);
   put_bytes(sums, before.substr(0, before.size() / 2));
   const Outcome damaged = run({});
   EXPECT_EQ(damaged.exit_code, 2);
-  EXPECT_TRUE(contains(damaged.err, sums + ": holds no sums to go on from: ")) << damaged.err;
+  EXPECT_TRUE(contains(damaged.err, sums + ": holds no sums to resume from: ")) << damaged.err;
   EXPECT_TRUE(contains(damaged.err, "or a new file name")) << damaged.err;
   ASSERT_EQ(run_program({"render", folder.scene, "-o", sums, "--quiet"}).exit_code, 0);  // a picture
   const Outcome picture = run({});
   EXPECT_EQ(picture.exit_code, 2);
-  EXPECT_TRUE(contains(picture.err, sums + ": not the sums of random walks")) << picture.err;
+  EXPECT_TRUE(contains(picture.err, sums + ": does not hold the sums of random walks")) << picture.err;
 }
 
 // Claim: --until-error ends at that noise, and the bill says what was reached, how many walks it took, and the
@@ -125,15 +127,15 @@ TEST(CliVolume, WarnsOfBadBodies) {
   const std::string ball = R"({"name":"ball","sphere":{"radius":10},"medium":"marble","group":"g"})";
   EXPECT_FALSE(contains(said("[" + ball + "]"), "walk"));
   EXPECT_TRUE(contains(said(R"([{"quad":{"corner":[-5,-5,0],"u":[10,0,0],"v":[0,10,0]},"medium":"marble"}])"),
-                       "got out through holes"));
+                       "leaks through holes"));
   EXPECT_TRUE(contains(
       said("[" + ball + R"(,{"sphere":{"radius":4,"center":[9,0,0]},"medium":"marble","group":"g"}])"),
-      "parts of its surface lie inside"));
+      "parts of the surface lie inside"));
   EXPECT_FALSE(contains(
       said("[" + ball + R"(,{"sphere":{"radius":4,"center":[30,0,0]},"medium":"marble","group":"g"}])"),
-      "parts of its surface lie inside"));
+      "parts of the surface lie inside"));
   EXPECT_TRUE(contains(said("[" + ball + R"(,{"sphere":{"radius":6,"center":[9,0,0]}}])"),
-                       "ended at other shapes inside"));
+                       "ends at other shapes inside"));
 }
 
 double mean_of(const std::string& path, const char* channel) {
@@ -185,8 +187,7 @@ TEST(CliVolume, CellsLeaveOpenMeshesToProfiles) {
         {"render", folder.scene, "-o", folder.file("a.exr"), "--method", method, "--set",
          R"(shapes=[{"name":"leaf","quad":{"corner":[-5,-5,0],"u":[10,0,0],"v":[0,10,0]},"medium":"marble"}])"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_EQ(contains(outcome.err, "leaf: its mesh is open and encloses no volume"),
-              method != "hierarchical")
+    EXPECT_EQ(contains(outcome.err, "leaf: its open mesh encloses no volume"), method != "hierarchical")
         << outcome.err;
     return read_image(folder.file("a.exr")).pixels;
   };
@@ -207,7 +208,7 @@ TEST(CliVolume, CellsSayWhatTheyLeaveOut) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return outcome.err;
   };
-  EXPECT_TRUE(contains(said("[1,0,0]"), "g: 14 % of its surface lies inside of it or is folded"));
+  EXPECT_TRUE(contains(said("[1,0,0]"), "g: 14 % of the surface lies inside the body or overlaps itself"));
   EXPECT_EQ(said("[30,0,0]"), "");
 }
 

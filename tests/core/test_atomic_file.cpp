@@ -84,9 +84,9 @@ TEST(AtomicFile, UnwritableIsSaidAtOnce) {
   const struct {
     std::string path, reason;
   } lines[] = {
-      {folder.file("missing/a.exr"), "there is no folder"},
+      {folder.file("missing/a.exr"), "no such folder"},
       {folder.file("plain/a.exr"), "Not a directory"},
-      {folder.path.string(), "it is a folder"},
+      {folder.path.string(), "is a folder"},
       {folder.path.string() + "/", "not a file name"},
       {"", "not a file name"},
       {"/dev/null", "not a regular file"},

@@ -42,14 +42,13 @@ TEST(CoincidentShapes, AreNamed) {
     const std::vector<std::string> warnings =
         warnings_of({named("far", SphereShape{{90, 0, 0}, 1}), left, right});
     ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_EQ(warnings[0].find("the shapes 'left' and 'right' have the same surface in the same place"), 0u)
-        << warnings[0];
+    EXPECT_EQ(warnings[0].find("the shapes 'left' and 'right' have coincident surfaces"), 0u) << warnings[0];
   }
   std::vector<Shape> many;
   for (int i = 0; i < 7; ++i) many.push_back(named("s" + std::to_string(i), SphereShape{{}, 10, 4}));
   const std::vector<std::string> warnings = warnings_of(many);
   ASSERT_EQ(warnings.size(), 4u);
-  EXPECT_EQ(warnings[3], "3 more shapes have the surface of another one in the same place");
+  EXPECT_EQ(warnings[3], "3 more shapes coincide with another shape");
 }
 
 // Claim: shapes that overlap, touch, enclose each other or have equal bounds alone are no doubles. Source: coincident_shapes.h.

@@ -99,7 +99,7 @@ TEST(BadMesh, Ply) {
       {"strip.ply",
        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0 1 0 0 0 1 0 3 0 1 2\n",
-       "PLY triangle strips are not read"},
+       "PLY triangle strips are not supported"},
       {"int.ply",
        "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int z\nelement "
        "face 1\n"
@@ -136,7 +136,7 @@ TEST(BadMesh, Off) {
       {"empty.off", "", "is empty"},
       {"garbage.off", garbage(5000), "not an OFF file"},
       {"four.off", "4OFF\n3 1 0\n", "not an OFF file of three dimensions"},
-      {"binary.off", "OFF BINARY\n" + std::string(40, '\0'), "binary OFF is not read"},
+      {"binary.off", "OFF BINARY\n" + std::string(40, '\0'), "binary OFF is not supported"},
       {"claim.off", "OFF\n4000000000 4000000000 0\n0 0 0\n", "claims more than the file holds"},
       {"count.off", "OFF\n3 many 0\n", ":2: bad number of faces (expected an integer >= 0, got 'many')"},
       {"cut.off", head + "0 1", ":5: bad vertex (expected three numbers, got end of file)"},

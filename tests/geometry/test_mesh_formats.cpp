@@ -280,16 +280,16 @@ TEST(MeshFormats, FacesOfTwoCornersAreLeftOut) {
   EXPECT_EQ(cube_of_obj.mesh.positions.size(), 8u);
   EXPECT_EQ(cube_of_obj.mesh.triangles.size(), 12u);
   ASSERT_EQ(cube_of_obj.report.warnings.size(), 1u);
-  EXPECT_TRUE(warns(cube_of_obj.report,
-                    ":2: 3 statements that are no part of a polygon mesh are left out, the "
-                    "first is 'f of 2 corners'"));
+  EXPECT_TRUE(
+      warns(cube_of_obj.report,
+            ":2: 3 statements not part of a polygon mesh are ignored, the first is 'f of 2 corners'"));
   const std::string header =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
   for (const CheckedMesh& mesh : {load("a.ply", header + "2 0 1\n3 0 1 2\n"),
                                   load("a.off", "OFF 3 2 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 2\n")}) {
     EXPECT_EQ(mesh.mesh.triangles.size(), 1u);
-    EXPECT_TRUE(warns(mesh.report, "1 triangles without area were dropped"));
+    EXPECT_TRUE(warns(mesh.report, "1 triangles with zero area were removed"));
   }
 }
 

@@ -77,8 +77,8 @@ TEST(MeshNormals, BadOnesAreMendedAndSaid) {
   ASSERT_EQ(mesh.mesh.positions.size(), 8u);
   for (std::size_t v = 0; v < 8; ++v)
     expect_near(mesh.mesh.normals[v], Vec3f(normalized(mesh.mesh.positions[v])), 1e-6f, std::to_string(v));
-  EXPECT_TRUE(warns(mesh.report, "2 vertices without a usable normal; computed"));
-  EXPECT_TRUE(warns(mesh.report, "1 normals pointed into the surface; turned round"));
+  EXPECT_TRUE(warns(mesh.report, "2 vertices without a usable normal; normals computed"));
+  EXPECT_TRUE(warns(mesh.report, "1 normals pointed into the surface and were flipped"));
 }
 
 // Claim: normals of PLY and OFF are used. Source, tolerance: as above. Fails if: they are not asked for.
@@ -189,14 +189,14 @@ TEST(MeshNormals, MissingOnesAreComputed) {
     ASSERT_EQ(round.mesh.normals.size(), 8u) << normals;
     for (std::size_t v = 0; v < 8; ++v)
       expect_near(round.mesh.normals[v], Vec3f(normalized(round.mesh.positions[v])), 1e-6f, normals);
-    EXPECT_TRUE(warns(round.report, "8 vertices without a usable normal; computed")) << normals;
+    EXPECT_TRUE(warns(round.report, "8 vertices without a usable normal; normals computed")) << normals;
     EXPECT_EQ(round.report.warnings.size(), 1u) << normals;
     const CheckedMesh flat = load("a.obj", vertices + normals + "s off\n" + faces);
     EXPECT_NEAR(worst_outwardness(flat.mesh), 1, 1e-6) << normals;
     EXPECT_EQ(flat.report.warnings.size(), 1u) << normals;
   }
   const CheckedMesh one = load("a.obj", vertices + "vn 0 0 -1\n" + faces);  // of the first face alone
-  EXPECT_TRUE(warns(one.report, "8 vertices without a usable normal; computed"));
+  EXPECT_TRUE(warns(one.report, "8 vertices without a usable normal; normals computed"));
   EXPECT_EQ(one.mesh.normals.size(), 12u);
 }
 

@@ -135,8 +135,8 @@ TEST(MeshWelding, DoublesAndTrianglesWithoutAreaAreDropped) {
   EXPECT_EQ(triangle_set(mesh.mesh), triangle_set(load(cube()).mesh));
   EXPECT_EQ(mesh.report.duplicates_dropped, 3u);
   EXPECT_EQ(mesh.report.zero_area_dropped, 3u);
-  EXPECT_TRUE(warns(mesh.report, "3 triangles given twice were dropped"));
-  EXPECT_TRUE(warns(mesh.report, "3 triangles without area were dropped"));
+  EXPECT_TRUE(warns(mesh.report, "3 duplicate triangles were removed"));
+  EXPECT_TRUE(warns(mesh.report, "3 triangles with zero area were removed"));
   EXPECT_EQ(mesh.report.open_edges, 0u);
 }
 

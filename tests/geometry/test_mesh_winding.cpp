@@ -16,7 +16,7 @@ TEST(MeshWinding, FlippedWindingGivesTheSameMesh) {
   EXPECT_EQ(triangle_set(bad.mesh), triangle_set(good.mesh));
   EXPECT_EQ(bad.mesh.normals, good.mesh.normals);
   EXPECT_EQ(bad.report.flipped, 12u);
-  EXPECT_TRUE(warns(bad.report, "12 triangles of closed parts wound inward were flipped"));
+  EXPECT_TRUE(warns(bad.report, "12 triangles of closed parts with inward winding were flipped"));
   EXPECT_EQ(good.report.flipped, 0u);
 }
 
@@ -35,7 +35,7 @@ TEST(MeshWinding, MixedWindingGivesTheSameMesh) {
     const CheckedMesh mended = load(soup);
     EXPECT_EQ(triangle_set(mended.mesh), good) << mask;
     EXPECT_EQ(mended.report.flipped, count) << mask;
-    EXPECT_TRUE(warns(mended.report, "wound against their neighbours")) << mask;
+    EXPECT_TRUE(warns(mended.report, "with winding opposite to their neighbours")) << mask;
   }
 }
 

@@ -37,7 +37,8 @@ TEST(ShapePlaces, ErrorsNameLineAndColumnOfTheScene) {
   EXPECT_EQ(world_error(folder, R"({"shapes": [{"name": "ball", "sphere": {"radius": 1e10},
     "transform": [{"scale": 1e10}]}]})"),
             scene +
-                ":1:40: shape 'ball': a vertex is too far out after the transform (expected coordinates "
+                ":1:40: shape 'ball': a vertex is too far from the origin after the transform (expected "
+                "coordinates "
                 "below 1e18)");
   EXPECT_EQ(world_error(folder, "{\"shapes\": [{\"file\": \"a.obj\"}]}", {"shapes.0.file=b.obj"}),
             "--set shapes.0.file=b.obj: " + folder.file("b.obj") + ": no such mesh file");

@@ -135,10 +135,11 @@ TEST(VertexColors, WideTypesMayHoldBytes) {
   const std::string error =
       load_error("a.ply", ply("property int red\nproperty int green\nproperty int blue\n", "",
                               "0 0 0 1 1 1\n1 0 0 51 70000 255\n0 1 0 0 0 0\n3 0 1 2\n"));
-  EXPECT_NE(error.find(
-                "the PLY property 'green' is no colour (expected whole numbers from 0 to 255, or floats from "
-                "0 to 1, got 70000 of a type of 4 bytes)"),
-            std::string::npos)
+  EXPECT_NE(
+      error.find(
+          "the PLY property 'green' is not a colour (expected whole numbers from 0 to 255, or floats from "
+          "0 to 1, got 70000 of a type of 4 bytes)"),
+      std::string::npos)
       << error;
 }
 

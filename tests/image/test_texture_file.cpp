@@ -265,7 +265,7 @@ TEST(TextureFile, RefusesChunksWithoutTheirPixels) {
     std::string bytes = bytes_of(path);
     change(bytes);
     put_bytes(path, bytes);
-    EXPECT_NE(message_of(path).find("the picture is damaged: "), std::string::npos) << compression << tile;
+    EXPECT_NE(message_of(path).find("the image is damaged: "), std::string::npos) << compression << tile;
   };
   const std::string half("Y\0\1\0\0\0", 6);
   for (const char* const compression :

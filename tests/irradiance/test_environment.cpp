@@ -290,10 +290,9 @@ TEST_F(EnvironmentFile, IsReadBesideTheScene) {
 TEST_F(EnvironmentFile, WhatIsNoneIsAnError) {
   EXPECT_NE(error().find("room.exr: no such image file"), std::string::npos) << error();
   write(64, 64, 1, {"R", "G", "B"});
-  EXPECT_NE(
-      error().find("room.exr: is no picture of an environment (expected a lat-long picture, twice as wide as "
-                   "high, got 64 x 64)"),
-      std::string::npos)
+  EXPECT_NE(error().find("room.exr: is not an environment map (expected a lat-long image, twice as wide as "
+                         "high, got 64 x 64)"),
+            std::string::npos)
       << error();
   write(64, 32, 1, {"U", "V"});
   EXPECT_NE(error().find("room.exr: has no colours"), std::string::npos) << error();
@@ -319,7 +318,7 @@ TEST_F(EnvironmentFile, BadRadianceIsNotTakenInSilence) {
   EXPECT_EQ(with(7, -.25f), "none");
   const auto picture = std::get<EnvironmentLight>(scene().lights[0].source).picture;
   EXPECT_NE(picture->warning().find(
-                "room.exr: 1 of 2048 pixels have a negative radiance, taken as 0; the lowest is -0.25 at "
+                "room.exr: 1 of 2048 pixels have a negative radiance, replaced by 0; the lowest is -0.25 at "
                 "pixel (7, 0)"),
             std::string::npos)
       << picture->warning();

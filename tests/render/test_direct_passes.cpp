@@ -199,7 +199,7 @@ TEST(DirectPasses, FilesThatAreNoStateAreErrors) {
   expect(reading_error(path, box.scene, "another"), path, "another scene");
   Scene wide = box.scene;
   wide.film.resolution = {18, 20};
-  expect(reading_error(path, wide, "key"), path, "another picture size");
+  expect(reading_error(path, wide, "key"), path, "another image size");
 
   const std::string bytes = bytes_of(path);
   for (const std::size_t size : {std::size_t(0), std::size_t(3), bytes.size() / 3, bytes.size() - 20}) {
@@ -210,12 +210,12 @@ TEST(DirectPasses, FilesThatAreNoStateAreErrors) {
   expect(reading_error(other, box.scene, "key"), other, "");
   expect(reading_error(folder.path.string(), box.scene, "key"), folder.path.string(), "");
   write_exr(other, box.picture(1), false);
-  expect(reading_error(other, box.scene, "key"), other, "not the sums of a direct rendering");
+  expect(reading_error(other, box.scene, "key"), other, "does not hold the sums of a direct render");
   Image image = read_image(path);
   for (const char* passes : {"", "x", "3x", "-1", "1e3", "99999999999999999999999"}) {
     image.metadata = {{"opaline:direct_passes", passes}, {"opaline:direct_scene", "key"}};
     write_exr(other, image, false);
-    expect(reading_error(other, box.scene, "key"), other, "not the sums of a direct rendering");
+    expect(reading_error(other, box.scene, "key"), other, "does not hold the sums of a direct render");
   }
 }
 

@@ -222,7 +222,7 @@ TEST(Extremes, BodiesTooThinForCellsAreSaid) {
     choose_models(scene, world);
     const Plan plan = make_plan(scene, world);
     const bool is_warned = std::ranges::any_of(plan.warnings, [](const std::string& warning) {
-      return warning.find("--method volume can") != std::string::npos;
+      return warning.find("use --method volume") != std::string::npos;
     });
     EXPECT_EQ(plan.groups[0].model.expected_error_of_diffusion.has_value(), !is_warned);
     return is_warned;

@@ -34,7 +34,7 @@ TEST(NearLights, AreWarnedOf) {
     LightSource light;
     std::string said;  // empty: nothing
   } cases[] = {
-      {PointLight{{93, 120.5, 104}, white}, "shape: the light lamp is 0.5 mm from its surface"},
+      {PointLight{{93, 120.5, 104}, white}, "shape: the light lamp is 0.5 mm from the surface"},
       {PointLight{{93, 119.75, 104}, white}, "the light lamp is 0.25 mm from"},
       {PointLight{{80.2, 120.3, 80.2}, white}, "the light lamp is 0.3 mm from"},
       {PointLight{{119.8, 120.3, 80.2}, white}, "the light lamp is 0.3 mm from"},

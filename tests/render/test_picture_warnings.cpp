@@ -54,24 +54,24 @@ TEST(PictureWarnings, GoodScenesHaveNone) {
 TEST(PictureWarnings, NothingInView) {
   Scene scene = lit_ball();
   scene.camera.look_at = {0, 0, 200};
-  expect_warning(scene, {"nothing is in view", "behind the camera", "camera.look_at=[0,0,0]"});
+  expect_warning(scene, {"no shape is visible", "behind the camera", "camera.look_at=[0,0,0]"});
   scene.mm_per_unit = 10;
   expect_warning(scene, {"between [-1,-1,-1] and [1,1,1] (scene units)"});
   scene = lit_ball();
   scene.camera.look_at = {100, 0, 100};
-  expect_warning(scene, {"90 degrees beside the middle of the view"});
+  expect_warning(scene, {"90 degrees from the view direction"});
   scene = lit_ball();
   scene.camera.position = {0, 0, 1e7};
   expect_warning(scene,
-                 {"nothing is in view", "pixels wide", "--set camera.position=[0,0,50.64] shows them"});
+                 {"no shape is visible", "pixels wide", "--set camera.position=[0,0,50.64] shows them"});
   scene = lit_ball();
   scene.film.crop = {{0, 0, 4, 4}};
-  expect_warning(scene, {"nothing is in view of the crop", "around the pixel 16,16 of 32 x 32"});
+  expect_warning(scene, {"no shape is visible in the crop", "around the pixel 16,16 of 32 x 32"});
   scene.camera.look_at = {36.397, 0, 0};  // 20 degrees beside the ball, which is half the view
   expect_warning(scene, {"around the pixel 0,16 of 32 x 32"});
   scene = lit_ball();
   scene.lights.push_back({"lamp", SphereLight{{0, 0, 70}, 15, Rgb(5)}});
-  expect_warning(scene, {"nothing is in view", "a lamp stand in front"});
+  expect_warning(scene, {"no shape is visible", "behind a light"});
 }
 
 // Claim: a camera inside a translucent body is told of; one before it, or inside an opaque room, is not. Source: normals
@@ -80,7 +80,7 @@ TEST(PictureWarnings, CameraInsideABody) {
   Scene scene = lit_ball();
   scene.camera.position = {0, 0, 5};
   scene.camera.look_at = {};
-  expect_warning(scene, {"the back of a translucent body's surface", "inside the body"});
+  expect_warning(scene, {"the back side of a translucent surface", "inside the body"});
   scene.shapes[0].medium.reset();
   scene.lights = {point_light({0, 0, 1}, Rgb(100))};
   const Prepared room(scene);
@@ -137,12 +137,13 @@ TEST(PictureWarnings, LightsThatLightNothing) {
   EXPECT_TRUE(warnings_of(scene).empty());
 
   scene.lights = {point_light({30, 40, 80}, Rgb(0))};
-  expect_warning(scene, {"the picture is black", "the light point has no brightness"});
+  expect_warning(scene, {"the image is black", "the light point emits nothing"});
   scene.lights = {point_light({0, 0, 0}, Rgb(1e4))};
-  expect_warning(scene, {"the picture is black", "inside a shape"});
+  expect_warning(scene, {"the image is black", "inside a shape"});
   scene.lights = {point_light({0, 0, 1e6}, Rgb(2e4))};
   expect_warning(scene,
-                 {"almost black", "the light point is 1e+06 scene units away from shapes that measure 34.6"});
+                 {"almost black",
+                  "the light point is 1e+06 scene units away from the shapes, whose total extent is 34.6"});
 }
 
 // Claim: what is too dark or too bright for the exposure is told with the exposure that shows it; an
@@ -164,7 +165,8 @@ TEST(PictureWarnings, TooDarkOrTooBrightForTheExposure) {
   scene = lit_ball();
   scene.mm_per_unit = 1000;
   scene.lights = {point_light({30, 40, 80}, Rgb(2e-2))};
-  expect_warning(scene, {"almost black", "mm_per_unit is 1000", "1e+06 times as high"});
+  expect_warning(
+      scene, {"almost black", "mm_per_unit is 1000", "multiply an intensity given for scene units by 1e+06"});
   scene.lights = {{"sun", DirectionalLight{{0, 0, -1}, Rgb(1e-6)}}};
   const std::vector<std::string> sun = warnings_of(scene);
   ASSERT_EQ(sun.size(), 1u);
@@ -176,14 +178,14 @@ TEST(PictureWarnings, TooDarkOrTooBrightForTheExposure) {
 TEST(PictureWarnings, BlackSurfaces) {
   Scene scene = lit_ball();
   scene.media[0].tint = Rgb(0);
-  expect_warning(scene, {"the picture is black: the colour of the medium", "is 0"});
+  expect_warning(scene, {"the image is black: the colour of the medium", "is 0"});
   scene = lit_ball();
   scene.shapes[0].medium.reset();
   scene.shapes[0].reflectance = Rgb(0);
-  expect_warning(scene, {"the picture is black: the reflectance of", "is 0"});
+  expect_warning(scene, {"the image is black: the reflectance of", "is 0"});
   scene.shapes[0].reflectance = Rgb(1);
   scene.shapes[0].gloss = Gloss{.metalness = 1, .roughness = 0};
-  expect_warning(scene, {"the picture is black: ", "is a metal"});
+  expect_warning(scene, {"the image is black: ", "is a metal"});
 }
 
 // Claim: advice for shapes around the camera leads to an image that shows them. Source: the warning itself. Fails if: it is to
@@ -195,7 +197,7 @@ TEST(PictureWarnings, AdviceAroundTheCamera) {
   scene.shapes[1].source = SphereShape{{0, 0, -80}, 5};
   scene.camera.position = {};
   scene.camera.look_at = {100, 0, 0};
-  expect_warning(scene, {"nothing is in view", "around the camera", "--set camera.position="});
+  expect_warning(scene, {"no shape is visible", "around the camera", "--set camera.position="});
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ TEST(VertexColors, StandBackForTextures) {
     session.prepare();
     const double green = channel(session.render().image, 8, 8, "G");
     const bool warns = std::ranges::any_of(session.plan().warnings, [](const std::string& text) {
-      return text.find("its vertex colours are left out") != text.npos;
+      return text.find("a texture replaces the vertex colours") != text.npos;
     });
     return std::pair{warns, green};
   };

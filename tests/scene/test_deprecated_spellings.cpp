@@ -20,7 +20,7 @@ TEST(DeprecatedSpellings, AreReadWithAWarning) {
   const Scene now = parse(kNow);
   EXPECT_TRUE(now.warnings.empty());
   ASSERT_EQ(old.warnings.size(), 2u);
-  EXPECT_EQ(old.warnings[0], "test.json:1:38: 'media.a.eta' is an old spelling of 'media.a.specular_ior'");
+  EXPECT_EQ(old.warnings[0], "test.json:1:38: 'media.a.eta' is deprecated; use 'media.a.specular_ior'");
   EXPECT_NE(old.warnings[1].find("profile=normalized_diffusion, media.b.fit=searchlight"), std::string::npos);
   old.warnings.clear();
   EXPECT_EQ(old, now);
@@ -40,7 +40,7 @@ TEST(DeprecatedSpellings, TheLaterOverrideWins) {
   EXPECT_EQ(refit.media[1].fit, NormalizedDiffusionFit::refit);
   EXPECT_EQ(parse(kOld, {"media.b.profile=dipole"}).media[1].profile, ProfileKind::dipole);
   expect_fragments(error_of(kNow, {R"(media.a={"preset": "skin1", "eta": 1, "specular_ior": 1})"}),
-                   {"'specular_ior' are the same"});
+                   {"'specular_ior' have the same meaning"});
 }
 
 // Claim: edits of a file with old spellings keep its text where they can, and give the same scene. Source:
@@ -91,7 +91,7 @@ TEST(DeprecatedSpellings, FitNamesTheProfile) {
   EXPECT_EQ(scene.media[0].profile, ProfileKind::normalized_diffusion);
   EXPECT_EQ(scene.media[1].profile, ProfileKind::dipole);
   expect_fragments(error_of(R"({"media": {"a": {"preset": "marble", "fit": "dmfp", "thickness": 1}}})"),
-                   {"'media.a.fit' cannot stand beside 'thickness'"});
+                   {"'media.a.fit' cannot be combined with 'thickness'"});
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST(SceneBrokenFiles, PlaceTheBreak) {
       {"// nothing\n", 2, 1, {"unexpected end of input"}},
       {"{\"film\": {\n", 2, 1, {"broken JSON", "the end of the text"}},
       {"{\"film\": {\"filter\": \"bo", 1, 24, {"missing closing quote", "the end of the text"}},
-      {"{\"film\": 1,\n}", 2, 1, {"expected no comma before it", "got '}'"}},
+      {"{\"film\": 1,\n}", 2, 1, {"expected no trailing comma", "got '}'"}},
       {"{'film': 1}", 1, 2, {"expected double quotes"}},
       {"{\"film\": True}", 1, 10, {"expected true, false or null", "got 'T'"}},
       {"{\"film\": 1 \"camera\": 2}", 1, 12, {"unexpected string literal", "got '\"'"}},
@@ -124,7 +124,7 @@ TEST_F(SceneFiles, AreRefusedByName) {
   expect_load_error(write("empty.json", ""), "empty");
   expect_load_error(write("cut.json", "{\"film\":"), "cut.json:1:9: broken JSON");
   expect_load_error(write("mesh.txt", "v 0 0 0\n"),
-                    "under a name that ends in .glb, .gltf, .obj, .ply, .stl or .off");
+                    "with a name that ends in .glb, .gltf, .obj, .ply, .stl or .off");
   const std::string large = write("large.json", "{}");
   fs::resize_file(large, (std::uintmax_t{64} << 20) + 1);
   expect_load_error(large, "64 MiB");

@@ -92,7 +92,7 @@ TEST(SceneFrames, Mistakes) {
             std::string::npos);
   EXPECT_NE(camera(R"({"keyed": {"1": 1, "3": [1]}})").find("cannot be blended"), std::string::npos);
   EXPECT_NE(camera(R"({"keyed": {"2": 1, "4": [1]}})").find("cannot be blended"), std::string::npos);  // of 3
-  EXPECT_NE(camera(R"({"keyed": {"1": 20, "3": 30, "01": 40}})").find("'1' and '01' are the same frame"),
+  EXPECT_NE(camera(R"({"keyed": {"1": 20, "3": 30, "01": 40}})").find("'1' and '01' denote the same frame"),
             std::string::npos);
   EXPECT_NE(camera(R"({"keyed": {"1": 20, "3": 400}})").find("camera.field_of_view"), std::string::npos);
 }

@@ -66,7 +66,7 @@ TEST(SceneOverrides, OpaqueAndTranslucentReplaceEachOther) {
   EXPECT_TRUE(swapped.shapes[1].group.empty());
   EXPECT_EQ(swapped.shapes[1].reflectance, Rgb(.25, .25, .25));
   expect_fragments(error_of(scene, {"shapes.0.medium=marble", "shapes.0.reflectance=1"}),
-                   {"cannot stand beside 'medium'"});
+                   {"cannot be combined with 'medium'"});
 }
 
 // Claim: an error in an overridden value names the override; one in the file beside it still names the file;
@@ -97,7 +97,7 @@ TEST(SceneOverrides, Errors) {
        set("media.marbel={\"preset\": \"skin1\"}"),
        0,
        {"did you mean 'marble'?"}},
-      {"media.granite.eta=1", set("media.granite.eta=1"), 0, {"'media.granite' does not say"}},
+      {"media.granite.eta=1", set("media.granite.eta=1"), 0, {"'media.granite' does not define"}},
       {"film.resolution=[64,64", set("film.resolution=[64,64"), 0, {"got \"[64,64\""}},
       {"film.resolution=[64,0]", set("film.resolution=[64,0]"), 0, {"'film.resolution.1'", "got 0"}},
       {"film.exposure=1e999", set("film.exposure=1e999"), 0, {"'film.exposure'", "1e999"}},
@@ -129,7 +129,7 @@ TEST(SceneOverrides, Errors) {
       {"media.marble.subsurface_color=1",
        set("media.marble.subsurface_color=1"),
        0,
-       {"cannot stand beside 'preset'"}},
+       {"cannot be combined with 'preset'"}},
       {"media=[" + std::string(100, '['),
        set(("media=[" + std::string(100, '[')).substr(0, 60) + "..."),
        0,
@@ -157,7 +157,7 @@ TEST(SceneOverrides, NamesMayHavePoints) {
   EXPECT_EQ(parse(scene, {"shapes.Cube.001.medium=wax"}).shapes[0].medium, 1u);
   EXPECT_EQ(parse(scene, {"media.'a=b.c'.preset=cream"}).media[2].name, "a=b.c");
   expect_fragments(error_of(scene, {"media.'wax.eta=1"}),
-                   {"a quoted name in the path does not end", "path.\"name.with.points\".key=value"});
+                   {"a quoted name in the path has no closing quote", "path.\"name.with.points\".key=value"});
 }
 
 // Claim: numbers of a list may begin with a point; a list that is no JSON is an error at its place, not a text. Source:

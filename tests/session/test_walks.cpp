@@ -70,7 +70,7 @@ TEST(Walks, EditsWalkForWhatTheyConcern) {
     const Image picture = picture_of(session, scene);
     EXPECT_EQ(session.work().walk_passes, edit.passes);
     EXPECT_EQ(session.decisions().back(),
-              edit.passes > 0 ? "shape: walked at random" : "shape: random walks reused");
+              edit.passes > 0 ? "shape: random walks traced" : "shape: random walks reused");
     EXPECT_TRUE(same_pixels(picture, cold_picture(scene)));
   }
 }

@@ -62,7 +62,7 @@ TEST(SceneEdits, OpenNoFiles) {
       edits.set(one(path, value));
       ADD_FAILURE() << path;
     } catch (const Error& error) {
-      EXPECT_EQ(error.message, "a view does not change files") << error.what();
+      EXPECT_EQ(error.message, "the view cannot change files") << error.what();
     }
 }
 

@@ -103,8 +103,8 @@ TEST_F(LongViewBehind, AReferenceRefines) {
   type("settings.samples", "samples", "300");  // walks start at each
   final_edits(4);
   choose_reference("volume");
-  ASSERT_TRUE(
-      browser.comes_true(tab, "document.getElementById('compared').textContent.includes('walks a sample')"));
+  ASSERT_TRUE(browser.comes_true(
+      tab, "document.getElementById('compared').textContent.includes('walks per sample')"));
   click("pin");
   EXPECT_EQ(browser.run(tab, "document.getElementById('reference').value"), "");
   EXPECT_EQ(browser.run(tab, "document.getElementById('compared').hidden"), true);

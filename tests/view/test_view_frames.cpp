@@ -66,7 +66,7 @@ TEST(ViewFrames, AreThoseOfRender) {
   EXPECT_TRUE(page.frame.colours == folder.by_program(3, edits));
   ASSERT_TRUE(page.read_until(
       [&] { return page.texts.contains("report") && page.texts["report"]["revision"] == 4; }));
-  EXPECT_NE(page.texts["report"].dump().find("samples went along"), std::string::npos)
+  EXPECT_NE(page.texts["report"].dump().find("samples moved with the surface"), std::string::npos)
       << page.texts["report"];
   page.send({{"do", "undo"}});
   ASSERT_TRUE(page.read_final(5));

@@ -81,8 +81,7 @@ TEST_F(LongViewPage, TheCameraIsFree) {
   EXPECT_LT(length(camera.position - camera.look_at), length(Vec3d{0, 22, 120}) - 5);
   click("save");
   ASSERT_TRUE(browser.comes_true(
-      tab,
-      "document.getElementById('told').textContent.endsWith(\"by the scene's camera, not the view's\")"));
+      tab, "document.getElementById('told').textContent.endsWith(\"with the scene camera\")"));
   EXPECT_EQ(bytes_of(folder.file("balls-edited.json")), bytes_of(folder.scene));
   click("look-back");
   EXPECT_TRUE(final_edits(revision + 1).empty());

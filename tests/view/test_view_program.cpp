@@ -160,7 +160,7 @@ TEST(ViewProgram, BadArguments) {
                         {{"view", folder.scene, "--listen", "nowhere"}, 2, "an IP address"},
                         {{"view", folder.scene, "--port", "65536"}, 2, "--port"},
                         {{"view", folder.scene, "--token", "short"}, 2, "16 to 64"},
-                        {{"view", folder.scene, "--resolution", "5000x5000"}, 2, "too large to be viewed"},
+                        {{"view", folder.scene, "--resolution", "5000x5000"}, 2, "too large for the view"},
                         {{"view", folder.scene, "--port", taken}, 3, "cannot listen: Address already in use"},
                         {{"view", folder.scene, "--listen", "192.0.2.1"}, 3, "cannot listen"}}) {
     const Outcome outcome = run_program(row.words);

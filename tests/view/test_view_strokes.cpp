@@ -91,7 +91,7 @@ class StrokedView {
   StrokedView(const StrokedView&) = delete;
   StrokedView& operator=(const StrokedView&) = delete;
 
-  /// Strokes one after the other without a pause, and then what came of them.
+  /// Strokes one render at a time without a pause, and then what came of them.
   void strike(int count) {
     for (int i = 0; i < count; ++i) strokes_.next();
     SCOPED_TRACE(fmt::format("after {} strokes", strokes_.done.size()));

@@ -12,7 +12,7 @@ struct GltfImage {
   std::string bytes;  ///< as encoded
 };
 
-/// Whether a name is that of an image in an asset.
+/// True if a name is that of an image in an asset.
 bool is_gltf_image(const std::string& name);
 /// The asset's file.
 std::string gltf_image_asset(const std::string& name);

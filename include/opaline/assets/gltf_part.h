@@ -31,7 +31,7 @@ struct GltfPart {
 /// in    uvs: what it is read with, where it is
 GltfPart read_gltf_part(const std::string& path, const std::string& part, MeshUvs uvs = MeshUvs::unread);
 
-/// What a part depends on: changes when the file's bytes or those of a buffer beside it do.
+/// Contents of a part: changes with the bytes of the file or of its buffers.
 std::string gltf_contents(const std::string& path);
 
 }  // namespace opaline

@@ -9,14 +9,14 @@ namespace opaline {
 
 struct ImportedAsset {
   std::string text;                      ///< a scene file, see scenes/README.md
-  std::vector<std::string> translated;   ///< what became of its values, a line each
-  std::vector<std::string> not_carried;  ///< what the scene lacks of the asset, a line each
-  std::vector<std::string> warnings;  ///< of what changes the image: files that are missing, ...; a line each
-  std::string summary;                ///< one line
-  std::size_t bytes = 0;              ///< memory that its records take while it is read
+  std::vector<std::string> translated;   ///< conversions of values, a line each
+  std::vector<std::string> not_carried;  ///< parts that are not imported, a line each
+  std::vector<std::string> warnings;     ///< missing files and other changes of the image, a line each
+  std::string summary;                   ///< one line
+  std::size_t bytes = 0;                 ///< memory that its records take while it is read
 };
 
-/// Whether a file's name ends as an asset's does, in upper or lower case.
+/// True if a file's name ends as an asset's does, in upper or lower case.
 bool is_asset_name(const std::string& path);
 
 /// From now on the files that assets name may lie outside of the assets' folders.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the materials of an OBJ file are called as parts of it.
+// Names of the materials of an OBJ file, as its parts.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an entry of the cache holds: named arrays of numbers, or of structs whose members are described.
+// Content of a cache entry: named arrays of numbers, or of structs with described members.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ struct BlobMember {
 /// How an item lies in memory, and so in the file: reading is copying. A plain number or a short array of
 /// numbers is one member without a name.
 struct BlobType {
-  std::size_t bytes;  ///< of an item, padding included
+  std::size_t bytes;  ///< bytes of an item, padding included
   std::vector<BlobMember> members;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a stage's result was computed from, as a number.
+// Hash of the inputs of a stage.
 #pragma once
 
 #include <compare>

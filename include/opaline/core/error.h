@@ -7,7 +7,7 @@
 
 namespace opaline {
 
-/// What went wrong decides the program's exit code: bad_input 2, run_failed 3 (I/O, memory), interrupted 130.
+/// Kind of an error, and exit code of the program: bad_input 2, run_failed 3 (I/O, memory), interrupted 130.
 enum class ErrorKind { bad_input = 2, run_failed = 3, interrupted = 130 };
 
 /// Thrown by parsing and I/O; caught where a place can be added or the run goes on, else in `main`. `what()` is one line:

@@ -9,12 +9,12 @@ namespace opaline {
 
 /// Work counters of one stage, shared by its threads; polled by whoever shows the progress.
 struct Monitor {
-  std::atomic<const char*> stage{nullptr};  ///< what is under way, a literal; null: the caller knows best
+  std::atomic<const char*> stage{nullptr};  ///< current stage, a literal; null: chosen by the caller
   std::atomic<std::size_t> done{0};
   std::atomic<std::size_t> total{
       0};                           ///< 0: not known; may change while work goes on, where it is an estimate
   std::atomic<double> noise{-1};    ///< relative standard error so far, of work at random; below 0: not known
-  std::atomic<unsigned> rounds{0};  ///< of counting: `done` starts at 0 in each
+  std::atomic<unsigned> rounds{0};  ///< counting rounds; `done` starts at 0 in each
   std::atomic<bool> cancelled{false};
 
   /// Starts a stage. work: in units of the stage's choice; progress counts up to it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a stage cost.
+// Cost of a stage.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ struct StageCost {
   double wall_seconds = 0;
   double cpu_seconds = 0;       ///< user and system, all threads
   double system_seconds = 0;    ///< the system's part of it; the kernel tells the two apart by its ticks
-  std::size_t peak_memory = 0;  ///< of the process up to the end of the stage, bytes
+  std::size_t peak_memory = 0;  ///< peak memory of the process up to the end of the stage, bytes
 };
 
 /// Starts at construction.
@@ -21,7 +21,7 @@ class Stopwatch {
  public:
   /// Starts now.
   Stopwatch();
-  /// What the process has used since the start, for a stage of this name.
+  /// Cost of the process since the start, for a stage of this name.
   StageCost cost(std::string stage) const;
 
  private:

@@ -86,7 +86,7 @@ constexpr Vec3<T> component_max(const Vec3<T>& a, const Vec3<T>& b) {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
-/// Whether none of the three is infinite or not a number.
+/// True if none of the three is infinite or not a number.
 template <class T>
 bool is_finite(const Vec3<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);

@@ -15,7 +15,7 @@ namespace opaline {
 struct BetterDipole {
   double mean_free_path = 0;  ///< 1/sigma_t', mm: depth of the real source
   double strength = 0;        ///< alpha'^2
-  double height = 1;          ///< of the virtual source, 1 + 4AD
+  double height = 1;          ///< height of the virtual source, 1 + 4AD
   double decay = 0;           ///< sigma_tr = sqrt(3 (1 - alpha') / (2 - alpha'))
   double from_fluence = 0;    ///< C_phi / D
   double from_flux = 0;       ///< C_E

@@ -50,11 +50,11 @@ double sample_chord_sphere_radius(const ChannelProfile& profile, double u, doubl
 /// The rate, 1/mm, at which the profile decays at its far end.
 double slowest_decay(const ChannelProfile& profile);
 
-/// Whether the profile knows the other face of a plate (Multipole). To the others a point of the far face is one
+/// True if the profile knows the other face of a plate (Multipole). To the others a point of the far face is one
 /// at its straight distance.
 bool has_far_side(const ChannelProfile& profile);
-/// What leaves on the other face of the medium's thickness, 1/mm^2, per flux that entered on the one; by the straight
-/// distance s, mm: T(r) at s^2 = thickness^2 + r^2, and T(0) nearer than the thickness. Without a far side R_d(s).
+/// Radiant exitance on the far face of a plate per unit of transmitted flux, 1/mm^2, at the straight-line distance s, mm:
+/// T(r) at s^2 = thickness^2 + r^2, and T(0) for s < thickness. R_d(s) for profiles without a far side.
 double far_side_profile(const ChannelProfile& profile, double distance);
 /// The share of the entered flux that leaves by the other face, `thickness` away in mm, within r along the plate.
 double diffuse_transmittance_within(const ChannelProfile& profile, double r, double thickness);
@@ -78,7 +78,7 @@ struct DiffuseProfile {
   double eta = 1;
   double average_reflectance = 0;  ///< F_bar, from outside
   bool translucent = false;        ///< some channel scatters
-  bool has_far_side = false;       ///< of some channel
+  bool has_far_side = false;       ///< has far side of some channel
 };
 
 /// unit: of all its lengths, mm.

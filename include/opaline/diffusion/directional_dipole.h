@@ -37,9 +37,9 @@ struct DirectedPlace {
   Vec3d position, normal;  ///< mm; unit, outward
 };
 
-/// What leaves at `exit` per area, 1/mm^2, of a unit of flux that entered at `entry` from the direction
-/// `towards_light` (unit, outside). Of the smooth boundary the way in is in the entered flux, as with all
-/// profiles, and the way out in the exitance.
+/// Radiant exitance at `exit`, 1/mm^2, per unit of flux transmitted at `entry` from the direction `towards_light` (unit,
+/// outside). As with all profiles, the transmitted flux includes the boundary at the entry, and the exitance the boundary
+/// at the exit.
 /// in    dot(towards_light, entry.normal) > 0
 /// out   >= 0; where entry and exit are the same, or one is straight below the other, the modified normal is not
 ///       defined: the entry's own, or any at right angles

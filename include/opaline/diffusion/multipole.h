@@ -14,7 +14,7 @@ namespace opaline {
 struct ShareTable {
   /// Ascending ln r, ln of the shares within and beyond, and the derivatives of ln r by those.
   std::vector<double> distance, within, beyond, slope_within, slope_beyond;
-  double decay = 0;  ///< of the lowest mode: after the last row
+  double decay = 0;  ///< decay of the lowest mode: after the last row
 };
 
 /// A plate of a given thickness. The source is one point at the mean depth of first collisions within the plate, as
@@ -25,10 +25,10 @@ struct Multipole {
   double mean_free_path = 0;                 ///< 1/sigma_t', mm
   double thickness = 0;                      ///< may be infinite: then it is the dipole
   double strength = 0;                       ///< alpha' (1 - e^-thickness)
-  double depth = 1;                          ///< of the source
+  double depth = 1;                          ///< depth of the source
   double extrapolation = 0;                  ///< 2 A D, beyond either face
   double decay = 0;                          ///< sigma_tr
-  std::shared_ptr<const ShareTable> shares;  ///< of the reflected side; none where it is the dipole
+  std::shared_ptr<const ShareTable> shares;  ///< shares of the reflected side; none where it is the dipole
 };
 
 /// Profile for make_channel_profile (diffuse_profile.h).
@@ -42,7 +42,7 @@ double total_diffuse_reflectance(const Multipole& profile);
 /// Samples as those of ChannelProfile: by cubics through a table, relative error of the share below 1e-6, and by bisection.
 double sample_diffusion_distance(const Multipole& profile, double beyond);
 double sample_chord_sphere_radius(const Multipole& profile, double u, double v);
-/// Of the lowest mode across the plate, sqrt(sigma_tr^2 + (pi / (d + 2 b))^2), 1/mm.
+/// Slowest decay of the lowest mode across the plate, sqrt(sigma_tr^2 + (pi / (d + 2 b))^2), 1/mm.
 double slowest_decay(const Multipole& profile);
 
 /// T(r), what leaves by the other face, 1/mm^2; r, along the plate, >= 0 in mm.

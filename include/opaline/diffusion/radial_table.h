@@ -7,8 +7,8 @@
 
 namespace opaline {
 
-/// What a table of numbers is laid over: (1 + kappa r) exp(-kappa r) / (r (r^2 + width^2)), as light that was
-/// scattered once close by, and as a dipole far away. Lengths in mean free paths.
+/// Reference function of a table: (1 + kappa r) exp(-kappa r) / (r (r^2 + width^2)), with the asymptotes of single
+/// scattering nearby and of a dipole far away. Lengths in mean free paths.
 struct RadialReference {
   double decay = 0;  ///< kappa >= 0
   double width = 1;  ///< > 0
@@ -51,7 +51,7 @@ class RadialTable {
 
   RadialReference reference_;
   std::vector<double> logarithms_, curvature_;  // at the knots; second derivatives by knot^2
-  double scale_ = 1;                            // of the reference
+  double scale_ = 1;                            // scale of the reference
   std::vector<double> within_, beyond_;         // at the knots and beyond them, as far as there is light
 };
 

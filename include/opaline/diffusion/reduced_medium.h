@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a radial profile is made from.
+// Input of a radial profile.
 #pragma once
 
 #include <limits>
@@ -14,7 +14,7 @@ struct ReducedMedium {
   double mean_free_path = 0;  ///< 1/sigma_t', >= 0
   double absorbed = 1;        ///< 1 - alpha' = sigma_a/sigma_t', [0, 1]
   double eta = 1;             ///< index of refraction, inside / outside
-  /// Of the plate or body, in the unit of mean_free_path, > 0; infinite: a half space. Multipole alone asks.
+  /// Thickness of the plate or body, in the unit of mean_free_path, > 0; infinite: a half space. Multipole alone asks.
   double thickness = std::numeric_limits<double>::infinity();
   NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< normalized diffusion alone asks
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a plate sends back and lets through: the truth by random walks, and what a radial profile makes of it.
+// Reflection and transmission of a plate: the reference by random walks, and the result of a radial profile.
 #pragma once
 
 #include <cstddef>

@@ -13,7 +13,7 @@ namespace opaline {
 
 /// Shape of a profile, lengths in mean free paths.
 struct ProfileShape {
-  RadialTable table;    ///< of integral 1
+  RadialTable table;    ///< table of integral 1
   double integral = 1;  ///< over the plane, of the function that was tabulated
 };
 
@@ -37,8 +37,8 @@ class LazyShape {
 /// The shape times an exact total.
 struct TableProfile {
   double mean_free_path = 0;  ///< 1/sigma_t', mm
-  double total = 0;           ///< of diffuse light, exact (half_space.h)
-  double decay = 0;           ///< of light far from its source, per mean free path
+  double total = 0;           ///< total of diffuse light, exact (half_space.h)
+  double decay = 0;           ///< decay of light far from its source, per mean free path
   std::shared_ptr<const LazyShape> shape;
 };
 

@@ -13,7 +13,7 @@ namespace opaline {
 /// R_d of random walks in diffuse light (laboratory.h), with the exact total: the exitance of diffusely lit surfaces. The
 /// walks scatter isotropically, with the reduced coefficients. Deterministic: one medium always has the same bits.
 struct TabulatedProfile : TableProfile {
-  double absorbed = 1, eta = 1;  ///< of the medium
+  double absorbed = 1, eta = 1;  ///< absorbed and eta of the medium
 };
 
 /// Collisions that a table takes, about: .8 s of CPU (bench_profiles prints the seconds).
@@ -21,7 +21,7 @@ inline constexpr double kWalkedCollisions = 6e6;
 /// Media whose tables the process keeps.
 inline constexpr std::size_t kWalkedShapesKept = 64;
 
-/// Whether the process has the medium's table.
+/// True if the process has the medium's table.
 bool has_walked_table(double absorbed, double eta);
 /// Takes a table that another process walked.
 void take_walked_table(double absorbed, double eta, RadialTable table);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the near field misses beside creases of the surface.
+// Error of the near field at creases of the surface.
 #pragma once
 
 #include <array>

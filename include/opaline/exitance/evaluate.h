@@ -33,7 +33,7 @@ struct SplitKernel {
   bool split = true;
   float radius = 0;              ///< h, 2.5 sample spacings, mm
   std::array<float, 3> near{};   ///< integral of R_near over the plane
-  std::array<float, 3> total{};  ///< of the profile
+  std::array<float, 3> total{};  ///< total of the profile
   /// Near a border of the surface only part of the near field is there. Rows: how much of a plane's area lies
   /// around the point, from 1/2 (on the border) to 1, weighted by (1 - r^2/h^2)^2; values: the share of
   /// `near` that a half plane with that much area gives, per channel.
@@ -46,8 +46,8 @@ struct SplitKernel {
   /// about .45 (dipole) or .65 (normalized diffusion) where the mean free path equals the sample spacing. It
   /// is 0 where less than 2 % of the light depends on it.
   std::array<float, 3> own_irradiance{};
-  std::shared_ptr<const FarSide> far_side = {};  ///< of profiles that have one (has_far_side)
-  /// Whether the exitance at a point depends on the irradiance at the point itself.
+  std::shared_ptr<const FarSide> far_side = {};  ///< far side of profiles that have one (has_far_side)
+  /// True if the exitance at a point depends on the irradiance at the point itself.
   bool needs_irradiance() const { return own_irradiance[0] + own_irradiance[1] + own_irradiance[2] > 0; }
 };
 
@@ -63,7 +63,7 @@ struct Query {
 struct Exitance {
   RgbF exitance;    ///< M_o, W/mm^2
   RgbF irradiance;  ///< E interpolated from the samples within h, W/mm^2
-  RgbF near;        ///< what of the near field's integral the surface around the point leaves
+  RgbF near;        ///< integral of the near field over the surface around the point
   /// Estimated standard error of the exitance against the converged diffusion of the same scene, W/mm^2: from
   /// the spread of neighbouring samples, the variation of E nearby, the roughness and noise of E, samples of
   /// other sheets within h, and the nodes taken as points (CloudError; bench_error_estimate).
@@ -80,7 +80,7 @@ struct PacketCut {
 /// Which queries walk the tree together: it depends on where they lie, and on nothing else.
 struct QueryPackets {
   float radius = 0;                  ///< h of the kernel that they were cut for
-  std::vector<std::uint32_t> order;  ///< of the finite queries; empty: not known
+  std::vector<std::uint32_t> order;  ///< order of the finite queries; empty: not known
   std::vector<PacketCut> cuts;       ///< one a chunk
 };
 
@@ -111,7 +111,7 @@ struct EvaluateInput {
   double tolerance = 0.005;                                    ///< dual_tree
   double max_solid_angle = 0.05;                               ///< classic, sr
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
-  CloudError cloud = {};                                       ///< of the samples, for Exitance::error
+  CloudError cloud = {};  ///< error model of the samples, for Exitance::error
   Monitor* monitor = nullptr;
   QueryPackets* packets = nullptr;  ///< dual_tree: of an earlier evaluation of these queries, or to be filled
 };

@@ -25,7 +25,7 @@ struct SurfaceCache {
   struct Vertex {
     Exitance value;
     Vec3f position;
-    std::array<Vec3f, 3> slope;  ///< of the exitance along the surface, per channel, 1/mm
+    std::array<Vec3f, 3> slope;  ///< slope of the exitance along the surface, per channel, 1/mm
   };
   struct Patch {
     std::array<std::uint32_t, 3> vertices;
@@ -33,7 +33,7 @@ struct SurfaceCache {
   };
   /// Nodes at (i, j) / segments of a patch's second and third corner, row after row of constant j.
   struct Lattice {
-    std::uint32_t first = 0;     ///< of its entries of lattice_nodes
+    std::uint32_t first = 0;     ///< first of its entries in lattice_nodes
     std::uint32_t segments = 0;  ///< even
   };
   /// The patches of a triangle: segments^2, row after row between lines of constant third barycentric.
@@ -44,7 +44,7 @@ struct SurfaceCache {
   /// SplitKernel's if the nodes' exitance is without the light that depends on the irradiance at the place
   /// itself, which has the shadows' edges in it; 0 if they have it all.
   std::array<float, 3> own_irradiance{};
-  /// Whether the exitance at a point depends on the irradiance at the point itself.
+  /// True if the exitance at a point depends on the irradiance at the point itself.
   bool needs_irradiance() const { return own_irradiance[0] + own_irradiance[1] + own_irradiance[2] > 0; }
   std::vector<std::vector<Split>>
       splits;  ///< one a mesh of the world (empty if not of the group) and triangle
@@ -57,7 +57,7 @@ struct SurfaceCache {
   /// Where the exitance was evaluated.
   std::size_t places() const { return vertices.size() + nodes.size(); }
 
-  /// Whether the exitance is too sharp here to be held, beside a shadow's edge: `at` tells only what lies
+  /// True if the exitance is too sharp here to be held, beside a shadow's edge: `at` tells only what lies
   /// between the vertices, and what a picture shows is to be found at its points.
   bool is_left_to_points(std::uint32_t mesh, std::uint32_t triangle, float u, float v) const;
 
@@ -71,9 +71,9 @@ struct SurfaceCache {
               const RgbF* irradiance = nullptr) const;
 };
 
-/// What of the light at a place a cache should not take at its word.
+/// Uncertainty of the light at a cached point.
 struct PlaceDoubt {
-  RgbF noise{};               ///< of the exitance, W/mm^2: less is no reason for a finer lattice
+  RgbF noise{};               ///< noise of the exitance, W/mm^2: less is no reason for a finer lattice
   bool beside_edge = false;   ///< a shadow's edge is near, between this place and the next perhaps
   bool is_too_sharp = false;  ///< no lattice around this place holds what a picture shows: left to its points
 };
@@ -85,7 +85,7 @@ using AddOwnLight =
 
 struct SurfaceCacheInput {
   const World& world;
-  std::span<const std::uint32_t> meshes;  ///< of the group
+  std::span<const std::uint32_t> meshes;  ///< meshes of the group
   const Octree& octree;
   const SplitKernel& kernel;
   double tolerance = 0.005;

@@ -82,7 +82,7 @@ inline Exitance between_vertices(const SurfaceCache& cache, const SurfaceCache::
   return e;
 }
 
-/// Of the quadratic through a cell's corners, in the order of SixNodes::offsets, and the middles of its
+/// Six nodes of the quadratic through a cell's corners, in the order of SixNodes::offsets, and the middles of its
 /// sides.
 struct SixNodes {
   static constexpr std::array<std::array<std::uint32_t, 2>, 6> offsets{

@@ -21,8 +21,8 @@ namespace opaline {
 ///       index out of range, no area; no UVs where they are required
 CheckedMesh make_mesh(const Shape& shape, MeshUvs uvs = MeshUvs::unread);
 
-/// What loading a shape found, for loading it again after an edit: its triangles as they were read, and what
-/// checking them found that does not depend on where their corners are. Some 100 bytes a vertex.
+/// Cached results of loading a shape, reused after an edit: its triangles as read, and the results of checks that do not
+/// depend on vertex positions. Some 100 bytes per vertex.
 class MeshMemory {
  public:
   MeshMemory();
@@ -34,7 +34,7 @@ class MeshMemory {
   /// it is read again.
   void source_changed();
 
-  /// What was not found in the memory, since its beginning.
+  /// Work that the cache did not save, since its creation.
   struct Work {
     std::size_t read = 0, checked = 0;  ///< meshes
   };

@@ -34,7 +34,7 @@ struct Mesh {
   std::vector<CornerColors> colors{};      ///< one a triangle, where the file has vertex colours; else empty
 };
 
-/// What was found and mended while a mesh was made ready; counts are of triangles unless said.
+/// Defects that were found and repaired in a mesh; counts are of triangles unless stated.
 struct MeshReport {
   std::size_t zero_area_dropped = 0, duplicates_dropped = 0, flipped = 0;
   std::size_t holes_filled = 0, hole_triangles_added = 0;
@@ -50,15 +50,15 @@ struct CheckedMesh {
 /// Total area of the triangles, mm^2.
 double surface_area(const Mesh& mesh);
 
-/// Of a closed mesh, in cubes of its own unit, >= 0; by the divergence theorem about one of its corners.
+/// Enclosed volume of a closed mesh, in cubes of its own unit, >= 0; by the divergence theorem about one of its corners.
 double enclosed_volume(const Mesh& mesh);
 
 /// Integrals over a mesh's surface, in powers of the mesh's own unit.
 struct MeshMeasures {
   double area = 0, volume = 0;  ///< surface_area, enclosed_volume
-  /// Of n n^T, n the unit normal: xx yy zz xy yz zx. The first three add up to the area.
+  /// Integral of n n^T over the surface, n the unit normal: xx yy zz xy yz zx. The first three sum to the area.
   std::array<double, 6> normal_products{};
-  /// Of needles: triangles the square of whose longest side is more than 32 times twice their area.
+  /// Area of needles: triangles with a squared longest side above 64 times their area.
   double needle_area = 0;
 };
 MeshMeasures measures_of(const Mesh& mesh);

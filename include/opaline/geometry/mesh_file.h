@@ -6,18 +6,18 @@
 
 namespace opaline {
 
-/// Whether a file's name ends as those of a mesh format do, in upper or lower case.
+/// True if a file's name ends as those of a mesh format do, in upper or lower case.
 bool is_mesh_file_name(const std::string& path);
 
 /// The bytes of a mesh file as they are.
 /// error Error naming the file: missing, with the nearest name in its folder; not a file, empty, not readable
 std::string read_mesh_bytes(const std::string& path);
 
-/// What a mesh file's triangles depend on: its bytes, or a hash of these and of the files beside it that it names.
+/// Contents of a mesh file: its bytes, or a hash of its bytes and of the files that it refers to.
 /// error as read_mesh_bytes, and of glTF as reading it
 std::string mesh_contents(const std::string& path);
 
-/// Whether these are the file's bytes alone.
+/// True if these are the file's bytes alone.
 bool names_no_files(const std::string& path);
 
 }  // namespace opaline

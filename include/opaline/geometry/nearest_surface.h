@@ -20,7 +20,7 @@ class NearestSurface {
     float u, v;       ///< barycentrics of the second and third corner
     double distance;  ///< world units
   };
-  /// Of triangles that are equally near, the one with the lowest numbers.
+  /// Nearest point. Among equally near triangles, the one with the lowest indices.
   /// in    position: world space, finite; the meshes have a triangle
   Place at(const Vec3d& position) const;
 

@@ -17,9 +17,9 @@ namespace opaline {
 struct alignas(16) Ray {
   Vec3f origin;
   float near = 0;
-  Vec3f direction;  ///< of any length; near and far are in units of it
+  Vec3f direction;  ///< direction of any length; near and far are in units of it
   float time = 0;
-  float far = std::numeric_limits<float>::infinity();  ///< of a traced ray: where it hit; < 0 where blocked
+  float far = std::numeric_limits<float>::infinity();  ///< after tracing: distance of the hit; < 0 if blocked
   std::uint32_t mask = ~0u, id = 0, flags = 0;
 
   Ray() = default;

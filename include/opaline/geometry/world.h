@@ -26,7 +26,7 @@ struct World {
   /// their bits.
   Vec3d origin{};   ///< mm
   double unit = 1;  ///< mm; a power of 1024: translucent bodies, or else the scene, are 1 to 1024 units large
-  double diagonal = 0;  ///< of the bounding box of everything, units; 0 for an empty scene
+  double diagonal = 0;  ///< diagonal of the bounding box of everything, units; 0 for an empty scene
 };
 
 /// From the scene's millimetres into the world's space, and back.

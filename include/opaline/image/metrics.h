@@ -15,7 +15,7 @@ namespace opaline {
 /// Some channels of a picture that belong together, a plane each.
 struct Layer {
   int width = 0, height = 0;
-  std::vector<std::string> names;            ///< of the channels in the file: "R" or "diffuse.R"
+  std::vector<std::string> names;            ///< names of the channels in the file: "R" or "diffuse.R"
   std::vector<std::vector<float>> channels;  ///< as many as names, width * height values each
 };
 
@@ -53,13 +53,13 @@ RelativeErrors relative_errors(const Layer& picture, const Layer& reference,
 /// Over the values that are not NaN; all 0 if there are none.
 struct ErrorStatistics {
   std::size_t values = 0;
-  double mean = 0;         ///< of |e|
-  double mean_square = 0;  ///< of e^2: relMSE
+  double mean = 0;         ///< mean of |e|
+  double mean_square = 0;  ///< mean of e^2: relMSE
   double p99 = 0;          ///< smallest |e| that 99 % of the values do not exceed
-  double largest = 0;      ///< of |e|
-  double signed_mean = 0;  ///< of e
+  double largest = 0;      ///< largest of |e|
+  double signed_mean = 0;  ///< signed mean of e
 };
-/// Of one error a pixel, in any order.
+/// Statistics of one error per pixel, in any order.
 ErrorStatistics error_statistics(std::span<const double> errors);
 
 /// The same over all channels as one set of values.
@@ -73,14 +73,14 @@ double percentile(std::vector<double> values, double share);
 struct HalvesEstimate {
   std::size_t pixels = 0;     ///< compared: finite in all three pictures
   double squared_error = 0;   ///< below 0: the error is below the noise
-  double standard_error = 0;  ///< of squared_error, from the pixels' spread, as if they were independent
+  double standard_error = 0;  ///< standard error of squared_error, for independent pixels
   double error = 0;           ///< sqrt|squared_error| with its sign
   double signed_mean = 0;     ///< mean of (h - d) / mean(d)
   double half_noise = 0;      ///< relative noise of one half, rms
 };
 struct HalvesComparison {
   std::vector<HalvesEstimate> channels;
-  HalvesEstimate all;  ///< of each pixel's mean over its compared channels
+  HalvesEstimate all;  ///< mean over the compared channels of each pixel
 };
 
 /// Error of h against what two references with independent noise, d1 and d2, have for their mean d: the mean

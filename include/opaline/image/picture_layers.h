@@ -20,10 +20,10 @@ struct LayerChoice {
   std::vector<std::string> names;  ///< unless all
 };
 
-/// Whether a file with these layers has the channel.
+/// True if a file with these layers has the channel.
 bool has_channel(const LayerChoice& layers, const std::string& channel);
 
-/// Whether a layer is asked for by its name or word.
+/// True if a layer is asked for by its name or word.
 bool is_named(const LayerChoice& layers, std::string_view name);
 
 /// As write_exr, with these layers alone, colours in the space. Layers that the picture lacks are left out.

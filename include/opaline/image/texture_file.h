@@ -21,7 +21,7 @@ struct TexturePlace {
   std::array<float, 2> side_x{}, side_y{};
 };
 
-/// What looking at all of a texture takes, bytes.
+/// Memory to read all of a texture, bytes.
 struct TextureMemory {
   std::size_t decoded = 0;  ///< for a while, of the largest picture
   std::size_t cached = 0;   ///< at all sizes; all textures together take no more than cache_limit
@@ -66,22 +66,22 @@ class TextureFile {
   /// How a channel of at() changes along the whole picture, to the right and down; of smooth surfaces between texels.
   /// Thread-safe.
   std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const;
-  /// What all texels are, where they are alike.
+  /// Value of all texels, if it is constant.
   const std::optional<Texel>& constant() const { return constant_; }
   /// Over all texels; reads the whole picture the first time.
   Texel mean() const;
 
   const std::string& path() const { return path_; }
-  /// What is left out of the first file that has it; empty: nothing.
+  /// Ignored parts of the first file with such parts; empty: none.
   const std::string& warning() const { return warning_; }
   /// True if all its images have this channel of at(): 0 red to 3 alpha. A grey image has the first three.
   bool has_channel(std::size_t channel) const { return has_channel_[channel]; }
   TextureMemory memory() const;
-  /// Of the cache that all textures share, bytes.
+  /// Size limit of the cache shared by all textures, bytes.
   static std::size_t cache_limit();
-  /// Whether there is a picture for the tile that v upwards and u count; a plain picture is everywhere.
+  /// True if there is a picture for the tile that v upwards and u count; a plain picture is everywhere.
   bool has_tile(int column, int row) const;
-  /// Of the file's bytes and its colour space.
+  /// Hash of the file's bytes and its colour space.
   std::uint64_t hash() const { return hash_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a screen shows of light that may be brighter than its white.
+// Tone mapping of light that may be brighter than white.
 #pragma once
 
 #include "opaline/core/vec3.h"

@@ -65,11 +65,11 @@ struct PointIrradianceInput {
   std::span<Rgb> variance = {};
   /// If not empty: one a point, what other surfaces send there. Known already: irradiance_at does not add it.
   std::span<const RgbF> bounced = {};
-  /// Whether points that follow each other lie together: what hides a room from some then tells of others.
+  /// True if points that follow each other lie together: what hides a room from some then tells of others.
   bool is_together = false;
 };
 
-/// What reaches points from one light per unit emission.
+/// Irradiance at points from one light, per unit emission.
 struct PointTransfers {
   /// One a point: E per unit emission; >= 0, or of a room's light the mean over the points of a pixel is.
   std::vector<float> weights;

@@ -26,7 +26,7 @@ class EnvironmentPicture {
   /// somebody holds it. Negative radiance counts as 0, see warning().
   /// error Error{bad_input}: as read_image; the shape is not that of an environment; a value is not finite
   static std::shared_ptr<const EnvironmentPicture> read(const std::string& path);
-  const std::string& path() const { return path_; }  ///< of the file that was read; empty: none
+  const std::string& path() const { return path_; }  ///< path of the file that was read; empty: none
 
   /// in    direction: unit
   RgbF radiance(const Vec3d& direction) const;
@@ -42,7 +42,7 @@ class EnvironmentPicture {
   /// in    normal: unit, of the surface, where some directions below it are drawn, too
   ///       turn: about +y, degrees, from the picture to where the direction is wanted
   Sample sample(std::array<double, 2> unit_square, const Vec3d& normal, double turn = 0) const;
-  /// Of several places: the tables are larger than caches, and are asked for all at once.
+  /// Samples at several points in one batch, because the tables exceed the processor caches.
   void sample(std::span<const std::array<double, 2>> unit_squares, const Vec3d& normal, double turn,
               std::span<Sample> samples) const;
   /// The mean over the unit square of a sample's weight times its assumed cosine: the irradiance of a surface that
@@ -50,7 +50,7 @@ class EnvironmentPicture {
   RgbF unshadowed(const Vec3d& normal) const { return unshadowed_[nearest_normal(normal)].at(normal); }
   /// That mean, for all normals near one of the tables'.
   struct Unshadowed {
-    std::array<Vec3d, 3> above{};  ///< of blocks wholly above: radiance times direction, channel by channel
+    std::array<Vec3d, 3> above{};  ///< blocks wholly above the horizon: radiance times direction, per channel
     Rgb others;                    ///< radiance times the assumed cosine
     RgbF at(const Vec3d& normal) const {
       return RgbF(others + Rgb{dot(normal, above[0]), dot(normal, above[1]), dot(normal, above[2])});
@@ -63,7 +63,7 @@ class EnvironmentPicture {
   static std::size_t nearest_normal(const Vec3d& normal);
   std::size_t block_count() const { return block_flux_.size(); }
   std::size_t block_columns() const { return block_columns_; }
-  /// Of sample(), 1/sr.
+  /// Density of sample(), 1/sr.
   float density(const Vec3d& direction, const Vec3d& normal) const;
 
   /// The blocks that a lobe mirrors, and the brightest of all, by brightness and lobe: cumulative shares. None: the lobe is so wide that
@@ -84,7 +84,7 @@ class EnvironmentPicture {
   bool is_grey() const { return is_grey_; }
   /// At most, while it is read: four channels of the file beside the pixels and their tables; bytes.
   std::size_t memory() const;
-  /// Of the pixels.
+  /// Hash of the pixels.
   std::uint64_t hash() const { return hash_; }
 
  private:
@@ -128,7 +128,7 @@ class EnvironmentPicture {
   std::string warning_;
   // Cells: means over pixels, where there are many.
   std::size_t step_ = 1, columns_ = 0, rows_ = 0;
-  std::vector<double> row_cosines_;  ///< of the angles from +y at the rows' borders
+  std::vector<double> row_cosines_;  ///< row cosines of the angles from +y at the rows' borders
   struct Cell {
     RgbF mean;
     float importance = 0;  ///< its brightness and a little of its neighbours'
@@ -141,10 +141,10 @@ class EnvironmentPicture {
   std::vector<float> cell_columns_;  ///< cumulative shares of a row's cells within each block
   std::vector<float> block_row_ends_, block_column_ends_;  ///< cumulative shares of blocks, for each normal
   std::vector<float>
-      assumed_cosines_;  ///< of blocks, for each normal; 0: the sample's own; < 0: none is drawn
+      assumed_cosines_;  ///< per block and normal; 0: that of the sample; < 0: the block is not sampled
   std::vector<BlockIntegral> integrals_;
-  std::vector<Vec3f> middles_;            ///< of blocks
-  std::vector<std::uint16_t> brightest_;  ///< of blocks, some
+  std::vector<Vec3f> middles_;            ///< middles of blocks
+  std::vector<std::uint16_t> brightest_;  ///< the brightest blocks
   std::vector<Unshadowed> unshadowed_;
 };
 

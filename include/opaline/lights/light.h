@@ -34,7 +34,7 @@ bool is_delta(const Light& light);
 /// delta lights (ManyLights) a third.
 int shadow_rays(const Light& light, int light_samples);
 
-/// Whether the light has an area or is all around: rays see it.
+/// True if the light has an area or is all around: rays see it.
 bool is_visible(const Light& light);
 
 struct RoomLobe;
@@ -43,10 +43,10 @@ struct RoomLobe;
 struct Lobe {
   Vec3f mirrored;                     ///< unit
   float alpha;                        ///< > 0
-  const RoomLobe* in_room = nullptr;  ///< what it mirrors of a room, if that is known
+  const RoomLobe* in_room = nullptr;  ///< specular reflection of an environment, if cached
 };
 
-/// Of a lobe's light how much comes from an angle off its middle: as many facets as face half of it, over the most.
+/// Relative density of a lobe at an angle from its axis: that of the facets at the half angle, over its maximum.
 float mirrored(const Lobe& lobe, float cosine);
 
 /// Directions that are drawn for each shadow ray that is to show what a lobe mirrors: of a room, whose lamps are many and
@@ -89,8 +89,8 @@ RgbF background(const Light& light, const Vec3f& direction);
 
 /// Where a light is. A light with neither centre nor direction is all around.
 struct LightExtent {
-  std::optional<Vec3d> center{};   ///< of a ball around it; none: infinitely far
-  double radius = 0;               ///< of that ball
+  std::optional<Vec3d> center{};   ///< center of a ball around it; none: infinitely far
+  double radius = 0;               ///< radius of that ball
   double width = 0;                ///< along its shorter side
   Vec3d along{};                   ///< from end to end of its middle line, which `center` is the middle of
   std::optional<Vec3d> facing{};   ///< unit; it shines on this side only

@@ -41,13 +41,13 @@ struct alignas(32) TreeSample {
 /// Holds directions: none farther from the axis than an angle below 90 degrees; or any direction.
 struct NormalCone {
   Vec3f axis{};
-  float cosine = 0, sine = 1;  ///< of the angle; cosine 0: any
+  float cosine = 0, sine = 1;  ///< cosine and sine of the angle; cosine 0: any
 };
 
 struct Octree {
   std::vector<OctreeNode> nodes;  ///< empty without samples
   std::vector<TreeSample> samples;
-  std::vector<Vec3f> normals;  ///< of the samples
+  std::vector<Vec3f> normals;  ///< normals of the samples
   /// Power of two that brings the largest irradiance to [1/2, 1): neither 1e-30 nor 1e30 W leave float's
   /// range.
   float flux_unit = 1;

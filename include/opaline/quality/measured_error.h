@@ -11,11 +11,11 @@ namespace opaline {
 /// Means of |error| over the diffuse light of the picture (TargetError: of the truth), over the points, of
 /// the worst channel.
 struct MeasuredError {
-  double error = 0;               ///< what the reference's own noise explains is taken out
-  double standard_error = 0;      ///< of it: the points are a few, the reference noisy
-  double noise = 0;               ///< of the reference, rms of its standard error
+  double error = 0;               ///< without the noise of the reference
+  double standard_error = 0;      ///< standard error of `error`, from few points and a noisy reference
+  double noise = 0;               ///< noise of the reference, rms of its standard error
   std::size_t points = 0;         ///< 0: nothing translucent is seen
-  std::size_t entry_samples = 0;  ///< of the reference, a point
+  std::size_t entry_samples = 0;  ///< entry samples of the reference, a point
 };
 
 /// Measures the samples, trees and surface caches of a prepared session at some 200 points of the picture

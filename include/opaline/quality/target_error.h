@@ -11,17 +11,17 @@
 
 namespace opaline {
 
-/// What was chosen, and what is expected of it. An error is the mean over the translucent pixels of the
-/// relative error of the diffuse light, of the worst channel, against the converged diffusion of the scene:
-/// what Method::direct tends to. Edges of pixels and the diffusion model itself are not in it.
+/// Chosen settings and their expected error. The error is the mean relative error of the diffuse light over the
+/// translucent pixels, in the worst channel, against the converged Method::direct. It excludes antialiasing and the error of
+/// the diffusion model.
 struct TargetError {
   double predicted = 0;     ///< error; 0 where nothing translucent is seen
   std::size_t samples = 0;  ///< asked for, of all groups
   bool reached = true;      ///< false: settings.max_samples, kMostShadowRays or the model does not allow it
   bool is_short_of_rays = false;  ///< it was kMostShadowRays
   bool sees_translucent = true;   ///< false: there is nothing to promise
-  /// Of reach_volume_error: the bound of the model's own error, none where a mesh is open or too thin; and the error
-  /// that the settings were chosen for, the target or the least that the model allows.
+  /// For reach_volume_error: bound of the model error, none if a mesh is open or too thin; and the error for which the
+  /// settings are chosen: the target, or the least error that the model allows.
   std::optional<double> model = {};
   double promised = 0;
 };

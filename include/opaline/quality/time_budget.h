@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// What was chosen, and what is expected of it.
+/// Chosen settings and their expected cost and error.
 struct TimeBudget {
   std::optional<double> predicted;  ///< error as in TargetError; none: too little time to tell
   std::size_t samples = 0;          ///< asked for, of all groups
@@ -21,7 +21,7 @@ struct TimeBudget {
   bool sees_translucent = true;     ///< false: there is nothing to choose
 };
 
-/// What the caller does with a picture, such as writing it: tried on small ones. They have all its layers.
+/// Work of the caller on a finished image, such as writing it; timed on small images with the same layers.
 using FinishPicture = std::function<void(const Image& picture)>;
 
 /// Edits the session to the scene with as many samples as prepare, render and finish have CPU time for (all

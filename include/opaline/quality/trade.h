@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What more time buys: the error of a scene's picture against its cost, at several settings.
+// Error of an image against its cost, at several settings.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@ namespace opaline {
 struct TradePoint {
   Method method = Method::hierarchical;  ///< or lambert, to which the next three mean nothing
   std::optional<double> sample_spacing;  ///< mm
-  std::optional<std::size_t> samples;    ///< of a group; where the scene sets them, in place of the spacing
+  std::optional<std::size_t> samples;    ///< samples of a body, if the scene sets them instead of the spacing
   double tolerance = 0;
-  std::size_t all_samples = 0;  ///< of all groups
+  std::size_t all_samples = 0;  ///< all samples of all groups
   bool is_given = false;  ///< measured with the scene's own settings, which the values above come close to
   double seconds = 0;     ///< CPU of a picture: samples, light, tree and shading, not loading
   double error = 0;       ///< as TargetError::predicted

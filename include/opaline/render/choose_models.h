@@ -13,7 +13,7 @@ namespace opaline {
 
 struct GroupPlan;
 
-/// What decides, of a body's shape.
+/// Properties of a body's shape that decide the model.
 struct BodyShape {
   double area = 0;       ///< mm^2
   double thickness = 0;  ///< mean, mm: twice the volume over the area; 0 if a mesh is open
@@ -21,7 +21,7 @@ struct BodyShape {
   /// sphere or a cube.
   double alignment = 0;
 
-  /// Of a square plate of this area and mean thickness, mm: its rim is part of the area.
+  /// Plate thickness of a square plate of this area and mean thickness, mm: its rim is part of the area.
   double plate_thickness() const;
   bool is_flat() const;
 };
@@ -38,7 +38,7 @@ struct BodyModel {
 
 /// Which profile, and why.
 std::string model_text(const BodyModel& model);
-/// What error a method's pictures are expected to have; empty: unknown, or none.
+/// Text of the expected model error of a method; empty: unknown, or none.
 std::string model_error_text(const BodyModel& model, Method method);
 
 /// The rule and its figures are derived in src/diffusion/README.md; bench_volume_models measures them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a picture will look like, long before it is there.
+// Coarse preview of an image.
 #pragma once
 
 #include "opaline/render/precompute.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a picture found out that depends on the camera, the surfaces and where the lights are, but on no
-// colour and no medium.
+// Cached results of an image that depend on the camera, the surfaces and the positions of lights, but not on
+// colours and media.
 #pragma once
 
 #include <atomic>
@@ -19,14 +19,13 @@ namespace opaline {
 
 class IrradianceLattice;
 
-/// More is not held of what gathered rays met, bytes.
+/// Maximum size of cached gathered hits, bytes.
 inline constexpr std::size_t kMostGatheredBytes = std::size_t(256) << 20;
 
-/// Kept from one picture to the next by Session::hold_view: 20 bytes a camera ray, and where the ray met a
-/// surface 4, 4 a light (8 where the light's error is estimated, too), and 40 where there is room for them; where a rough
-/// coat mirrors lights and surfaces some 100 more, up to kMostCoatBytes in all; where surfaces light each other some 60 for
-/// each gathered ray that met one, up to kMostGatheredBytes in all; and
-/// of near fields beside shadows' edges some 60 for each place of a lattice, up to IrradianceLattice::kMostBytes a body.
+/// Cached from image to image by Session::hold_view: 20 bytes per camera ray; per hit 4, 4 per light (8 with an estimated
+/// error), and 40 if memory allows; some 100 more for a rough boundary that reflects lights and surfaces, up to kMostCoatBytes
+/// in total; some 60 for each gathered ray with a hit, up to kMostGatheredBytes in total; and some 60 for each lattice point
+/// of near fields beside shadow edges, up to IrradianceLattice::kMostBytes per body.
 struct HeldView {
   struct Coat;
   struct Gathering;
@@ -34,21 +33,21 @@ struct HeldView {
     std::uint32_t mesh, triangle;  ///< Hit::kMiss: none
     float u, v, far;
   };
-  /// Where the camera rays of a batch met one kind of surface.
+  /// Hits of the camera rays of a batch on one kind of surface.
   struct Surface {
     std::vector<PointTransfers> lights;  ///< one a light, without weights where it is to be traced
     QueryPackets packets;
     std::unique_ptr<Coat> coat;            ///< null: what it mirrors is to be found
-    std::unique_ptr<Gathering> gathering;  ///< of hits that gather for themselves (BouncedLight)
+    std::unique_ptr<Gathering> gathering;  ///< gathering of hits without places around them (BouncedLight)
   };
   /// Camera rays that are shaded together.
   struct Batch {
     bool is_traced = false;
     std::vector<CameraHit> hits;       ///< empty: all missed
-    std::vector<SurfacePoint> points;  ///< of those that hit, in their order; empty: to be found
+    std::vector<SurfacePoint> points;  ///< points of those that hit, in their order; empty: to be found
     std::vector<Surface> surfaces;     ///< by kind; empty: not known
 
-    /// But for what coats in it mirror, and what is gathered for it.
+    /// Without the specular reflection and the gathering of its surfaces.
     std::size_t bytes() const {
       std::size_t sum = hits.size() * sizeof(CameraHit) + points.size() * sizeof(SurfacePoint);
       for (const Surface& surface : surfaces)
@@ -57,17 +56,17 @@ struct HeldView {
       return sum;
     }
   };
-  /// What a rough coat of one eta and roughness mirrors, but for the colours of lights and of what stands around.
+  /// Specular reflection of a rough boundary of one eta and roughness, without the colours of lights and surfaces.
   struct Coat {
-    /// Adds emission of the light * unit * weight to what a camera ray sees.
+    /// Adds emission of the light * unit * weight to the radiance along a camera ray.
     struct OfLight {
       std::uint32_t ray, light;
       float unit, weight;
     };
     std::vector<OfLight> lights;
     std::vector<TracedRay> mirrored;  ///< rays that met surfaces
-    std::vector<std::uint32_t> rays;  ///< of the camera, one a mirrored ray
-    std::vector<RgbF> shares;         ///< of what it sees
+    std::vector<std::uint32_t> rays;  ///< rays of the camera, one a mirrored ray
+    std::vector<RgbF> shares;         ///< shares of what it sees
     std::vector<std::uint64_t> keys;  ///< for its light samples
     Batch seen;                       ///< where the mirrored rays met surfaces; its hits are theirs
 
@@ -77,14 +76,14 @@ struct HeldView {
                  (sizeof(TracedRay) + sizeof(RgbF) + sizeof(std::uint32_t) + sizeof(std::uint64_t));
     }
   };
-  /// Where rays from some points, over the hemispheres around them, met surfaces (for_each_gathered).
+  /// Hits of rays from some points over the hemisphere (for_each_gathered).
   struct Gathered {
     struct Met {
       Vec3f direction;
       float far, cosine;  ///< cosine: with the normal of the point that gathers
       std::uint32_t mesh, triangle;
       float u, v;
-      std::uint32_t point, number;  ///< of the point among those that gather, of the ray among the point's
+      std::uint32_t point, number;  ///< index of the gathering point, and of its ray
     };
     bool is_traced = false;
     std::vector<Met> met;
@@ -100,46 +99,46 @@ struct HeldView {
   };
   struct Gathering {
     std::vector<std::uint32_t> points;  ///< which of their batch gather
-    std::vector<Gathered> parts;        ///< of a few points each, in their order
+    std::vector<Gathered> parts;        ///< parts of a few points each, in their order
   };
   std::vector<std::vector<Batch>> tiles;  ///< in the order of their batches
   bool has_room = false;                  ///< for the points
   std::unique_ptr<std::atomic<std::size_t>> coat_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 
-  /// For the places of BouncedPlaces, by chunk and field; and for the samples of each body, by chunk, whatever the camera
-  /// sees (bounced_at_samples).
+  /// Gathering for the points of BouncedPlaces, by chunk and field, and for the samples of each body, by chunk, independent
+  /// of the camera (bounced_at_samples).
   std::vector<std::vector<Gathering>> at_places, at_samples;
   std::unique_ptr<std::atomic<std::size_t>> gathered_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 
-  /// Where a sharp near field is looked up, one a body; null: not known. Whatever the camera sees.
+  /// Lookup of a sharp near field, one per body; null: not cached. Independent of the camera.
   std::vector<std::shared_ptr<IrradianceLattice>> lattices;
 
   std::vector<std::size_t> field_of_mesh;  ///< index of HeldView::Batch::surfaces
-  std::vector<float> eta_of_field;         ///< of the boundary that light enters through; 0: none
+  std::vector<float> eta_of_field;         ///< eta of the transmitting boundary; 0: none
 
-  /// Takes over other fields: where they shade the same meshes, what was found of those with the same boundary holds.
+  /// Sets the fields. Results for the same meshes with the same boundary remain valid.
   void set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<float>& eta);
 
-  /// Lets go of all that depends on the camera.
+  /// Discards all results that depend on the camera.
   void forget_camera();
 
-  /// Lets go of all that depends on which surfaces are of which kind.
+  /// Discards all results that depend on the kinds of surfaces.
   void forget_surfaces();
 
-  /// Lets go of what coats mirror.
+  /// Discards specular reflection.
   void forget_coats();
 
-  /// Takes over other lights. before: which of those held each of them is; none: it is to be traced
+  /// Sets the lights. before: index of each light in the previous ones; none: it must be traced
   void set_lights(std::span<const std::optional<std::size_t>> before);
 
-  /// Brings gathered_bytes up to date with what was let go of.
+  /// Updates gathered_bytes after discarding results.
   void count_gathered();
 
-  /// To be called before each picture, once its lights are set.
+  /// Call before each image, after its lights are set.
   void next_picture();
 };
 
-/// HeldView::set_lights of what one set of points has from each light.
+/// HeldView::set_lights for one set of points.
 void set_held_lights(std::vector<PointTransfers>& lights, std::span<const std::optional<std::size_t>> before);
 
 }  // namespace opaline

@@ -11,20 +11,20 @@
 
 namespace opaline {
 
-/// What one camera ray saw; zero where it saw nothing.
+/// Result of one camera ray; zero if it hit nothing.
 struct PixelSample {
   RgbF diffuse{}, specular{};
   RgbF emitted{};      ///< lights and surroundings seen directly
   float coverage = 0;  ///< 1 on a surface
   RgbF albedo{}, irradiance{};
-  RgbF error{};           ///< of diffuse, much the same for all rays of a pixel
+  RgbF error{};           ///< error of diffuse, much the same for all rays of a pixel
   Rgb noise{};            ///< variance of diffuse that is each ray's own
   RgbF bias{};            ///< signed error of diffuse that rays of a pixel share
   float translucent = 0;  ///< 1 on a translucent surface
   Vec3f normal{}, position{};
   float depth = 0;
 
-  /// Whether no camera ray of the pixel met anything.
+  /// True if no camera ray of the pixel met anything.
   bool empty() const { return coverage == 0 && emitted == RgbF{}; }
 };
 

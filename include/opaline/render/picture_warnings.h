@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a picture that shows nothing is likely to lack, in words; no pixel is changed.
+// Warnings about dark, empty or overexposed images; they change no pixel.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene requires, before any work is done for it.
+// Plan of a scene before any work: stages, samples, memory.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct GroupPlan {
   std::size_t samples = 0;
   std::string reason;  ///< why this many
   double cell = 0;     ///< volume_diffusion: edge of its cells at the surface, mm
-  int cell_parts = 1;  ///< of that edge, for its samples: see cut_surface
+  int cell_parts = 1;  ///< cell parts of that edge, for its samples: see cut_surface
 };
 
 struct Plan {

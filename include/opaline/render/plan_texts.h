@@ -10,7 +10,7 @@ namespace opaline {
 
 /// "10,000 samples (the minimum)", or why another number.
 std::string samples_text(const GroupPlan& group);
-/// "mean free path 0.3 mm (its smallest channel)"
+/// "mean free path 0.3 mm (smallest channel)"
 std::string mean_free_path_text(const GroupPlan& group);
 
 }  // namespace opaline

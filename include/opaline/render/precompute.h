@@ -51,7 +51,7 @@ std::uint64_t sampling_seed(const Settings& settings, std::size_t group);
 SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group, SurfaceCells* cells = nullptr);
 
 std::uint64_t irradiance_seed(const Settings& settings, std::size_t group);
-/// Of irradiance_at at the points of a picture and the places of a surface cache.
+/// Seed of irradiance_at at shading points and at the points of a surface cache.
 std::uint64_t point_irradiance_seed(const Settings& settings);
 /// in    lights: recentred, any of the scene's
 std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,

@@ -19,7 +19,7 @@ struct Rectangle {
   int x0, y0, x1, y1;
 };
 
-/// What the film's crop leaves, or all of it.
+/// Rendered rectangle: the crop of the film, or the whole film.
 Rectangle rendered_part(const Film& film);
 
 /// Light that surfaces send to what a camera sees, at places of its picture.
@@ -29,9 +29,9 @@ struct RenderInput {
   const Scene& scene;
   const World& world;
   const RayScene& rays;
-  std::span<const Body> groups = {};  ///< of the precompute; not needed by Method::lambert
+  std::span<const Body> groups = {};  ///< bodies from the precompute; not needed by Method::lambert
   Monitor* monitor = nullptr;
-  HeldView* view = nullptr;  ///< of an earlier picture that saw the same, or new; kept up to kMostHeldBytes
+  HeldView* view = nullptr;  ///< cached view of an earlier image, or new; at most kMostHeldBytes
   /// Where light bounces: gathered for this or another view of the same surfaces in the same light; null: for this one,
   /// by render.
   std::shared_ptr<const BouncedPlaces> bounced = {};

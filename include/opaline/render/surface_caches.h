@@ -25,7 +25,7 @@ std::size_t expected_cache_places(const GroupPlan& group, const World& world);
 std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::span<const Body> groups,
                                            std::size_t pictures = 1);
 
-/// Whether make_body_cache would make this cache.
+/// True if make_body_cache would make this cache.
 bool may_use(const SurfaceCache& cache, const PrecomputeInput& input, const Body& group,
              std::size_t most_places);
 

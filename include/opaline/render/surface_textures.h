@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the textures of a scene say at points of its surfaces.
+// Textures of a scene at points of its surfaces.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct SurfaceTint {
   RgbF entering{1, 1, 1}, leaving{1, 1, 1};
 };
 
-/// What a medium that varies inside a body is at a place, over its mean; of what does not vary 1.
+/// Properties of a textured medium at a point, over their means; constant properties are 1.
 struct MediumFactors {
   RgbF color{1, 1, 1}, radius{1, 1, 1};
 };
@@ -36,9 +36,9 @@ class SurfaceTextures {
   /// error Error{bad_input}: UVs reach a tile that a texture has not, told at the texture's place
   SurfaceTextures(const Scene& scene, const World& world);
 
-  /// Whether no surface has other values at other points, a tint, or an anisotropic boundary.
+  /// True if no surface has other values at other points, a tint, or an anisotropic boundary.
   bool empty() const { return is_empty_; }
-  /// Whether it has a tint that light meets as it enters.
+  /// True if it has a tint that light meets as it enters.
   bool tints_entering(std::uint32_t mesh) const;
 
   /// One point of a mesh; its lookups all have one footprint.
@@ -46,8 +46,8 @@ class SurfaceTextures {
     std::uint32_t mesh;
     std::optional<SurfaceUv> uv;  ///< none: nothing asks for it, or the mesh has none
     Footprint footprint;
-    Tangent tangent{};         ///< of the mesh, world units; zero: it has none
-    RgbF color{1, 1, 1};       ///< of the mesh's vertices
+    Tangent tangent{};         ///< tangent of the mesh, world units; zero: it has none
+    RgbF color{1, 1, 1};       ///< color of the mesh's vertices
     bool from_behind = false;  ///< the point's normals are turned round: a sheet is seen on its other side
   };
   Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
@@ -86,18 +86,18 @@ class SurfaceTextures {
 /// True if vertex colours multiply the colour of the shape.
 bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh);
 
-/// What colours light that enters a body at its samples: the tint's power, its mean over a sample's share of the
-/// surface; empty where no tint is met there.
+/// Tint of transmitted light at the samples of a body: a power of the tint, averaged over each sample's cell; empty if no
+/// tint applies there.
 std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples);
 
-/// Of a scene's texture: its file's contents and how it is laid; with the UVs of some meshes.
+/// Add to key of a scene's texture: its file's contents and how it is laid; with the UVs of some meshes.
 void add_to_key(KeyBuilder& key, const Texture& texture);
 /// A mesh's UVs and tangents.
 void add_coordinates(KeyBuilder& key, const Mesh& mesh);
 /// Cache key of a body's entering_tints; zero if there are none.
 StageKey tint_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes,
                   const StageKey& samples);
-/// Of how a medium varies inside bodies of these meshes; a key of zeros where it does not.
+/// Cache key of the textures that vary a medium inside bodies of these meshes; a key of zeros if none do.
 StageKey medium_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes);
 
 /// Where a cone meets a surface.

@@ -18,11 +18,11 @@ struct CarryInput {
   const World& to;
   std::span<const std::uint32_t> to_meshes;
   const SurfaceSamples& samples;  ///< on `from`
-  SurfaceCells& cells;            ///< of these; made if they are needed and empty
+  SurfaceCells& cells;            ///< cells of the samples; computed if needed and empty
   Monitor* monitor = nullptr;
 };
 
-/// Whether the meshes have the same triangles, so that samples can be carried.
+/// True if the meshes have the same triangles, so that samples can be carried.
 bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, const World& to,
                std::span<const std::uint32_t> to_meshes);
 

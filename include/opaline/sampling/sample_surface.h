@@ -17,7 +17,7 @@ struct SurfaceSample {
   float u = 0, v = 0;                    ///< barycentrics of the second and third corner
   Vec3f position;                        ///< in the world's space and unit, as are all lengths here
   Vec3f normal;                          ///< shading normal
-  float area = 0;                        ///< of its Voronoi cell on the surface
+  float area = 0;                        ///< area of its Voronoi cell on the surface
   /// Centroid of the cell. Sums over the surface place a sample's flux here, not at `position`: the
   /// first-order term of their error then vanishes.
   Vec3f centroid{};
@@ -36,7 +36,7 @@ struct SamplingInput {
 
 struct SurfaceSamples {
   std::vector<SurfaceSample> samples;  ///< ordered by mesh and triangle
-  double area = 0;                     ///< of the surface; the samples' areas sum to it within 1e-6
+  double area = 0;                     ///< area of the surface; the samples' areas sum to it within 1e-6
   double radius = 0;                   ///< no two samples on one sheet are closer
   /// sqrt(area / count).
   double spacing() const;

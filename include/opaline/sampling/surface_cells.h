@@ -7,10 +7,10 @@
 
 namespace opaline {
 
-/// What a sample owns of one triangle. Where the triangle's corners move, its parts keep their share of it.
+/// Part of a triangle that belongs to one sample. Parts keep their fraction of the area if the triangle moves.
 struct CellPart {
   std::uint32_t triangle;  ///< counted through the meshes of the surface in their order
-  float share;             ///< of the triangle's area
+  float share;             ///< share of the triangle's area
   float u, v;              ///< barycentrics of the part's middle, of the second and third corner
 };
 
@@ -19,7 +19,7 @@ struct SurfaceCells {
   std::vector<std::uint32_t> first;  ///< into parts, of each sample and behind the last one
   std::vector<CellPart> parts;       ///< sample by sample
 
-  /// Whether no cells were kept.
+  /// True if no cells were kept.
   bool empty() const { return first.empty(); }
 };
 

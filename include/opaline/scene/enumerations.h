@@ -26,7 +26,7 @@ inline constexpr std::array<std::string_view, 6> kProfileNames{
 inline constexpr std::array<std::string_view, 6> kProfileSources{
     "Jensen et al. 2001",         "Christensen & Burley 2015", "d'Eon 2012",
     "random walks of the medium", "Donner & Jensen 2005",      "Frisvad et al. 2014"};
-/// What a medium says: the choice is left open, or one of the profiles.
+/// Values of `profile` of a medium: automatic, or one of the profiles.
 inline constexpr std::array<std::string_view, kProfileNames.size() + 1> kProfileChoices = [] {
   std::array<std::string_view, kProfileNames.size() + 1> choices{"auto"};
   for (std::size_t i = 0; i < kProfileNames.size(); ++i) choices[i + 1] = kProfileNames[i];
@@ -96,7 +96,7 @@ constexpr NameList names_of(NearIrradiance) {
   return kNearIrradianceNames;
 }
 
-/// Of the dual tree's inner loops; automatic: the widest that the machine has.
+/// Instruction set of the dual tree's inner loops; automatic: the widest of the processor.
 enum class InstructionSet { automatic, baseline, avx2, avx512 };
 inline constexpr std::array<std::string_view, 4> kInstructionSetNames{"automatic", "baseline", "avx2",
                                                                       "avx512"};
@@ -106,7 +106,7 @@ constexpr NameList names_of(InstructionSet) {
 
 /// How the numbers of a picture file stand for light.
 enum class ColorSpace {
-  automatic,  ///< of colours sRGB where the file holds whole numbers, else linear; of all other values linear
+  automatic,  ///< sRGB for colours in integer files, otherwise linear
   srgb,
   linear
 };
@@ -127,7 +127,7 @@ constexpr NameList names_of(ViewTransform) {
   return kViewNames;
 }
 
-/// What the colours of an EXR are in; the words are those of OpenColorIO's configurations.
+/// Colour space of an EXR; names as in OpenColorIO configurations.
 enum class FilmColorSpace { lin_rec709, acescg };
 inline constexpr std::array<std::string_view, 2> kFilmColorSpaceNames{"lin_rec709", "acescg"};
 constexpr NameList names_of(FilmColorSpace) {

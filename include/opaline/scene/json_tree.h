@@ -22,8 +22,8 @@ struct Node {
   double number = 0;                       ///< finite
   std::optional<std::uint64_t> whole;      ///< a number written as an integer >= 0
   std::string text;                        ///< a string's value, or a number as written
-  std::vector<Node> children;              ///< of an array or object, in the order of the text
-  std::string key;                         ///< of a member of an object
+  std::vector<Node> children;              ///< children of an array or object, in the order of the text
+  std::string key;                         ///< key of a member of an object
   std::size_t key_offset = 0, offset = 0;  ///< bytes from the start of the text
   std::size_t end_offset = 0;              ///< just behind the value's last byte; 0: not in the text
   int override_index = -1;                 ///< which override it came from; -1: the file
@@ -36,7 +36,7 @@ struct Document {
   std::vector<std::string> overrides;
   Node root;
   int frame = 1;
-  std::vector<std::size_t> line_starts = {};  ///< of the text, see line_starts_of
+  std::vector<std::size_t> line_starts = {};  ///< line starts of the text, see line_starts_of
   std::vector<std::string> warnings = {};     ///< one line each
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What mesh formats are called. Each is read by a file in geometry/formats/.
+// Names of mesh formats. A file in geometry/formats/ reads each.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a mistyped name may have meant.
+// Suggestions for a mistyped name.
 #pragma once
 
 #include <span>

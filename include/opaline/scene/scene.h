@@ -40,7 +40,7 @@ class TextureFile;
 struct Texture {
   std::shared_ptr<const TextureFile> file;
   Rgb scale{1, 1, 1};       ///< times its colours; the first one times its numbers
-  std::size_t channel = 0;  ///< of the file, where a number is wanted
+  std::size_t channel = 0;  ///< channel of the file, for a number
   /// From UVs to the picture, about its upper left corner: scaled, turned (degrees), moved (KHR_texture_transform).
   std::array<double, 2> uv_offset{0, 0}, uv_scale{1, 1};
   double uv_rotation = 0;
@@ -53,7 +53,7 @@ struct Texture {
 /// the level one, at right angles to +y.
 struct Grain {
   double anisotropy = 0;  ///< [0, 1], specular_roughness_anisotropy of OpenPBR: 0 is the same all around
-  double rotation = 0;    ///< of the tangent about the normal, counterclockwise, degrees
+  double rotation = 0;    ///< rotation of the tangent about the normal, counterclockwise, degrees
   friend bool operator==(const Grain&, const Grain&) = default;
 };
 
@@ -90,14 +90,14 @@ struct Medium {
   /// Mean cosine g of the scattering angle, (-1, 1), where the coefficients are reduced ones. Random walks alone
   /// follow it; diffusion knows no more than (1 - g) sigma_s.
   double scatter_anisotropy = 0;
-  /// Of the plates and bodies made of it, mm, > 0; infinite: thick. ProfileKind::multipole alone asks.
+  /// Thickness of the plates and bodies made of it, mm, > 0; infinite: thick. ProfileKind::multipole alone asks.
   double thickness = std::numeric_limits<double>::infinity();
-  double specular_roughness = 0;  ///< of the boundary as it mirrors, [0, 1]; its square is GGX's alpha
-  /// What colours its light besides: t = tint x texture, [0, 1] but for textures whose mean is 1.
+  double specular_roughness = 0;  ///< roughness of the dielectric boundary, [0, 1]; GGX's alpha is its square
+  /// Tint of its light: t = tint x texture, in [0, 1] except for textures with mean 1.
   Rgb tint{1, 1, 1};
   std::optional<Texture> tint_texture{}, roughness_texture{};
   TextureMix texture_mix = TextureMix::split;
-  /// Of ArtistMedium::subsurface_radius, over its mean; the record has the mean.
+  /// Texture of ArtistMedium::subsurface_radius over its mean; the record stores the mean.
   std::optional<Texture> radius_texture{};
   /// Share of the light that scatters inside, [0, 1]; the rest is reflected diffusely at the surface, by base_color.
   double subsurface_weight = 1;
@@ -106,11 +106,11 @@ struct Medium {
   ChosenProfile chosen{};                                   ///< where profile is none
   NormalizedDiffusionFit fit =
       NormalizedDiffusionFit::refit;  ///< ProfileKind::normalized_diffusion alone asks
-  Grain grain{};                      ///< of the boundary
+  Grain grain{};                      ///< grain of the boundary
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
-/// Whether some of its light is reflected diffusely at its surface.
+/// True if some of its light is reflected diffusely at its surface.
 inline bool is_partly_opaque(const Medium& medium) {
   return medium.subsurface_weight < 1 || medium.weight_texture;
 }
@@ -142,8 +142,8 @@ struct MeshFile {
   /// If set: scale so that the largest side of the bounding box is this long (mm), centre x and z on the
   /// origin, and stand the mesh on y = 0; applied before the shape's transform.
   std::optional<double> fit_size;
-  /// Of the file, where it holds several meshes: "mesh/primitive" by their indices of a glTF asset, the
-  /// material's name of an OBJ. Empty: all of the file.
+  /// Part of a file with several meshes: the indices "mesh/primitive" of a glTF asset, or the material name of an OBJ.
+  /// Empty: the whole file.
   std::string part{};
   /// True: vertex colours multiply the surface's colour; none: they do unless a texture gives that colour.
   std::optional<bool> vertex_colors{};
@@ -152,7 +152,7 @@ struct MeshFile {
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
-/// Of a built-in curved shape: 4^fineness times as many triangles. 6 leaves .00005 of a sphere's area out,
+/// Most fineness of a built-in curved shape: 4^fineness times as many triangles. 6 leaves .00005 of a sphere's area out,
 /// and each one less four times that.
 constexpr int kMostFineness = 6, kLeastFineness = 4;
 
@@ -185,11 +185,11 @@ struct TorusShape {  ///< axis along y
 
 using ShapeSource = std::variant<MeshFile, SphereShape, BoxShape, QuadShape, SlabShape, TorusShape>;
 
-/// What an opaque surface mirrors: facets (GGX) of a dielectric over its colour, or of a metal of that colour.
+/// Specular reflection of an opaque surface: GGX facets of a dielectric over its colour, or of a metal of that colour.
 struct Gloss {
   double metalness = 0, roughness = 1;  ///< [0, 1]; the square of the latter is GGX's alpha
   std::optional<Texture> metalness_texture{}, roughness_texture{};
-  double eta = 1.5;  ///< of the dielectric, outside air
+  double eta = 1.5;  ///< eta of the dielectric, outside air
   Grain grain{};
   friend bool operator==(const Gloss&, const Gloss&) = default;
 };
@@ -209,11 +209,11 @@ struct Shape {
   /// Translucent shapes with the same non-empty group blend as one object; others never bleed into each
   /// other.
   std::string group;
-  SourcePlace place{};                           ///< of its source
+  SourcePlace place{};                           ///< place of its source
   std::optional<Texture> reflectance_texture{};  ///< times the reflectance
   std::optional<Texture> normal_map{};           ///< its scale is of the slopes
   std::optional<Texture> bump_map{};             ///< heights; its scale is mm
-  std::optional<Gloss> gloss{};                  ///< of an opaque shape; none: matte
+  std::optional<Gloss> gloss{};                  ///< specular reflection of an opaque shape; none: diffuse
   friend bool operator==(const Shape&, const Shape&) = default;
 };
 
@@ -314,7 +314,7 @@ struct Film {
   friend bool operator==(const Film&, const Film&) = default;
 };
 
-/// Of `direct`, where neither Settings::entry_samples nor Settings::until_error says.
+/// Default entry samples of `direct`, where neither Settings::entry_samples nor Settings::until_error says.
 inline constexpr std::size_t kDefaultEntrySamples = 256;
 
 /// Switches for experiments with the methods themselves (docs/laboratory.md).
@@ -342,18 +342,18 @@ struct Settings {
   double cell_size = 2;        ///< volume_diffusion: of the cells at the surface, mean free paths
   std::optional<int> bounces;  ///< 1: surfaces that are lit light others, once; none: bounces_of()
   std::uint64_t seed = 0;
-  int reference_frame = 1;  ///< of frame ranges: samples are placed there and go along to all others
+  int reference_frame = 1;  ///< frame in which samples are placed; they move with the surface in others
   Laboratory laboratory{};
   friend bool operator==(const Settings&, const Settings&) = default;
 };
 
 struct Scene {
   std::string file;         ///< for messages
-  std::string translation;  ///< of an asset: what its import made of it, in a line; empty: a scene file
+  std::string translation;  ///< summary of an asset's import, one line; empty: a scene file
   /// Deprecated spellings in the file, and deviations from an asset that change the image, one line each.
   std::vector<std::string> warnings;
-  std::size_t asset_bytes = 0;  ///< of an asset: memory that its records take
-  double mm_per_unit = 1;       ///< of the file, for what is written in its units; nothing here is
+  std::size_t asset_bytes = 0;  ///< memory of an asset's records
+  double mm_per_unit = 1;       ///< unit of the file, for output in its units; all lengths here are mm
   std::vector<Medium> media;
   std::vector<Shape> shapes;
   std::vector<Light> lights;
@@ -371,12 +371,12 @@ struct Scene {
 int bounces_of(const Scene& scene);
 /// The textures of a shape and of its medium.
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
-/// Whether a shape's mesh has to have UVs.
+/// True if a shape's mesh has to have UVs.
 bool needs_uvs(const Scene& scene, const Shape& shape);
-/// Of a shape whose boundary is rough and has one; else null.
+/// Grain of a shape whose boundary is rough and has one; else null.
 const Grain* grain_of(const Scene& scene, const Shape& shape);
 
-/// What a mesh is read with, by which its surface is described: UVs, and tangents where the file has them.
+/// Surface coordinates read with a mesh: UVs, and tangents if the file has them.
 enum class MeshUvs {
   unread,
   if_any,        ///< both

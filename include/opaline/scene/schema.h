@@ -39,14 +39,14 @@ enum class ValueType {
   object
 };
 
-/// What one key of the scene file takes and means.
+/// Type, range and meaning of one key of the scene file.
 struct KeyInfo {
-  /// Of the file: "scene", "medium", "shape.sphere", "light.point", "settings", ...
+  /// Section of the file: "scene", "medium", "shape.sphere", "light.point", "settings", ...
   std::string_view section = {};
   std::string_view key = {};
   ValueType type = ValueType::object;
   std::string_view unit = {};      ///< as documented; empty: none
-  Range range = kFiniteNumber;     ///< of each number
+  Range range = kFiniteNumber;     ///< range of each number
   std::string default_value = {};  ///< as documented; empty: the key must be given, or has no default
   std::string_view meaning = {};   ///< one line of Markdown
   std::span<const std::string_view> choices = {};

@@ -6,7 +6,7 @@
 
 namespace opaline {
 
-/// "FBX is not read; export GLB" by the end of a file's name; empty for every other one.
+/// "FBX is not supported; export GLB" by the end of a file's name; empty for every other one.
 std::string unread_format(const std::string& path);
 
 }  // namespace opaline

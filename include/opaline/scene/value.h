@@ -29,7 +29,7 @@ class Value {
   const Node& node() const { return *node_; }
   /// Its row of the schema.
   const KeyInfo& info() const { return *info_; }
-  /// What `--set` calls it.
+  /// Path of the value in `--set`.
   const std::string& path() const { return path_; }
   /// Where it stands in the file.
   SourcePlace place() const { return place_at(*document_, node_->offset, node_->override_index); }
@@ -70,7 +70,7 @@ class Value {
 
  protected:
   std::string name() const;      ///< for messages
-  std::string describe() const;  ///< what the value is, for messages
+  std::string describe() const;  ///< text of the value, for messages
   std::string describe_object() const;
   std::string path_of(std::string_view child) const;
   const Node& require_kind(Node::Kind kind, const std::string& expected) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each light adds to a picture.
+// Contribution of each light to an image.
 #pragma once
 
 #include <string>

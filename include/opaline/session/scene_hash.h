@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tells one scene with its meshes and overrides from another.
+// Hash of a scene with its meshes and overrides.
 #pragma once
 
 #include <string>
@@ -16,8 +16,7 @@ namespace opaline {
 std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,
                        const Scene& scene);
 
-/// What the sums of a direct rendering belong to: scene_hash of all overrides but those that say when to
-/// stop.
+/// Key of the sums of a direct render: scene_hash of all overrides except the stopping criteria.
 std::string direct_sums_key(const std::string& path, const std::vector<std::string>& overrides,
                             const Scene& scene);
 

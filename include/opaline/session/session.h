@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene that is edited and rendered again and again: what an edit leaves valid is kept.
+// A scene that is edited and rendered repeatedly, with reuse of all valid stage results.
 #pragma once
 
 #include <cstdint>
@@ -15,102 +15,102 @@
 
 namespace opaline {
 
-/// Keeps the last scene's stage results, each with the key of what it was computed from; the next scene takes
-/// over those with equal keys, looks for the others in the cache, and computes what is left:
+/// Caches the stage results of the last scene, each with the key of its inputs. The next scene reuses results with
+/// equal keys, looks up the others in the disk cache, and computes the rest:
 ///
-///   edit                                what is computed
-///   camera, film                        camera rays and what they see; a surface cache is looked up again.
-///                                       Other edits trace these rays again, too, unless the view is held
-///   a light's colour or power           sums over lights, trees; no ray from a sample.
-///   a medium                            evaluation; its samples stay while they are dense enough and at most
-///                                       twice as dense (in spacing) as it asks for
-///   eta                                 the light that enters, trees, evaluation
-///   a light moved, added or removed     that light's share, trees, evaluation
-///   any of many lights (ManyLights)     the share of all of them, also for a colour; trees, evaluation
-///   an object moved as a whole          no file is read; its samples go along; light that enters it, and
-///                                       others where the shadow of a ball around it fell or falls
+///   edit                                computed again
+///   camera, film                        camera rays and their hits; lookups in a surface cache. Other edits trace
+///                                       these rays again, too, unless hold_view is on
+///   a light's colour or power           sums over lights, octrees; no ray from a sample
+///   a medium                            evaluation; samples are reused while they are dense enough, and at most
+///                                       twice as dense (in spacing) as required
+///   eta                                 transmitted irradiance, octrees, evaluation
+///   a light moved, added or removed     contribution of that light, octrees, evaluation
+///   any of many lights (ManyLights)     contribution of all of them, also after a change of colour; octrees, evaluation
+///   an object moved as a whole          no file is read; its samples move with it; its irradiance, and that of others
+///                                       within the old or new shadow of its bounding sphere
 ///   a mesh bent, the same triangles     the mesh is read, not checked; samples and their cells move with their
-///                                       triangles (carry_samples); everything else of it is computed again.
-///                                       Samples are placed anew if carrying would make them more than both
-///                                       settings.max_samples and twice their first number, or, where that
-///                                       number was set or limited by max_samples, less than a sixteenth of it
-///   anything else                       what depends on it
+///                                       triangles (carry_samples); all its other results are computed again.
+///                                       Samples are placed again if carrying would give more than both
+///                                       settings.max_samples and twice their first number, or, if that number
+///                                       was set or limited by max_samples, less than a sixteenth of it
+///   anything else                       the dependent stages
 ///
-/// Random walks (Method::volume) are kept by light, where lights are few: neither the camera nor colours walk again,
-/// and other edits walk for the lights they concern.
+/// Random walks (Method::volume) are stored by light if lights are few: edits of the camera or of colours trace none,
+/// and other edits trace only those of the affected lights.
 ///
-/// A picture has the same bits as that of a new session, with two exceptions: random walks that were made for a
-/// smaller error (walks are not taken back), and scenes whose samples were carried along or stayed denser than needed.
-/// Such samples were placed on the last surface that was sampled anew. The picture depends on that surface and on the
-/// scene as it is now, not on the edits in between.
+/// An image is bit-identical to that of a new session, with two exceptions: random walks traced for a smaller error
+/// (walks are never removed), and scenes with samples that moved with the surface or stayed denser than required. Such
+/// samples were placed on the surface of the last complete sampling. The image depends on that surface and on the current
+/// scene, not on the edits in between.
 class Session {
  public:
-  /// cache: where to look for what is not at hand, and to keep it; null: nowhere. Outlives the session.
+  /// cache: disk cache to look up and store results; null: none. Must outlive the session.
   explicit Session(StageCache* cache = nullptr);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Chooses the bodies' profiles (choose_models.h), which all later scenes take over. With methods that have samples it
-  /// places the scene's and holds on to them: every later scene carries these along, or, where its
-  /// surfaces are others, has its own without forgetting them. So frames of a shot are the same whichever
-  /// process renders which of them.
+  /// Chooses the profiles of the bodies (choose_models.h) for all later scenes. With methods that have samples, it also
+  /// places the samples of this scene and keeps them: later scenes move these samples along, or place their own on
+  /// different surfaces without discarding them. The frames of a shot are therefore the same in any process,
+  /// whichever frames it renders.
   /// error as edit
   void anchor(Scene scene, Monitor* monitor = nullptr);
 
-  /// Takes the scene as it is now: loads meshes that changed and plans. Samples at hand may change the plan.
-  /// error as make_world; the session then holds the scene before
+  /// Sets the scene: loads changed meshes and plans. Existing samples may change the plan.
+  /// error as make_world; the session then keeps the previous scene
   void edit(Scene scene);
 
-  /// How many pictures are to be made of the same surfaces in the same light, 1 at first: with the evaluator
-  /// `automatic` a surface cache is made if it pays for all of them.
+  /// Sets the number of images of the same surfaces in the same light, 1 by default: the evaluator `automatic`
+  /// makes a surface cache if it pays for all of them.
   void expect_pictures(std::size_t pictures);
 
-  /// Whether to keep what the camera sees, how the lights reach it, and from where surfaces light it and the samples, for
-  /// later pictures. After an edit of colours or media none of these is then traced again, nor what rough coats mirror where
-  /// nothing is textured or a metal; what smooth boundaries mirror is. Costs memory (HeldView). Off by default.
+  /// Enables the cache of the view: camera hits, their light by source, and gathering rays, reused by later images. An edit
+  /// of colours or media then traces none of them again, and no specular reflection of rough boundaries without textures and
+  /// metals; smooth boundaries are traced again. Costs memory (HeldView). Off by default.
   void hold_view(bool hold);
 
-  /// Whether each picture has the bits of a new session's. Samples are then placed anew wherever a new session
-  /// would have others, neither carried along nor left denser than needed. Default: false.
+  /// If true, each image is bit-identical to that of a new session. Samples are then placed again if a new session
+  /// would place others, instead of moving along or staying denser than required. Default: false.
   void match_new_session(bool matches);
 
-  /// If no further edits follow, the session drops the data that only edits reuse. Default: true. No picture
+  /// If no further edits follow, the session drops the data that only edits reuse. Default: true. No image
   /// depends on it.
   void expect_edits(bool edits);
 
-  /// Sums of random walks to go on from, and where to keep them.
+  /// Sums of random walks to resume from, and their storage.
   void store_walks(WalkStore store);
 
-  /// The ray structure alone, which prepare has made otherwise.
+  /// Builds the ray structure only; prepare builds it otherwise.
   void prepare_rays();
 
-  /// A coarse picture (first_light.h) of the scene, which needs nothing of prepare but the rays.
+  /// Coarse preview of the scene (first_light.h); requires only the rays.
   Image first_light(Monitor* monitor = nullptr);
 
-  /// Computes what the scene needs for its method and is not there; a second call does nothing. In a scene
-  /// without lights that is nothing: it is rendered as by Method::lambert.
-  /// error Error{interrupted}: what was complete stays
+  /// Computes all missing stages for the method; a second call does nothing. A scene without lights has no stages: it is
+  /// rendered as by Method::lambert.
+  /// error Error{interrupted}: complete stages remain
   void prepare(Monitor* monitor = nullptr);
 
-  /// The picture of the scene; prepares it first.
+  /// Renders the scene; prepares it first.
   RenderResult render(Monitor* monitor = nullptr);
 
-  /// The scene of the last edit, with the profiles that were chosen.
+  /// Scene of the last edit, with the chosen profiles.
   const Scene& scene() const;
-  /// Its meshes around one origin.
+  /// Meshes of the scene around one origin.
   const World& world() const;
-  /// What the scene requires.
+  /// Stages, samples and memory of the scene.
   const Plan& plan() const;
   const RayScene& rays() const;  ///< after prepare
-  /// After prepare; none where the method or the plan has none.
+  /// Bodies after prepare; empty for a method or plan without bodies.
   std::span<const Body> bodies() const;
-  /// Of the last picture in which light bounced, of whichever view and light; null: none of these shapes.
+  /// Bounced places of the last image with bounces, for any view and light; null: none for these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
-  const SessionWork& work() const;  ///< of the last edit and since
-  /// What was kept, and what not; a line each.
+  const SessionWork& work() const;  ///< work of the last edit and since
+  /// Decisions on reused and recomputed stages, a line each.
   const std::vector<std::string>& decisions() const;
-  /// Rays, sampling, irradiance, octree, and exitance where there are surface caches.
+  /// Costs of rays, sampling, irradiance, octree, and of exitance with surface caches.
   const std::vector<StageCost>& costs() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which result of a scene's stages depends on what: the one notion that the disk cache and the session share.
+// Cache keys of stages, shared by the disk cache and the session.
 #pragma once
 
 #include <cstdint>
@@ -12,38 +12,37 @@
 
 namespace opaline {
 
-/// Keys of a mesh of the world, after loading, mending and moving: its places alone (what throws shadows),
-/// and with the normals; and a ball around it.
+/// Keys of a mesh of the world, after loading, repair and transformation: of its positions only (for shadows),
+/// and with the normals; and its bounding sphere.
 struct MeshKeys {
   StageKey shape, all;
   Vec3d center{};
   double radius = 0;
 };
-/// Instruction set and ray tracer that results depend on.
+/// Instruction set and ray tracer, on which results depend.
 const char* widest_instructions();
 std::string embree_version();
 
-/// Of one mesh.
+/// Keys of one mesh.
 MeshKeys mesh_keys(const Mesh& mesh);
-/// One a mesh of the world.
+/// Keys of each mesh of the world.
 std::vector<MeshKeys> mesh_keys(const World& world);
 
-/// Of a group's samples placed anew: its meshes, their count and random numbers.
+/// Cache key of a body's placed samples: its meshes, the number of samples and the random numbers.
 StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group);
 
-/// Of a group's samples where cells cut its meshes.
+/// Cache key of a body's samples on cells that cut its meshes.
 /// in    unit: of the world, mm
 StageKey cut_surface_key(const GroupPlan& group, std::span<const MeshKeys> meshes, double unit);
 
-/// Of the samples of key `from`, carried along to the group's meshes as they are now.
-/// in    unit: of the world they come from over that of this one
+/// Cache key of the samples with key `from`, carried along to the body's current meshes.
+/// in    unit: unit of their world over that of this one
 StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes,
                              double unit);
 
-/// Of the light that enters at samples from one light: the samples, where and how large the light is but not
-/// its colour, the index of refraction, random numbers, and every mesh that could throw a shadow from this
-/// light onto the group. Shadow rays are Embree's: its version and the machine's instruction set belong to
-/// it.
+/// Cache key of the light transmitted at samples from one light: the samples, position and size of the light but not its
+/// colour, the index of refraction, random numbers, and every mesh that could shadow the body from this light. It
+/// includes Embree's version and the instruction set of the machine, which affect shadow rays.
 /// in    light: recentred
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light);
@@ -53,34 +52,33 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> transfers,
                          std::span<const Light> lights, const StageKey& tint);
 
-/// Of the shape of a profile that is walked, in mean free paths.
+/// Cache key of the shape of a profile from random walks, in mean free paths.
 StageKey walked_profile_key(double absorbed, double eta);
 
-/// Of all that lights another surface but for what bodies hold: meshes, opaque surfaces, lights.
+/// Cache key of all light from surfaces, except the exitance of bodies: meshes, opaque surfaces, lights.
 /// in    lights: recentred
 StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
                       std::span<const Light> lights);
 
-/// Of what camera rays meet: the camera, the film, all meshes, how the structure was built that rays walk.
+/// Cache key of camera hits: the camera, the film, all meshes, and the build of the ray structure.
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes);
 
-/// Of which surfaces the camera's rays meet are of which kind, lights that hide some included, and of the
-/// random numbers that lights are sampled with there; but for boundaries (HeldView::set_fields).
+/// Cache key: surface type at each camera hit, including lights that hide surfaces, and random numbers for light samples
+/// there, but not boundaries (HeldView::set_fields).
 /// in    lights: recentred
 StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights);
-/// Of irradiance at places of surfaces, by light, whatever the camera sees.
+/// Cache key of irradiance at surface points, by light, independent of the camera.
 /// in    surfaces: view_surfaces_key
 StageKey view_near_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
                        const StageKey& surfaces);
-/// Besides that, of what coats mirror.
+/// Cache key of specular reflection, in addition to view_near_key.
 StageKey view_coats_key(const Scene& scene);
 
-/// Of how one light reaches them: where it is and how large, but not its colour.
+/// Cache key of the visibility of one light: its position and size, but not its colour.
 /// in    light: recentred
 StageKey view_light_key(const Light& light);
 
-/// Whether a mesh could be in the way between a light and a group's meshes, to judge by the balls around them
-/// all; at most too cautious.
+/// True if a mesh could lie between a light and a body's meshes, from the bounding spheres of all; conservative.
 /// in    light: recentred; unit: World::unit
 bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
                 const Light& light, double unit);

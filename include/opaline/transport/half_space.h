@@ -6,7 +6,7 @@
 
 namespace opaline {
 
-/// What comes back of light that entered a half space.
+/// Albedo of a half space: diffuse reflection of transmitted light.
 class HalfSpace {
  public:
   /// in    absorbed = 1 - albedo in [0, 1]; eta, inside over outside, > 0
@@ -25,7 +25,7 @@ class HalfSpace {
   double absorbed_;
   double diffuse_share_ = 0;
   struct Source {
-    double cosine, strength;  // of light that falls back from the boundary or enters, through the H function
+    double cosine, strength;  // light reflected by the boundary or transmitted, through the H function
   };
   std::vector<Source> sources_;
 };

@@ -24,7 +24,7 @@ struct Slab {
 /// How light arrives from outside.
 struct SlabEntry {
   bool is_diffuse = false;  ///< from everywhere, equal radiance
-  double cosine = 1;        ///< of a beam with the inward normal, in (0, 1]; not used where it is diffuse
+  double cosine = 1;  ///< cosine of a beam with the inward normal, in (0, 1]; not used where it is diffuse
 };
 inline constexpr SlabEntry kNormalEntry{}, kDiffuseEntry{true, 1};
 
@@ -41,13 +41,13 @@ struct WalkedRing {
   WalkedValue profile;       ///< share per area: the mean of R_d(r) over the ring, 1/mm^2
 };
 
-/// What belongs to light between two cosines outside.
+/// Light between two cosines outside.
 struct WalkedCosine {
   double low = 0, high = 0;
   WalkedValue value;
 };
 
-/// What one face sends out.
+/// Light that leaves one face.
 struct WalkedFace {
   WalkedValue total, uncollided;  ///< shares: all of it, and the part of it that was never scattered
   std::vector<WalkedRing> rings;
@@ -64,8 +64,8 @@ struct SlabWalks {
   WalkedValue absorbed;
   WalkedValue unfinished;  ///< still inside after most_collisions
   WalkedValue energy;      ///< sum of all shares; its mean is 1
-  /// Of diffuse entry: share that leaves by the entry face, of what entered at these cosines. Zero where all
-  /// light is reflected before it enters.
+  /// Albedo under diffuse light by cosine of entry: fraction of the light transmitted at these cosines that leaves by the
+  /// entry face. Zero at total reflection.
   std::vector<WalkedCosine> albedo_by_entry;
 };
 
@@ -79,10 +79,10 @@ inline constexpr std::size_t kWalkBatches = 512;
 struct LaboratorySettings {
   std::size_t walks = 100000;  ///< > 0; rounded up to a multiple of kWalkBatches
   std::uint64_t seed = 1;
-  /// Of one walk, > 0. Matters where nothing absorbs and nothing bounds the depth: see SlabWalks::unfinished.
+  /// Maximum collisions of one walk, > 0. Limits walks in a half space without absorption, see SlabWalks::unfinished.
   std::uint64_t most_collisions = std::uint64_t(1) << 24;
   std::vector<double> radii;  ///< where rings end, mm, ascending, > 0; empty: default_radii
-  int cosine_bins = 20;       ///< of equal width, from 1 to 10000
+  int cosine_bins = 20;       ///< cosine bins of equal width, from 1 to 10000
   Monitor* monitor = nullptr;
 };
 

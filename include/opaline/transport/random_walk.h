@@ -32,10 +32,10 @@ struct BoundaryAhead {
   Vec3d normal;                                               ///< unit, outward
 };
 
-/// What becomes of the light of a ray on its way to the boundary and there.
+/// Interaction of a ray with the medium up to the boundary, and with the boundary.
 struct Crossing {
   double collided = 0;     ///< share that collides on the way, 1 - exp(-sigma_t distance)
-  double reflectance = 0;  ///< of the boundary, for the rest
+  double reflectance = 0;  ///< reflectance of the boundary, for the rest
 };
 
 inline Crossing cross(const HomogeneousMedium& medium, const WalkState& walk, const BoundaryAhead& ahead) {
@@ -123,7 +123,7 @@ struct LeavingLight {
 /// Where the weight of a walk went that did not leave.
 struct WalkEnd {
   double absorbed = 0;
-  double unfinished = 0;  ///< of a walk that was given up: still inside
+  double unfinished = 0;  ///< weight inside at the end of an unfinished walk
 };
 
 /// Follows one walk to its end; `walk` is left as it was last.

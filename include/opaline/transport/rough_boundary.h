@@ -65,10 +65,10 @@ class RoughBoundary {
 /// Boundaries of one index seen from any side, whose tables lie between those of a few.
 class RoughnessRange {
  public:
-  /// Of any roughness.
+  /// Roughness range of any roughness.
   explicit RoughnessRange(double eta, float anisotropy = 0)
       : RoughnessRange(eta, anisotropy, kLeast, 1, 17) {}
-  /// Of one.
+  /// Range of one roughness.
   RoughnessRange(double eta, float anisotropy, float roughness)
       : RoughnessRange(eta, anisotropy, roughness, roughness, 1) {}
 
@@ -80,7 +80,7 @@ class RoughnessRange {
   RoughnessRange(double eta, float anisotropy, float least, float most, std::size_t steps);
 
   float anisotropy_, least_, most_;
-  std::size_t steps_, sides_;  // of roughness, and of azimuths, evenly by the alpha that is seen from there
+  std::size_t steps_, sides_;  // steps of roughness, and of azimuth, uniform in the projected alpha
   std::vector<RoughBoundary> boundaries_;  // for each roughness those of all sides
 };
 

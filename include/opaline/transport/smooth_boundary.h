@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a smooth dielectric boundary does to a ray: reflection and refraction on either side.
+// Smooth dielectric boundary: reflection and refraction of a ray on either side.
 #pragma once
 
 #include <algorithm>

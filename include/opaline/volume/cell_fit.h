@@ -12,8 +12,8 @@
 
 namespace opaline {
 
-/// What each cell's quadratic takes of the means around it. It depends on where the cells lie alone, so fits to other
-/// means of the same cells can share it; 700 bytes a cell.
+/// Weights of neighbouring means in each cell's quadratic. They depend on cell positions only, so fits to other means of
+/// the same cells share them; 700 bytes per cell.
 class CellWeights {
  public:
   explicit CellWeights(std::span<const SurfaceSample> samples);
@@ -35,10 +35,10 @@ class CellWeights {
     std::uint32_t sample;
     float closeness;  ///< weight with which its surprise counts here
   };
-  /// What kChunk cells take, in the order of their places.
+  /// Weights of kChunk cells, in spatial order.
   struct Chunk {
     std::vector<Frame> frames;                ///< one a cell
-    std::vector<std::uint32_t> ends;          ///< of each cell's neighbours
+    std::vector<std::uint32_t> ends;          ///< end of each cell's neighbours
     std::vector<Neighbour> neighbours;        ///< those of a cell after those of the one before
     std::vector<std::array<float, 6>> terms;  ///< one a neighbour: of the quadratic, for a mean of 1 there
   };
@@ -71,7 +71,7 @@ class CellFit {
       std::array<Four, 3> middle, normal;
     };
     struct FourWeights {
-      std::array<Four, 3> apart;  // of the point from their middles, spacings
+      std::array<Four, 3> apart;  // offset of the point from their centres, in spacings
       Four weight;
     };
 
@@ -101,7 +101,7 @@ class CellFit {
   typedef float Channels __attribute__((vector_size(16)));  ///< red, green, blue, 0
   struct Fit {
     Vec3f along_u, along_v;
-    std::array<Channels, 6> terms;  ///< of 1, u, v, u^2, u v, v^2; u, v: spacings
+    std::array<Channels, 6> terms;  ///< coefficients of 1, u, v, u^2, u v, v^2; u, v: spacings
     Channels noise, shape;
   };
 

@@ -43,11 +43,11 @@ class NearestSample {
 
  private:
   struct Place {
-    std::int32_t x, y, z;  ///< of a cube
+    std::int32_t x, y, z;  ///< cell coordinates of a cube
   };
   struct Cube {
     std::uint64_t key = 0;
-    std::uint32_t first = 0, count = 0;  ///< of its members; none: the slot is free
+    std::uint32_t first = 0, count = 0;  ///< range of its members; none: the slot is free
   };
   struct Found {
     float distance2;

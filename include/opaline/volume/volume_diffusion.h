@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What leaves a body by the diffusion equation solved inside of it: the price of a preview, no kernel's shape.
+// Exitance of a body by the diffusion equation solved inside it: fast, and independent of a kernel's assumptions.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ namespace opaline {
 struct VolumeDiffusionInput {
   const World& world;
   std::span<const std::uint32_t> meshes;   ///< the body's
-  std::span<const SurfaceSample> samples;  ///< of its cut_surface with these cells
-  std::span<const Vec3f> normals;          ///< of that, too
+  std::span<const SurfaceSample> samples;  ///< samples of its cut_surface with these cells
+  std::span<const Vec3f> normals;          ///< normals of the same cut_surface
   std::array<HomogeneousMedium, 3> media;  ///< R G B, isotropic, in the world's unit of length
   double cell = 1;                         ///< edge of the cells at the surface, world units
   MediaInside media_inside = {};           ///< isotropic; instead of `media`. Empty: these throughout
@@ -57,8 +57,8 @@ class VolumeDiffusion {
   VolumeExitance exitance(std::span<const Light> lights, std::span<const LightTransfer> transfers,
                           std::span<const RgbF> tints = {}, Monitor* monitor = nullptr) const;
 
-  /// Of light that comes to each sample evenly from all sides, as that of the surfaces around is taken to be.
-  /// in    entering: what enters, W per area, one a sample
+  /// Exitance for uniform incident light at each sample, the approximation for light from other surfaces.
+  /// in    entering: transmitted irradiance, W per area, one per sample
   /// out   as above
   VolumeExitance exitance_of_even(std::span<const RgbF> entering, Monitor* monitor = nullptr) const;
 

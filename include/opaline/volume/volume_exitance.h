@@ -19,13 +19,13 @@
 namespace opaline {
 
 struct VolumeInput {
-  const RayScene& rays;  ///< of the world
+  const RayScene& rays;  ///< ray structure of the world
   const World& world;
   std::span<const std::uint32_t> meshes;   ///< the body's; all others stop light
-  std::span<const SurfaceSample> samples;  ///< of the body; what leaves is counted on their Voronoi cells
+  std::span<const SurfaceSample> samples;  ///< Voronoi cells that count the exitance
   std::array<HomogeneousMedium, 3> media;  ///< R G B, in the world's unit of length
   std::span<const Light> lights;           ///< recentred
-  std::optional<double> until_error = {};  ///< of VolumeExitance::relative_error; none: kDefaultWalks
+  std::optional<double> until_error = {};  ///< bound of VolumeExitance::relative_error; none: kDefaultWalks
   std::uint64_t seed = 0;
   Monitor* monitor = nullptr;
   bool reenter = true;  ///< light that has left may meet the body again and enter
@@ -43,8 +43,8 @@ struct WalkSums {
   std::vector<float> flux;   ///< one a sample: flux that left its cell, in areas of a start
   std::vector<float> roots;  ///< roots of the sums over passes of its square
   double entered = 0;        ///< flux that entered from the lights
-  double lost = 0;           ///< of it, what got out through holes of the mesh
-  double stopped = 0;        ///< of it, what ended at other meshes inside the body
+  double lost = 0;           ///< fraction lost through holes of the mesh
+  double stopped = 0;        ///< fraction that ended at other meshes inside the body
 };
 
 /// Walks of light from one lamp, as if its emission were 1 in each channel; or from all lamps together.
@@ -67,7 +67,7 @@ struct VolumeExitance {
   bool has_inner_sheets = false;  ///< parts of the body overlap or touch, or its surface crosses itself
 };
 
-/// Whether each light is walked alone, so that its colour takes no part: where there are few.
+/// True if each light is walked alone, so that its colour takes no part: where there are few.
 bool walks_by_light(const VolumeInput& input);
 
 /// Goes on from `sums` (empty: from nothing) until there are kDefaultWalks or the error is small enough; `sums`
@@ -79,7 +79,7 @@ bool walks_by_light(const VolumeInput& input);
 void walk_volume(const VolumeInput& input, VolumeSums& sums,
                  const std::function<void(const VolumeSums&)>& after_pass = {});
 
-/// What the sums amount to in the lights' colours.
+/// Exitance from the sums, with the colours of the lights.
 VolumeExitance exitance_of(const VolumeInput& input, const VolumeSums& sums);
 
 /// Light enters where it falls on the body, refracted by the geometric normal, walks until it is absorbed or

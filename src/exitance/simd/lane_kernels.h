@@ -21,9 +21,9 @@ struct alignas(64) Packet {
 /// Sums at a packet's points, in flux units per mm^2; channel by channel.
 struct alignas(64) PacketSums {
   float exitance[3][kLanes];  ///< far kernel times flux
-  float spread[3][kLanes];    ///< of the samples of each leaf around their mean, squared
-  float squares[3][kLanes];   ///< of the samples' contributions
-  float sheets[3][kLanes];    ///< of what samples of other sheets within h bring beyond the far kernel
+  float spread[3][kLanes];    ///< spread of the samples of each leaf around their mean, squared
+  float squares[3][kLanes];   ///< squares of the samples' contributions
+  float sheets[3][kLanes];    ///< sheets of what samples of other sheets within h bring beyond the far kernel
   /// Samples of the same sheet within h, weighted by (1 - r^2/h^2)^2: area, flux, and, of all
   /// channels together, flux^2 / area.
   float near_area[kLanes], near_flux[3][kLanes], near_squares[kLanes];
@@ -39,7 +39,7 @@ struct LaneInput {
 
 /// Points near each other, for which nodes are accepted together.
 struct Cluster {
-  Vec3f center{}, half{};  ///< of their box
+  Vec3f center{}, half{};  ///< center of their box
   float radius = 0;        ///< no point is farther from the centre
   RgbF allowed{};          ///< error of one node
 };
@@ -76,13 +76,13 @@ struct LaneKernels {
 
 extern const LaneKernels kBaselineKernels, kAvx2Kernels, kAvx512Kernels;
 
-/// What a machine has beyond the baseline.
+/// Instruction sets of a machine beyond the baseline.
 struct MachineSets {
   bool avx2 = false, avx512 = false;  ///< avx2 with fma; avx512f besides
 };
 MachineSets this_machine();
 
-/// Of the instruction set asked for; automatic: the widest that the machine has.
+/// Kernels of the requested instruction set; automatic: the widest of the machine.
 /// error Error{bad_input}: the machine has not got it
 const LaneKernels& lane_kernels(InstructionSet wanted, const MachineSets& machine = this_machine());
 

@@ -177,7 +177,7 @@ TARGET static std::size_t add_leaves_block(const LaneInput& input, const std::ui
         whole[wholes++][1] = other << block;
       }
     }
-    // What the squares would be if all samples of the leaf gave the same.
+    // Squares for equal contributions of all samples of the leaf.
     const float inverse = 1 / float(leaf.count);
     even0 += (sum0 - before0) * (sum0 - before0) * inverse;
     even1 += (sum1 - before1) * (sum1 - before1) * inverse;

@@ -23,7 +23,8 @@ MachineSets this_machine() {
 const LaneKernels& lane_kernels(InstructionSet wanted, const MachineSets& machine) {
   const auto missing = [](const char* name) {
     return Error(ErrorKind::bad_input, {}, 0, 0,
-                 "settings.laboratory.instruction_set: this machine has not got it", "\"automatic\"", name);
+                 "settings.laboratory.instruction_set: not supported by this processor", "\"automatic\"",
+                 name);
   };
   switch (wanted) {
     case InstructionSet::baseline:

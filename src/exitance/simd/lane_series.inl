@@ -26,8 +26,8 @@ TARGET static inline V smaller(V a, V b) {
 // Where q falls in the table.
 struct Place {
   I segment;
-  V t;              // of the way through it
-  V inverse_width;  // of the segment, in q
+  V t;              // relative position along it
+  V inverse_width;  // inverse width of the segment, in q
 };
 
 TARGET static inline Place find(V q) {
@@ -61,7 +61,7 @@ TARGET static inline V kernel(const Channel& channel, const Place& at) {
   return c0 + at.t * (c1 + at.t * (c2 + at.t * c3));
 }
 
-// Of three channels.
+// Kernels of three channels.
 struct Kernels {
   V c0, c1, c2;
 };
@@ -97,7 +97,7 @@ TARGET static inline Series series(const LaneTable& table, std::size_t channel, 
                               : series<Reach::middle>(table, channel, at);
 }
 
-// Of the second order; kept where the orders beyond it make sense.
+// Relative change to second order; limited to the range of the series.
 TARGET static inline V relative_change(V value, V change) {
   return smaller(larger(change / larger(value, splat(1e-37f)), splat(-0.5f)), splat(0.35f));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the readers of all mesh formats check and build alike.
+// Checks shared by the readers of all mesh formats.
 #pragma once
 
 #include <cstddef>

@@ -21,7 +21,7 @@ struct MeshFormat {
   SourceMesh (*read_part)(const std::string& path, const std::string& part, std::string& bytes,
                           MeshUvs uvs) = nullptr;
 
-  /// What the mesh of a file whose bytes alone do not say it all depends on. Null: on its bytes.
+  /// Contents of a mesh file that refers to other files. Null: its bytes.
   std::string (*contents)(const std::string& path) = nullptr;
 
   /// The length of the whole file as its header announces it; 0 if it does not. Null: the format never does.
@@ -35,7 +35,7 @@ struct FormatOf {
   static const MeshFormat& format();
 };
 
-/// Of its files' names: in lower case, with the dot.
+/// Extension of a format: lower case, with the dot.
 std::string extension_of(std::string_view format);
 
 /// The format that a file's name ends in, in upper or lower case; null if it is none of them.

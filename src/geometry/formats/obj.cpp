@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 11> silent{"vt",  "vp",     "g",        "
                                                   "lod", "mtllib", "c_interp", "d_interp", "vc"};
 
 constexpr std::int64_t kNone = -1;  // the index of a normal or UV that a corner has not
-constexpr std::int64_t kMissing = std::numeric_limits<std::int64_t>::max();  // of a normal that is not there
+constexpr std::int64_t kMissing = std::numeric_limits<std::int64_t>::max();  // index of a missing normal
 
 /// Faces give normals to their corners: a vertex met with several gets a copy for each, behind all vertices.
 class VertexVariants {
@@ -51,7 +51,7 @@ class VertexVariants {
   static constexpr std::uint32_t kUnmet = 0xffffffff, kLast = 0xfffffffe;
 
   SourceMesh& mesh_;
-  std::vector<std::uint32_t> next_;  // of a vertex's copies
+  std::vector<std::uint32_t> next_;  // next copy of a vertex
 };
 
 class ObjReader {
@@ -245,7 +245,7 @@ class ObjReader {
     if (!has_hole) corners_.swap(kept_);
   }
 
-  /// Whether the face meets an edge both ways: there it leads to a hole and back.
+  /// True if the face meets an edge both ways: there it leads to a hole and back.
   bool has_bridge() const {
     std::vector<std::array<std::int64_t, 2>> edges;
     for (std::size_t i = 0; i < corners_.size(); ++i)
@@ -266,15 +266,15 @@ class ObjReader {
     check_range(highest_uv_, uvs_.size(), "texture coordinate");
     cut_faces();
     if (unread_ > 0)
-      mesh_.warnings.push_back(
-          path_ + ":" + std::to_string(first_unread_line_) + ": " + std::to_string(unread_) +
-          " statements that are no part of a polygon mesh are" + " left out, the first is " + first_unread_);
+      mesh_.warnings.push_back(path_ + ":" + std::to_string(first_unread_line_) + ": " +
+                               std::to_string(unread_) + " statements not part of a polygon mesh are" +
+                               " ignored, the first is " + first_unread_);
     if (first_material_line_ > 0 && part_ == nullptr)
       mesh_.warnings.push_back(path_ + ":" + std::to_string(first_material_line_) +
-                               ": materials and textures (mtllib, usemtl) are not read: the scene file says "
-                               "what a shape is made of");
+                               ": materials and textures (mtllib, usemtl) are ignored; the scene file "
+                               "defines the material of a shape");
     if (has_polypaint_)
-      mesh_.warnings.push_back(path_ + ": its polypaint (#MRGB) is left out; save colours at vertices");
+      mesh_.warnings.push_back(path_ + ": polypaint (#MRGB) is ignored; save colours at vertices");
     if (!colors_.empty()) give_vertex_colors(mesh_, colors_.linear(mesh_.positions.size()));
     if (has_groups_) give_smoothing();
     if (!corner_normals_.empty()) give_normals();
@@ -327,22 +327,22 @@ class ObjReader {
   const std::string& path_;
   const std::string* part_;
   std::string& bytes_;
-  std::string material_{kNoMaterial};  // of the faces that follow
+  std::string material_{kNoMaterial};  // material of the following faces
   SourceMesh mesh_;
   VertexCheck check_;
   std::vector<std::size_t> joined_;  // offsets of the newlines taken out
   std::vector<Vec3f> normals_;
-  std::vector<std::array<std::int64_t, 3>> corner_normals_;  // of triangles, up to the last that has one
+  std::vector<std::array<std::int64_t, 3>> corner_normals_;  // per triangle, up to the last with normals
   bool with_uvs_;
   std::vector<std::array<float, 2>> uvs_;
-  std::vector<std::array<std::int64_t, 3>> corner_uvs_;  // of triangles
-  std::vector<Corner> corners_, kept_;                   // of the face at hand
-  std::vector<Fan> fans_;                                // of faces with more than three corners
+  std::vector<std::array<std::int64_t, 3>> corner_uvs_;  // corner uvs of triangles
+  std::vector<Corner> corners_, kept_;                   // corners of the current face
+  std::vector<Fan> fans_;                                // fans of faces with more than three corners
   std::unordered_set<std::int64_t> seen_;
   FileColors colors_{ColorCoding::srgb};
-  std::uint32_t group_ = 0;  // of the faces that follow
+  std::uint32_t group_ = 0;  // smoothing group of the following faces
   bool has_groups_ = false, has_polypaint_ = false;
-  std::vector<std::uint32_t> groups_;  // of the triangles before the last s
+  std::vector<std::uint32_t> groups_;  // smoothing groups of the triangles before the last s
   std::size_t unread_ = 0;
   Highest highest_vertex_, highest_uv_;
   std::string first_unread_;

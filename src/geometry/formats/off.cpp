@@ -67,7 +67,7 @@ class OffReader {
   void counts() {
     TextCursor peek = at_;
     if (peek.word_across_lines() == "BINARY")
-      throw bad_file(path_, "binary OFF is not read", "text OFF, or another format", "OFF BINARY");
+      throw bad_file(path_, "binary OFF is not supported", "text OFF, or another format", "OFF BINARY");
     vertices_ = integer("number of vertices");
     faces_ = integer("number of faces");
     integer("number of edges");

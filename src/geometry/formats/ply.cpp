@@ -165,7 +165,7 @@ class PlyColors {
     const PlyScalar type = channels_[0]->type;
     if (is_floating(type)) return colors_.linear(elements);
     if (largest_ > kOfBytes && byte_size(type) > 2)
-      throw bad_file(path, "the PLY property '" + largest_property_->name + "' is no colour",
+      throw bad_file(path, "the PLY property '" + largest_property_->name + "' is not a colour",
                      "whole numbers from 0 to 255, or floats from 0 to 1",
                      std::to_string(std::int64_t(largest_)) + " of a type of 4 bytes");
     colors_.divide_by(byte_size(type) == 1 || largest_ > kOfBytes ? float(largest_of(type))
@@ -205,7 +205,7 @@ class PlyReader {
     give_colors();
     if (textures_ > 1)
       mesh_.warnings.push_back(path_ + ": its faces have " + std::to_string(textures_) +
-                               " textures (texnumber), which are taken for one");
+                               " textures (texnumber), treated as one");
     return std::move(mesh_);
   }
 
@@ -222,7 +222,7 @@ class PlyReader {
       }
     }
     if (faces_ == nullptr && std::ranges::any_of(header_.elements, is_strips))
-      throw bad_file(path_, "PLY triangle strips are not read", "faces; export the mesh as triangles",
+      throw bad_file(path_, "PLY triangle strips are not supported", "faces; export the mesh as triangles",
                      "element tristrips");
     require_faces(path_, faces_ == nullptr || vertices_ != nullptr ? 1 : 0, faces_ != nullptr ? 1 : 0);
     require_faces(path_, vertices_->count, faces_->count);
@@ -369,15 +369,15 @@ class PlyReader {
   const PlyElement* vertices_ = nullptr;
   const PlyElement* faces_ = nullptr;
   const PlyProperty* indices_ = nullptr;
-  std::vector<std::optional<std::size_t>> slots_;  // of each vertex property, its number in kept_names
+  std::vector<std::optional<std::size_t>> slots_;  // index in kept_names of each vertex property
   bool has_normals_ = false, has_uvs_;
   std::vector<std::array<float, 2>> uvs_;
   std::optional<PlyColors> vertex_colors_, face_colors_;
   const PlyProperty* wedges_ =
       nullptr;  // UVs at the corners of faces; null: there are none, or they are not wanted
-  std::vector<std::uint32_t> polygon_;    // of the face at hand, where it has them
+  std::vector<std::uint32_t> polygon_;    // polygon of the current face, where it has positions
   std::vector<float> wedge_;              // the same
-  std::vector<std::uint32_t> corner_of_;  // of each vertex, in the face at hand
+  std::vector<std::uint32_t> corner_of_;  // corner of each vertex in the current face
   bool has_wedges_ = false;               // a face has given them
   std::int64_t textures_ = 0;
   SourceMesh mesh_;

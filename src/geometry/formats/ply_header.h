@@ -18,9 +18,9 @@ inline bool is_floating(PlyScalar type) {
 
 struct PlyProperty {
   std::string name;
-  PlyScalar type = PlyScalar::float32;  ///< of the value, or of each entry of a list
+  PlyScalar type = PlyScalar::float32;  ///< type of the value, or of each entry of a list
   bool is_list = false;
-  PlyScalar count_type = PlyScalar::uint8;  ///< of a list's length
+  PlyScalar count_type = PlyScalar::uint8;  ///< count type of a list's length
 };
 
 struct PlyElement {

@@ -43,7 +43,7 @@ Vec3f binary_position(const char* bytes) {
 /// Makes a mesh of corners, three a triangle; triangles with two equal corners are left out.
 SourceMesh join_corners(const std::vector<Vec3f>& corners) {
   SourceMesh mesh;
-  std::vector<std::uint32_t> vertex = weld(corners);  // of each corner; first the earliest equal corner
+  std::vector<std::uint32_t> vertex = weld(corners);  // per corner; first the earliest equal corner
   for (std::size_t corner = 0; corner < corners.size(); ++corner) {
     if (vertex[corner] == corner) {
       vertex[corner] = std::uint32_t(mesh.positions.size());
@@ -154,11 +154,11 @@ SourceMesh read_stl(const std::string& path, std::string& bytes, MeshUvs) {
   mesh.smoothing.crease_angle = kCreaseAngle;
   if (surplus > 0)
     mesh.warnings.push_back(path + ": " + std::to_string(surplus) +
-                            " bytes after the last triangle are left out");
+                            " bytes after the last triangle are ignored");
   return mesh;
 }
 
-/// Of a binary file.
+/// Announced length of a binary file.
 std::uintmax_t announced_length(std::string_view start) {
   if (start.size() < binary_header) return 0;
   const std::string_view text = start.substr(0, binary_header);

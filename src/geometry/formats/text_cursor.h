@@ -30,7 +30,7 @@ class TextCursor {
     return text_.substr(first, offset_ - first);
   }
 
-  /// What stands between here and the end of this line, without blanks around it.
+  /// Rest of the current line, without surrounding blanks.
   std::string_view rest_of_line() {
     std::string_view rest = text_.substr(offset_, line_end() - offset_);
     while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
@@ -68,7 +68,7 @@ class TextCursor {
   int line_;
 };
 
-/// Whether the whole word is a number, as streams read them; beyond double it becomes infinite or zero. What is not
+/// True if the whole word is a number, as streams read them; beyond double it becomes infinite or zero. What is not
 /// finite may also be written as old Microsoft libraries do: -1.#IND00.
 inline bool parse_number(std::string_view word, double& value) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
@@ -87,7 +87,7 @@ inline bool parse_number(std::string_view word, double& value) {
   return error == std::errc();
 }
 
-/// Whether the whole word is an integer of 64 bits.
+/// True if the whole word is an integer of 64 bits.
 inline bool parse_integer(std::string_view word, std::int64_t& value) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

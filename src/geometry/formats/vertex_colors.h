@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// What numbers of 0 to 1 mean.
+/// Encoding of numbers from 0 to 1.
 enum class ColorCoding { srgb, linear };
 
 /// Colours of vertices or faces on their way from a file to a mesh. Those that the file leaves out are white.

@@ -14,7 +14,7 @@ double DirectMethod::seconds_of_pixel(const Scene& scene, const Lighting& lighti
 }
 
 std::string DirectMethod::bounces_stage() const {
-  return "bounces: light between things, once, by a ray from each place where light enters";
+  return "bounces: light between shapes, one bounce, by a ray from each point of entry";
 }
 
 std::string DirectMethod::shading_stage(const Scene& scene) const {
@@ -23,7 +23,7 @@ std::string DirectMethod::shading_stage(const Scene& scene) const {
     return fmt::format("direct, until the noise is {:.3g} %", 100 * *settings.until_error);
   const std::size_t wanted = settings.entry_samples.value_or(kDefaultEntrySamples),
                     pass = entry_samples_per_pass(scene.film);
-  return fmt::format("direct, {} entry samples a pixel", (wanted + pass - 1) / pass * pass);
+  return fmt::format("direct, {} entry samples per pixel", (wanted + pass - 1) / pass * pass);
 }
 
 }  // namespace opaline

@@ -98,7 +98,7 @@ bool update_surface_cache(BodyStages& stages, HierarchicalState& state) {
       if (!found) {
         if (input.scene.settings.evaluator == EvaluatorKind::surface_cache)
           stages.note(
-              fmt::format("more than {} places of the surface: evaluated at the picture's points", most));
+              fmt::format("the surface cache exceeds {} points; evaluated at shading points instead", most));
         return false;
       }
       stages.store.work().places_evaluated += found->places();

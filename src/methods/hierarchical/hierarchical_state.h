@@ -19,10 +19,10 @@ struct Kernels {
 struct HierarchicalState : MethodState {
   static constexpr Method kMethod = Method::hierarchical;
   std::vector<RgbF> irradiance;  ///< transmitted, one a sample, from lights and other surfaces
-  StageResult<Octree> tree;      ///< of that
-  StageKey direct_key;           ///< of the tree before bounced light is added
+  StageResult<Octree> tree;      ///< octree of the irradiance
+  StageKey direct_key;           ///< direct key of the tree before bounced light is added
   StageResult<Kernels> kernels;
-  CloudError cloud = {};                    ///< of the tree and the kernel
+  CloudError cloud = {};                    ///< error model of the octree and the kernel
   StageResult<SurfaceCache> surface_cache;  ///< may be kept though this image does not use it
   bool uses_surface_cache = false;
 

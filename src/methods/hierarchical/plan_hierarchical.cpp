@@ -21,11 +21,10 @@ constexpr double kBytesOfNeedle = 250;
 void warn_of_thin_body(const GroupPlan& body, std::vector<std::string>& warnings) {
   const double thickness = body.thickness;
   if (!(thickness > 0 && thickness < body.spacing)) return;
-  warnings.push_back(
-      fmt::format("{}: it is {:.3g} mm thick in the mean and its samples are {:.3g} mm apart: they cannot "
-                  "tell its sides apart; "
-                  "take {:.2g} samples (settings.samples, settings.max_samples)",
-                  body.name, thickness, body.spacing, body.area / (thickness * thickness)));
+  warnings.push_back(fmt::format(
+      "{}: the mean thickness of {:.3g} mm is less than the sample spacing of {:.3g} mm, so samples cannot "
+      "separate the two sides; use {:.2g} samples (settings.samples, settings.max_samples)",
+      body.name, thickness, body.spacing, body.area / (thickness * thickness)));
 }
 
 void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan& body,
@@ -35,27 +34,26 @@ void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan
     const std::optional<double> distance = near_light_distance(light, world, body.meshes, body.spacing);
     if (!distance) continue;
     warnings.push_back(fmt::format(
-        "{}: the light {} is {:.3g} mm from its surface and the samples are {:.3g} mm apart: light falls "
-        "between them; move the light away or make settings.sample_spacing smaller",
+        "{}: the light {} is {:.3g} mm from the surface, closer than the sample spacing of {:.3g} mm, so the "
+        "samples miss part of its light; move the light away or reduce settings.sample_spacing",
         body.name, light.name, *distance < 1e-3 * body.spacing ? 0 : *distance, body.spacing));
   }
 }
 
 std::string evaluation_stage(const Settings& settings) {
-  const std::string promise = fmt::format("{:.3g} % of the exact sum", 100 * settings.tolerance);
+  const std::string promise = fmt::format("error below {:.3g} % of the exact sum", 100 * settings.tolerance);
   switch (settings.evaluator) {
     case EvaluatorKind::automatic:
-      return "evaluation: dual tree, at the points of the picture or, where those are fewer, places of the "
-             "surface; " +
-             promise;
+      return "evaluation: dual tree at shading points, or a surface cache if that needs fewer; " + promise;
     case EvaluatorKind::dual_tree:
-      return "evaluation: dual tree, " + promise;
+      return "evaluation: dual tree at shading points; " + promise;
     case EvaluatorKind::surface_cache:
-      return "evaluation: dual tree at places of the surface, " + promise;
+      return "evaluation: surface cache by dual tree; " + promise;
     case EvaluatorKind::classic:
-      return fmt::format("evaluation: classic traversal, {} sr", settings.laboratory.max_solid_angle);
+      return fmt::format("evaluation: classic octree traversal, maximum solid angle {} sr",
+                         settings.laboratory.max_solid_angle);
     case EvaluatorKind::brute_force:
-      return "evaluation: brute force";
+      return "evaluation: exact sum (brute force)";
   }
   return "";
 }

@@ -20,7 +20,7 @@ std::size_t block_of(std::uint32_t ray) {
 
 struct Blocks {
   std::vector<std::uint32_t> hits;               ///< those of one block after those of the one before
-  std::array<std::size_t, kBlocks + 1> first{};  ///< of each
+  std::array<std::size_t, kBlocks + 1> first{};  ///< first hit of each block
 };
 
 Blocks blocks_of(const SurfaceHits& hits) {

@@ -29,13 +29,13 @@ double VolumeMethod::seconds(const Scene& scene, const GroupPlan& body, const Li
 
 std::string VolumeMethod::light_stage(const Scene& scene, std::span<const Light>) const {
   const Settings& settings = scene.settings;
-  const std::string reentry = settings.reenter ? "; light that leaves may enter again"
-                                               : "; light that has left is gone (settings.reenter)";
+  const std::string reentry = settings.reenter ? "; light that leaves may re-enter"
+                                               : "; light that leaves does not re-enter (settings.reenter)";
   if (settings.until_error)
     return fmt::format("random walks, until the noise of the cells is {:.3g} %",
                        100 * *settings.until_error) +
            reentry;
-  return fmt::format("random walks, {} a sample, channel and light", kDefaultWalks) + reentry;
+  return fmt::format("random walks, {} per sample, channel and light", kDefaultWalks) + reentry;
 }
 
 }  // namespace opaline

@@ -108,7 +108,7 @@ void VolumeMethod::prepare(BodyStages& stages) const {
     state.fit = fit_cells(stages, state.weights, exitance.exitance, exitance.error);
     return exitance;
   });
-  stages.note(passes > before ? "walked at random" : "random walks reused");
+  stages.note(passes > before ? "random walks traced" : "random walks reused");
 }
 
 bool VolumeMethod::finish(BodyStages& stages) const {

@@ -13,10 +13,10 @@ namespace opaline {
 struct VolumeState : MethodState {
   static constexpr Method kMethod = Method::volume;
   VolumeSums walks;                      ///< sums so far, of whole passes
-  std::vector<StageKey> walk_keys;       ///< of the sums' sources
+  std::vector<StageKey> walk_keys;       ///< keys of the sources of the sums
   StageResult<VolumeExitance> exitance;  ///< estimate of these sums
   ReusedWeights weights;
-  std::shared_ptr<const CellFit> fit;  ///< of the estimate, at any point
+  std::shared_ptr<const CellFit> fit;  ///< fit of the estimate, at any point
 };
 
 /// in    body: prepared by Method::volume

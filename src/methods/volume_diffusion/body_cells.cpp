@@ -27,7 +27,7 @@ std::array<HomogeneousMedium, 3> isotropic_media(const DiffuseProfile& profile) 
 
 }  // namespace
 
-// Of a medium that varies, what the cells do not resolve is stretched until they do. It still returns as much light, and
+// Body cells of a medium that varies, what the cells do not resolve is stretched until they do. It still returns as much light, and
 // where it leaves is known within a cell, as everything is.
 VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals) {
   const double cell = body.plan.cell / input.world.unit, least = cell / input.scene.settings.cell_size;

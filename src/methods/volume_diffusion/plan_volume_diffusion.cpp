@@ -19,13 +19,13 @@ bool varies(const Scene& scene, const GroupPlan& body) {
 
 /// Why cells do not suit a body; empty: they do.
 std::string reason_against_cells(const Scene& scene, const World& world, const GroupPlan& body) {
-  if (!(body.smallest_mean_free_path > 0)) return "it has no mean free path: diffuse reflection";
+  if (!(body.smallest_mean_free_path > 0))
+    return "the medium has no mean free path, so the body reflects diffusely";
   const auto is_open = [&](std::uint32_t mesh) { return world.reports[mesh].open_edges > 0; };
-  if (std::ranges::any_of(body.meshes, is_open)) return "its mesh is open and encloses no volume";
+  if (std::ranges::any_of(body.meshes, is_open)) return "its open mesh encloses no volume";
   if (!varies(scene, body) && is_too_large_for_cells(scene.settings, body))
     return fmt::format(
-        "it takes more than {:.2g} cells of {:.3g} mean free paths, and its surface is flat on "
-        "the scale of one",
+        "it requires more than {:.2g} cells of {:.3g} mean free paths, and its surface is flat on that scale",
         kMostCells, widest_cell(scene.settings));
   return {};
 }
@@ -38,8 +38,8 @@ void warn_of_open_mesh(const Scene& scene, const GroupPlan& body, std::vector<st
     return file != nullptr && file->fill_holes;
   });
   warnings.push_back(body.name + ": " + body.reason_against_method +
-                     "; its radial profile is used in place of volume_diffusion; close " +
-                     (is_filled ? "the holes that fill_holes leaves" : "it (fill_holes)"));
+                     "; uses its radial profile instead of volume_diffusion; close " +
+                     (is_filled ? "the holes that fill_holes cannot close" : "the mesh (fill_holes)"));
 }
 
 /// CPU seconds to trace the light transmitted at a sample from one direction.
@@ -94,7 +94,7 @@ double VolumeDiffusionMethod::seconds(const Scene& scene, const GroupPlan& body,
 }
 
 std::string VolumeDiffusionMethod::body_stage(const GroupPlan& body) const {
-  return fmt::format("diffusion: about {:.2g} cells in {}, {:.3g} mm at the surface: {:.3g} mean free paths",
+  return fmt::format("diffusion: about {:.2g} cells in {}, {:.3g} mm at the surface ({:.3g} mean free paths)",
                      expected_cells(body.area, body.thickness, body.cell), body.name, body.cell,
                      body.cell / body.smallest_mean_free_path);
 }

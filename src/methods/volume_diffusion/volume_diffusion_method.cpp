@@ -75,7 +75,7 @@ void VolumeDiffusionMethod::prepare(BodyStages& stages) const {
   } else if (bounces_of(stages.input.scene) == 0) {
     remove_bounced(stages);
   }
-  stages.note("diffusion", source, has_cells ? "solved in existing cells" : "solved");
+  stages.note("diffusion", source, has_cells ? "solved on the existing cells" : "solved");
 }
 
 StageKey VolumeDiffusionMethod::direct_key(const Body& body) const {
@@ -126,13 +126,13 @@ bool VolumeDiffusionMethod::finish(BodyStages& stages) const {
 }
 
 std::vector<std::string> VolumeDiffusionMethod::warnings(const Body& body, double unit) const {
-  constexpr double kLeastLeftOut = 1e-4;  // of the area: above rounding
+  constexpr double kLeastLeftOut = 1e-4;  // fraction of the area: above rounding
   std::vector<std::string> warnings;
   const double left_out =
       body.surface.samples.empty() ? 0 : 1 - body.surface.area * unit * unit / body.plan.area;
   if (left_out > kLeastLeftOut)
     warnings.push_back(fmt::format(
-        "{}: {:.2g} % of its surface lies inside of it or is folded; volume_diffusion leaves that out",
+        "{}: {:.2g} % of the surface lies inside the body or overlaps itself; volume_diffusion ignores it",
         body.plan.name, 100 * left_out));
   for (std::string& warning : cell_warnings(body, volume_diffusion_state(body).direct.value))
     warnings.push_back(std::move(warning));

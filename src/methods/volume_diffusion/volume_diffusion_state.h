@@ -15,8 +15,8 @@ struct VolumeDiffusionState : MethodState {
   StageResult<std::shared_ptr<const VolumeDiffusion>> cells;
   ReusedWeights weights;
   StageResult<VolumeExitance> direct,
-      bounced;  ///< of lights, and of other surfaces; bounced: key of zeros if none
-  std::shared_ptr<const CellFit> direct_fit, fit;  ///< of the first, and of both
+      bounced;  ///< from lights, and from other surfaces; bounced: key of zeros if none
+  std::shared_ptr<const CellFit> direct_fit, fit;  ///< fit of the first, and of both
 };
 
 /// in    body: prepared by Method::volume_diffusion

@@ -19,7 +19,7 @@ class Shader;
 /// One of several independent estimates of the same picture; only `direct` makes more than one.
 struct Pass {
   std::uint64_t index = 0;
-  int entry_samples = 0;  ///< of each camera ray
+  int entry_samples = 0;  ///< entry samples of each camera ray
   bool is_seen = true;    ///< false: by rays that spread light; no near fields are looked into for them
   /// `direct`: what surfaces send to places where light enters is found by a ray from each; null: lights alone.
   const Shader* gathers = nullptr;
@@ -55,9 +55,9 @@ class Field {
                           HeldView::Surface* held) const = 0;
   /// Index of refraction of the boundary that light enters through; 0: none, an opaque surface.
   virtual float eta() const = 0;
-  /// Whether the exitance depends on the irradiance at the hits themselves.
+  /// True if the exitance depends on the irradiance at the hits themselves.
   virtual bool asks_irradiance() const { return false; }
-  /// Whether the exitance is summed over samples, point by point.
+  /// True if the exitance is summed over samples, point by point.
   virtual bool asks_samples() const { return false; }
 };
 
@@ -66,7 +66,7 @@ class Field {
 std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, int samples_per_pixel,
                                      HeldView::Surface* held);
 
-/// What of it enters, and its variance: tinted.
+/// Transmitted irradiance and its variance: tinted.
 void tint_entering(std::span<const HitTextures> textures, std::span<RgbF> irradiance,
                    std::span<Rgb> variance);
 

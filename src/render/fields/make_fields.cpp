@@ -19,7 +19,7 @@ bool has_mesh(const std::vector<std::uint32_t>& meshes, std::size_t mesh) {
   return std::ranges::find(meshes, mesh) != meshes.end();
 }
 
-/// Of each mesh, or null.
+/// Body of each mesh, or null.
 std::vector<const Body*> bodies_of_meshes(const RenderInput& input) {
   std::vector<const Body*> bodies(input.world.meshes.size());
   if (!method_of(input.scene.settings.method).needs_samples()) return bodies;
@@ -28,7 +28,7 @@ std::vector<const Body*> bodies_of_meshes(const RenderInput& input) {
   return bodies;
 }
 
-/// What meshes must have in common to share a field: one of the first two, or none of them and the boundary.
+/// Common properties of the meshes of a field: one of the first two, or none of them and the boundary.
 struct Source {
   const Body* group = nullptr;
   const EntrySampler* entries = nullptr;

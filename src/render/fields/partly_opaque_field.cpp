@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-/// What leaves of the light inside: times the tint.
+/// Tints the exitance of light from inside.
 void tint_leaving(std::span<const HitTextures> textures, LeavingLight& light) {
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const RgbF& tint = textures[i].tint.leaving;

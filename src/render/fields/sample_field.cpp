@@ -86,7 +86,7 @@ LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput light
   return light;
 }
 
-// What a surface cache leaves to the points.
+// Evaluates the points that the surface cache does not cover.
 void SampleField::replace_left(const SurfaceHits& hits, const PointIrradianceInput& lighting,
                                LeavingLight& light) const {
   std::vector<std::uint32_t> left;

@@ -39,7 +39,7 @@ class SampleField : public Field {
   const HierarchicalState& state_;
   bool is_noisy_, asks_irradiance_;
   std::optional<NearFieldSampler> near_field_;  ///< none: samples or cache tell all
-  RgbF creases_{};  ///< what a near field misses beside creases, over the exitance, as a standard deviation
+  RgbF creases_{};  ///< error of the near field at creases, over the exitance, as a standard deviation
 };
 
 }  // namespace opaline

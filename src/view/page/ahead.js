@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What this page has changed goes before the scene that the server tells of until a moment after the last change: what
+// Edits of this page take precedence over the scene from the server until a moment after the last edit: what
 // comes in may be older, and the next change starts from here.
 import {kPause} from "./connection.js";
 

@@ -37,7 +37,7 @@ function turned(v, axis, angle) {
   return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
 }
 
-// What turns a light from afar about +y, counterclockwise seen from above, in radians; null for lights that are near.
+// Keys that rotate a distant light about +y, counterclockwise seen from above, in radians; null for near lights.
 export function turnedLight(light, angle) {
   if (light.type === "directional") return {direction: rounded(turned(light.direction, [0, 1, 0], angle))};
   if (light.type !== "environment") return null;

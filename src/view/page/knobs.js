@@ -3,7 +3,7 @@
 import {rounded} from "./camera.js";
 import {newStroke} from "./connection.js";
 
-// What says what a medium is, and the keys that go with it.
+// Form of a medium's definition, and its keys.
 const kForms = {
   preset: {name: "preset", keys: ["preset", "scatter_anisotropy"]},
   sigma_s_prime: {name: "reduced coefficients", keys: ["sigma_a", "sigma_s_prime", "scatter_anisotropy"]},
@@ -98,7 +98,7 @@ export class Knobs {
       [...("medium" in shape ? ["medium"] : ["reflectance", ...kGloss.filter((key) => key in shape)]), "normals"].map((key) =>
         this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))));
     group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera));
-    group("film", "Picture", this.rowsOf("film", "film", (s) => s.film));
+    group("film", "Image", this.rowsOf("film", "film", (s) => s.film));
     group("settings", "Method", this.rowsOf("settings", "settings", (s) => s.settings, ["laboratory"]));
     group("laboratory", "Laboratory", this.rowsOf("settings.laboratory", "settings.laboratory", (s) => (s.settings || {}).laboratory));
   }
@@ -204,7 +204,7 @@ export class Knobs {
 
   number(knob, box, set) {
     const {row} = knob;
-    let now = 0, shown = null;  // what is being typed stays until it is done
+    let now = 0, shown = null;  // a value stays while it is typed
     const input = make("input", {type: "number", ariaLabel: row.key, step: row.type === "whole_number" ? 1 : "any",
       placeholder: plain(row.default).slice(0, 20)});
     input.onchange = () => {

@@ -60,7 +60,7 @@ function showFrame() {
   one("step").textContent = one("step").dataset.step = frame.step;
   one("step").dataset.revision = frame.revision;
   one("timing").textContent = `${(1000 * frame.seconds).toFixed(0)} ms, ${frame.width} × ${frame.height}`;
-  if (frame.step === "final") one("live").textContent = "The picture is final.";
+  if (frame.step === "final") one("live").textContent = "The image is final.";
 }
 
 function showReference() {
@@ -70,7 +70,7 @@ function showReference() {
   redraw();
 }
 
-// What the method's pictures have.
+// Layers of the method's images.
 function offerLayers() {
   const method = state.scene.settings?.method || "hierarchical";
   const names = ["", "R", "G", "B", "A", "diffuse", "specular", "albedo", "N", "P", "Z", method === "direct" ? "variance" : "irradiance"];
@@ -194,7 +194,7 @@ function chooseChannel() {
   redraw();
 }
 
-// What is on the left of the wipe: a picture that is kept, or a reference.
+// Image on the left of the wipe: a pinned image, or a reference.
 function compare(picture, method) {
   pinned = picture;
   one("pin").setAttribute("aria-pressed", String(Boolean(pinned)));
@@ -253,7 +253,7 @@ function takeFrames({frames, frame: now}) {
 
 function sizeWarnings(groups) {
   return groups.filter((group) => group.mean_free_path > 0 && group.thickness > kLooksOpaque * group.mean_free_path).map((group) =>
-    `${group.name} is ${group.thickness.toPrecision(3)} mm thick on average, ${Math.round(group.thickness / group.mean_free_path)} mean free paths of ${group.medium}: it looks like paint. Is its size right (mm_per_unit, fit_size)?`);
+    `${group.name} is ${group.thickness.toPrecision(3)} mm thick on average, ${Math.round(group.thickness / group.mean_free_path)} mean free paths of ${group.medium}: it looks opaque. Check its size (mm_per_unit, fit_size).`);
 }
 
 const list = (texts) => texts.map((text) => Object.assign(document.createElement("li"), {textContent: text}));
@@ -306,18 +306,18 @@ const takes = {
     behind = {trade, reference: method};
     one("reference").value = method;
     one("compared").hidden = !method;
-    one("compared").textContent = `${method}: at work`;
+    one("compared").textContent = `${method}: rendering`;
     if (!pinned) one("wipe").disabled = !method;
     redraw();
   },
   trade: (message) => trade.show(message),
   reference: (message) => {
-    const percent = (x) => `${Number((100 * x).toPrecision(2))} %`, each = message.method === "direct" ? "samples a pixel" : "walks a sample";
+    const percent = (x) => `${Number((100 * x).toPrecision(2))} %`, each = message.method === "direct" ? "samples per pixel" : "walks per sample";
     one("compared").dataset.revision = message.revision;
-    one("compared").textContent = `${message.method}: ${message.samples} ${each}, noise ${message.noise ? percent(message.noise) : "not known yet"}; ` +
-      `the final picture differs by ${percent(message.difference)} (rms of the translucent pixels' diffuse light, this noise taken out)`;
+    one("compared").textContent = `${message.method}: ${message.samples} ${each}, noise ${message.noise ? percent(message.noise) : "unknown"}; ` +
+      `the final image differs by ${percent(message.difference)} (rms of the diffuse light over translucent pixels, without this noise)`;
   },
-  // What was refused counts no longer: the scene as it is follows.
+  // A refused edit is dropped: the scene message follows.
   told: (message) => {
     if (!message.good) ahead.clear();
     tell(message.text, message.good);

@@ -3,8 +3,8 @@
 import {add, basis, heightAt, project, rounded, scale, sub} from "./camera.js";
 import {newStroke, pausedStroke} from "./connection.js";
 
-const kInset = .03;  // of a handle whose light is outside, in shares of the picture
-const kStep = .02;   // of the camera's distance, for a key
+const kInset = .03;  // inset of the handle of a light outside, as a fraction of the image
+const kStep = .02;   // step of a key, as a fraction of the camera's distance
 
 const svg = (name, attributes) => {
   const element = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -129,7 +129,7 @@ export class Overlay {
   updateRuler() {
     const mm = this.state.scene.mm_per_unit || 1, {distance} = basis(this.state.camera);
     const height = heightAt(this.state.camera, distance) * mm * this.state.film.shownHeight;
-    if (!(height > 0)) return;  // of a number that will be refused
+    if (!(height > 0)) return;  // a value that will be refused
     const size = niceLength(height * .3), pixels = size / height * this.size.height;
     const y = this.size.height - 14;
     const bar = svg("path", {class: "rule", d: `M14 ${y - 5}V${y}H${14 + pixels}V${y - 5}`});

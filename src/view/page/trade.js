@@ -50,7 +50,7 @@ export class Trade {
     this.root.replaceChildren();
     if (!message.points.length) {
       this.root.append(Object.assign(document.createElement("p"),
-        {textContent: message.whole ? "Nothing translucent is in the picture." : "Trying settings…"}));
+        {textContent: message.whole ? "No translucent object is visible." : "Trying settings…"}));
       return;
     }
     const chart = svg("svg", {viewBox: `0 0 ${kWidth} ${kHeight}`, class: "trade", role: "group", "aria-label": "Error against time"});
@@ -64,7 +64,7 @@ export class Trade {
       chart.append(svg("line", {class: "grid", x1: kLeft, x2: kWidth - kRight, y1: y.at(tick), y2: y.at(tick)}),
         svg("text", {x: kLeft - 4, y: y.at(tick) + 4, "text-anchor": "end"}, errorText(tick)));
     }
-    chart.append(svg("text", {x: kWidth - kRight, y: kHeight - 3, "text-anchor": "end"}, "CPU of a picture"),
+    chart.append(svg("text", {x: kWidth - kRight, y: kHeight - 3, "text-anchor": "end"}, "CPU time per image"),
       svg("text", {x: kLeft - 4, y: kTop - 3, "text-anchor": "end"}, "error"));
     const summed = message.points.filter((p) => p.method !== "lambert" && !isNoChoice(p, message.points));
     chart.append(svg("polyline", {class: "curve", points: summed.map((p) => `${x.at(p.seconds)},${y.at(p.error)}`).join(" ")}));
