@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "lights/light_of.h"
+#include "lights/light_kind.h"
 
 namespace opaline {
 namespace {

@@ -48,6 +48,9 @@ void sample_environment(const EnvironmentLight& light, const Vec3f& normal,
 /// A direction as the light's picture has it.
 Vec3d in_picture(const EnvironmentLight& light, const Vec3f& direction);
 
+/// Radiance of the light's picture in a direction.
+RgbF radiance_towards(const EnvironmentLight& light, const Vec3f& direction);
+
 /// The mean of the sum over samples of what they have as `unshadowed`.
 RgbF unshadowed(const EnvironmentLight& light, const Vec3f& normal);
 

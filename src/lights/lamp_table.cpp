@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lights/light_of.h"
+#include "lights/light_kind.h"
 
 namespace opaline {
 namespace {

@@ -1,45 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/lights/light.h"
 
-#include "lights/light_of.h"
+#include "lights/all_lights.h"
 #include "opaline/core/random.h"
-#include "opaline/lights/light_tree.h"
 #include "opaline/lights/shared_rays.h"
 
 namespace opaline {
 namespace {
 
-/// use(light of its kind, what that kind can do).
-template <class Use>
-auto by_kind(const Light& light, const Use& use) {
-  return std::visit([&]<class Kind>(const Kind& kind) { return use(kind, LightOf<Kind>()); }, light.source);
+/// The member that is the light's colour; a kind with another name for it does not compile.
+auto& colour_of(auto& kind) {
+  if constexpr (requires { kind.intensity; })
+    return kind.intensity;
+  else if constexpr (requires { kind.radiance; })
+    return kind.radiance;
+  else if constexpr (requires { kind.strength; })
+    return kind.strength;
+  else
+    return kind.irradiance;
+}
+
+/// use(light of its kind).
+auto by_kind(const Light& light, const auto& use) {
+  return std::visit(use, light.source);
 }
 
 }  // namespace
 
 Rgb emission(const Light& light) {
-  return by_kind(light, [](const auto& kind, auto of) { return of.emission(kind); });
+  return by_kind(light, [](const auto& kind) -> Rgb {
+    if constexpr (requires { kind.channel; })
+      return in_channel(colour_of(kind), kind.channel);
+    else
+      return colour_of(kind);
+  });
 }
 
 Light with_emission(const Light& light, const Rgb& emission) {
   Light coloured = light;
-  std::visit(
-      [&](auto& source) {
-        if constexpr (requires { source.intensity; })
-          source.intensity = emission;
-        else if constexpr (requires { source.radiance; })
-          source.radiance = emission;
-        else if constexpr (requires { source.strength; })
-          source.strength = emission;
-        else
-          source.irradiance = emission;  // a kind with another name for its colour does not compile
-      },
-      coloured.source);
+  std::visit([&](auto& kind) { colour_of(kind) = emission; }, coloured.source);
   return coloured;
 }
 
 bool is_delta(const Light& light) {
-  return by_kind(light, [](const auto& kind, auto of) { return of.is_delta(kind); });
+  return by_kind(light, [](const auto& kind) { return is_delta(kind); });
 }
 
 int shadow_rays(const Light& light, int light_samples) {
@@ -84,15 +88,14 @@ std::uint64_t light_seed(std::uint64_t seed, const Light& light) {
 
 Light recentred(const Light& light, const Vec3d& origin, double unit) {
   Light moved = light;
-  moved.source = by_kind(
-      light, [&](const auto& kind, auto of) { return LightSource(of.recentred(kind, origin, unit)); });
+  moved.source = by_kind(light, [&](const auto& kind) { return LightSource(recentred(kind, origin, unit)); });
   return moved;
 }
 
 LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& normal,
                          std::array<double, 2> unit_square, int samples) {
-  return by_kind(
-      light, [&](const auto& kind, auto of) { return of.sample(kind, point, normal, unit_square, samples); });
+  return by_kind(light,
+                 [&](const auto& kind) { return sample_light(kind, point, normal, unit_square, samples); });
 }
 
 LightSample sample_lights(std::span<const Light> lights, const Vec3f& point, const Vec3f& normal,
@@ -101,14 +104,13 @@ LightSample sample_lights(std::span<const Light> lights, const Vec3f& point, con
       [&]<class Kind>(const Kind& kind) {
         if constexpr (requires { kind.channel; }) {
           RgbF channels;
-          LightSample sample =
-              LightOf<Kind>::sample_channels(kind, point, normal, unit_square, samples, channels);
+          LightSample sample = sample_channels(kind, point, normal, unit_square, samples, channels);
           for (std::size_t l = 0; l < lights.size(); ++l)
             weights[l] = channels[std::get<Kind>(lights[l].source).channel.value_or(0)];
           sample.weight = weights[0];
           return sample;
         } else {
-          const LightSample sample = LightOf<Kind>::sample(kind, point, normal, unit_square, samples);
+          const LightSample sample = sample_light(kind, point, normal, unit_square, samples);
           weights[0] = sample.weight;
           return sample;
         }
@@ -122,29 +124,27 @@ float sampling_density(const Light& light, const Vec3f& point, const Vec3f& norm
       room != nullptr && lobe != nullptr && known_blocks(*room, *lobe) != nullptr)
     return room->picture->density(in_picture(*room, direction), in_picture(*room, normal),
                                   *known_blocks(*room, *lobe));
-  return by_kind(light,
-                 [&](const auto& kind, auto of) { return of.density(kind, point, normal, direction); });
+  return by_kind(light, [&](const auto& kind) { return sampling_density(kind, point, normal, direction); });
 }
 
 EmitterHit intersect_emitter(const Light& light, const Vec3f& origin, const Vec3f& direction, float far) {
-  return by_kind(light,
-                 [&](const auto& kind, auto of) { return of.intersect(kind, origin, direction, far); });
+  return by_kind(light, [&](const auto& kind) { return intersect_emitter(kind, origin, direction, far); });
 }
 
 RgbF background(const Light& light, const Vec3f& direction) {
-  return by_kind(light, [&](const auto& kind, auto of) { return of.background(kind, direction); });
+  return by_kind(light, [&](const auto& kind) { return background(kind, direction); });
 }
 
 LightExtent extent(const Light& light) {
-  return by_kind(light, [](const auto& kind, auto of) { return of.extent(kind); });
+  return by_kind(light, [](const auto& kind) { return extent(kind); });
 }
 
 std::optional<Lamp> lamp_of(const Light& light) {
-  return by_kind(light, [](const auto& kind, auto of) { return of.lamp(kind); });
+  return by_kind(light, [](const auto& kind) { return lamp_of(kind); });
 }
 
 std::vector<double> geometry(const Light& light) {
-  return by_kind(light, [](const auto& kind, auto of) { return of.geometry(kind); });
+  return by_kind(light, [](const auto& kind) { return geometry(kind); });
 }
 
 }  // namespace opaline

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "lights/light_of.h"
+#include "lights/light_kind.h"
 #include "opaline/lights/light.h"
 #include "opaline/lights/light_tree.h"
 #include "opaline/render/render.h"

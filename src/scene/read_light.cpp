@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/scene/light_reader.h"
+#include "lights/all_lights.h"
 #include "opaline/scene/names.h"
 #include "scene/readers.h"
 
@@ -18,8 +18,8 @@ void read_kind(std::string_view type, const ObjectReader& reader, double mm_per_
                const std::variant<Kinds...>*) {
   const auto read = [&]<class Kind>(const Kind*) {
     if (Kind::kType != type) return;
-    light.source = LightReader<Kind>::read(reader, mm_per_unit);
-    if constexpr (kCanBeSeen<Kind>)
+    read_light(reader, mm_per_unit, light.source.emplace<Kind>());
+    if constexpr (Kind::kCanBeSeen)
       if (const auto visible = reader.find("visible")) light.is_seen = visible->flag();
   };
   (read(static_cast<const Kinds*>(nullptr)), ...);

@@ -10,8 +10,8 @@
 #include <set>
 #include <utility>
 
+#include "lights/all_lights.h"
 #include "opaline/scene/json_tree.h"
-#include "opaline/scene/light_reader.h"
 #include "opaline/scene/mesh_formats.h"
 #include "opaline/scene/names.h"
 #include "scene/key_rows.h"
@@ -37,14 +37,14 @@ std::string_view mesh_file_meaning() {
 template <class Kind>
 void add_light_rows(std::vector<KeyInfo>& rows) {
   static const std::string section = "light." + std::string(Kind::kType);
-  std::vector<KeyInfo> keys = LightReader<Kind>::rows();
+  std::vector<KeyInfo> keys = light_keys(Kind());
   if (keys.empty()) return;
   KeyInfo name{.key = "name",
                .type = ValueType::text,
                .default_value = "\"light0\", ...",
                .meaning = "name in layers, messages and `--set`"};
   keys.insert(keys.begin() + 1, std::move(name));
-  if (kCanBeSeen<Kind>)
+  if (Kind::kCanBeSeen)
     keys.push_back(
         {.key = "visible",
          .type = ValueType::flag,

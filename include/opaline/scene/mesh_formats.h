@@ -3,19 +3,11 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <string_view>
 
 namespace opaline {
 
 /// As users know them; in lower case the names of their files end so, after a dot.
 inline constexpr std::array<std::string_view, 6> kMeshFormats{"OBJ", "PLY", "STL", "OFF", "GLB", "glTF"};
-
-/// Index of one; another name does not compile.
-consteval std::size_t mesh_format_index(std::string_view name) {
-  std::size_t index = 0;
-  while (kMeshFormats.at(index) != name) ++index;
-  return index;
-}
 
 }  // namespace opaline

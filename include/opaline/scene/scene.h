@@ -221,12 +221,14 @@ struct Shape {
 
 struct PointLight {
   static constexpr std::string_view kType = "point";
+  static constexpr bool kCanBeSeen = false;  ///< by a camera: it has the key `visible`
   Vec3d position;
   Rgb intensity;  ///< W/sr; irradiance at distance d mm is intensity / d^2 in W/mm^2
   friend bool operator==(const PointLight&, const PointLight&) = default;
 };
 struct SpotLight {  ///< a point's light within a cone
   static constexpr std::string_view kType = "spot";
+  static constexpr bool kCanBeSeen = false;
   Vec3d position;
   Vec3d direction;          ///< unit, the way its middle shines
   Rgb intensity;            ///< along the middle, W/sr
@@ -236,6 +238,7 @@ struct SpotLight {  ///< a point's light within a cone
 };
 struct DirectionalLight {
   static constexpr std::string_view kType = "directional";
+  static constexpr bool kCanBeSeen = true;
   Vec3d direction;   ///< unit, the way the light travels
   Rgb irradiance;    ///< on a surface that faces it, W/mm^2
   double angle = 0;  ///< the disc's full angle, degrees, [0, 90]; 0: parallel light
@@ -243,6 +246,7 @@ struct DirectionalLight {
 };
 struct SphereLight {
   static constexpr std::string_view kType = "sphere";
+  static constexpr bool kCanBeSeen = true;
   Vec3d center;
   double radius;
   Rgb radiance;
@@ -250,12 +254,14 @@ struct SphereLight {
 };
 struct QuadLight {  ///< emits on the side of u x v only
   static constexpr std::string_view kType = "quad";
+  static constexpr bool kCanBeSeen = true;
   Vec3d corner, u, v;
   Rgb radiance;
   friend bool operator==(const QuadLight&, const QuadLight&) = default;
 };
 struct Surroundings {  ///< the same radiance from everywhere
   static constexpr std::string_view kType = "surroundings";
+  static constexpr bool kCanBeSeen = false;
   Rgb radiance;
   friend bool operator==(const Surroundings&, const Surroundings&) = default;
 };
@@ -264,6 +270,7 @@ class EnvironmentPicture;
 /// arrives from each of them is one number, as from any light.
 struct EnvironmentLight {
   static constexpr std::string_view kType = "environment";
+  static constexpr bool kCanBeSeen = true;
   std::shared_ptr<const EnvironmentPicture> picture;
   Rgb strength{1, 1, 1};               ///< times its radiance
   double rotation = 0;                 ///< about +y, counterclockwise seen from above, degrees
@@ -276,6 +283,7 @@ class LightTree;
 /// one name, a channel each.
 struct ManyLights {
   static constexpr std::string_view kType = "many";
+  static constexpr bool kCanBeSeen = false;
   std::shared_ptr<const LightTree> tree;
   Rgb strength{1, 1, 1};               ///< times the tree's colours
   std::optional<std::size_t> channel;  ///< it shines in this one alone; none: all lights have one colour

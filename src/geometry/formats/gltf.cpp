@@ -38,18 +38,10 @@ SourceMesh read_without_part(const std::string& path, std::string& bytes, MeshUv
 
 }  // namespace
 
-template <>
-const MeshFormat& FormatOf<mesh_format_index("GLB")>::format() {
-  static constexpr MeshFormat format{
-      .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
-  return format;
-}
+constinit const MeshFormat glb_format{
+    .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
 
-template <>
-const MeshFormat& FormatOf<mesh_format_index("glTF")>::format() {
-  static constexpr MeshFormat format{
-      .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
-  return format;
-}
+constinit const MeshFormat gltf_format{
+    .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
 
 }  // namespace opaline

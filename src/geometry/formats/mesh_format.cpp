@@ -2,10 +2,8 @@
 #include "geometry/formats/mesh_format.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
-#include <utility>
 
 namespace opaline {
 namespace {
@@ -14,12 +12,6 @@ std::string lower(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = char(std::tolower(static_cast<unsigned char>(c)));
   return result;
-}
-
-template <std::size_t... kIndices>
-const MeshFormat& format_at(std::size_t index, std::index_sequence<kIndices...>) {
-  constexpr std::array formats{&FormatOf<kIndices>::format...};
-  return formats[index]();
 }
 
 }  // namespace
@@ -32,8 +24,7 @@ const MeshFormat* find_mesh_format(const std::string& path) {
   const std::string extension = lower(std::filesystem::path(path).extension().string());
   const auto found = std::ranges::find(kMeshFormats, extension, extension_of);
   if (found == kMeshFormats.end()) return nullptr;
-  return &format_at(std::size_t(found - kMeshFormats.begin()),
-                    std::make_index_sequence<kMeshFormats.size()>());
+  return kFormats[std::size_t(found - kMeshFormats.begin())];
 }
 
 }  // namespace opaline

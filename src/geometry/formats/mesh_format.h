@@ -2,6 +2,7 @@
 // The mesh formats. Each has a file of its own in this folder, which holds all that is particular to it but its name.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -29,11 +30,13 @@ struct MeshFormat {
   std::uintmax_t (*announced_length)(std::string_view start) = nullptr;
 };
 
-/// Each of kMeshFormats, by its index: what the format's file defines. One without does not link.
-template <std::size_t kIndex>
-struct FormatOf {
-  static const MeshFormat& format();
-};
+// Each is defined in the format's file.
+extern const MeshFormat obj_format, ply_format, stl_format, off_format, glb_format, gltf_format;
+
+/// In the order of kMeshFormats.
+inline constexpr std::array kFormats{&obj_format, &ply_format, &stl_format,
+                                     &off_format, &glb_format, &gltf_format};
+static_assert(kFormats.size() == kMeshFormats.size());
 
 /// Extension of a format: lower case, with the dot.
 std::string extension_of(std::string_view format);

@@ -359,10 +359,6 @@ SourceMesh read_material(const std::string& path, const std::string& part, std::
 
 }  // namespace
 
-template <>
-const MeshFormat& FormatOf<mesh_format_index("OBJ")>::format() {
-  static constexpr MeshFormat format{.read = read_obj, .read_part = read_material};
-  return format;
-}
+constinit const MeshFormat obj_format{.read = read_obj, .read_part = read_material};
 
 }  // namespace opaline

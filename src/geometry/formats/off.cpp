@@ -152,10 +152,6 @@ SourceMesh read_off(const std::string& path, std::string& bytes, MeshUvs) {
 
 }  // namespace
 
-template <>
-const MeshFormat& FormatOf<mesh_format_index("OFF")>::format() {
-  static constexpr MeshFormat format{.read = read_off};
-  return format;
-}
+constinit const MeshFormat off_format{.read = read_off};
 
 }  // namespace opaline

@@ -392,10 +392,6 @@ SourceMesh read_ply(const std::string& path, std::string& bytes, MeshUvs uvs) {
 
 }  // namespace
 
-template <>
-const MeshFormat& FormatOf<mesh_format_index("PLY")>::format() {
-  static constexpr MeshFormat format{.read = read_ply};
-  return format;
-}
+constinit const MeshFormat ply_format{.read = read_ply};
 
 }  // namespace opaline

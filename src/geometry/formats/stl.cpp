@@ -168,10 +168,6 @@ std::uintmax_t announced_length(std::string_view start) {
 
 }  // namespace
 
-template <>
-const MeshFormat& FormatOf<mesh_format_index("STL")>::format() {
-  static constexpr MeshFormat format{.read = read_stl, .announced_length = announced_length};
-  return format;
-}
+constinit const MeshFormat stl_format{.read = read_stl, .announced_length = announced_length};
 
 }  // namespace opaline

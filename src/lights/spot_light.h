@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light from one point within a cone, fading towards its rim.
+#pragma once
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "lights/light_of.h"
-#include "opaline/scene/light_reader.h"
+#include "lights/light_kind.h"
 
 namespace opaline {
-namespace {
-
-constexpr double kRadians = std::numbers::pi / 180;
-constexpr double kLeastFade = 1e-3;  // minimum falloff range of the cosine, as in glTF
-
 /// From 1 within the inner cone to 0 at the rim: the square of a ramp in the cosine (KHR_lights_punctual).
-double fade(const SpotLight& light, double cosine) {
+inline double fade(const SpotLight& light, double cosine) {
+  constexpr double kRadians = std::numbers::pi / 180;
+  constexpr double kLeastFade = 1e-3;  // of the cosine, as glTF's recommended implementation has it
   const double rim = std::cos(light.outer_angle * kRadians), bright = std::cos(light.inner_angle * kRadians);
   const double ramp = std::clamp((cosine - rim) / std::max(kLeastFade, bright - rim), 0., 1.);
   return ramp * ramp;
 }
 
-}  // namespace
-
-template <>
-std::vector<KeyInfo> LightReader<SpotLight>::rows() {
+inline std::vector<KeyInfo> light_keys(const SpotLight&) {
   using enum ValueType;
   return {{.key = "type", .type = choice, .meaning = "`\"spot\"`: a point light limited to a cone"},
           {.key = "position", .type = point, .meaning = "position"},
@@ -47,11 +42,10 @@ std::vector<KeyInfo> LightReader<SpotLight>::rows() {
            .meaning = "angle from the axis to the start of the falloff; less than `outer_angle`"}};
 }
 
-template <>
-SpotLight LightReader<SpotLight>::read(const ObjectReader& reader, double mm_per_unit) {
+inline void read_light(const ObjectReader& reader, double mm_per_unit, SpotLight& light) {
   const Value direction = reader.need("direction");
-  SpotLight light{reader.need("position").point(mm_per_unit), normalized(direction.triple()),
-                  reader.need("intensity").color()};
+  light = {reader.need("position").point(mm_per_unit), normalized(direction.triple()),
+           reader.need("intensity").color()};
   if (light.direction == Vec3d{}) direction.fail("has no direction", "not [0, 0, 0]");
   if (const auto outer = reader.find("outer_angle")) light.outer_angle = outer->number();
   if (const auto inner = reader.find("inner_angle")) {
@@ -59,29 +53,20 @@ SpotLight LightReader<SpotLight>::read(const ObjectReader& reader, double mm_per
     if (!(light.inner_angle < light.outer_angle))
       inner->fail("is not inside the cone", "less than outer_angle");
   }
-  return light;
 }
 
-template <>
-Rgb LightOf<SpotLight>::emission(const SpotLight& light) {
-  return light.intensity;
-}
-
-template <>
-bool LightOf<SpotLight>::is_delta(const SpotLight&) {
+inline bool is_delta(const SpotLight&) {
   return true;
 }
 
-template <>
-SpotLight LightOf<SpotLight>::recentred(SpotLight light, const Vec3d& origin, double unit) {
+inline SpotLight recentred(SpotLight light, const Vec3d& origin, double unit) {
   light.position = (light.position - origin) / unit;
   light.intensity = light.intensity / unit / unit;
   return light;
 }
 
-template <>
-LightSample LightOf<SpotLight>::sample(const SpotLight& light, const Vec3f& point, const Vec3f&,
-                                       std::array<double, 2>, int) {
+inline LightSample sample_light(const SpotLight& light, const Vec3f& point, const Vec3f&,
+                                std::array<double, 2>, int) {
   const Vec3d to_light = light.position - Vec3d(point);
   const double d2 = dot(to_light, to_light);
   if (!(d2 > 0)) return {};
@@ -89,28 +74,23 @@ LightSample LightOf<SpotLight>::sample(const SpotLight& light, const Vec3f& poin
   return {Vec3f(to_light / d), float(d), float(fade(light, -dot(to_light, light.direction) / d) / d2)};
 }
 
-template <>
-float LightOf<SpotLight>::density(const SpotLight&, const Vec3f&, const Vec3f&, const Vec3f&) {
+inline float sampling_density(const SpotLight&, const Vec3f&, const Vec3f&, const Vec3f&) {
   return 0;
 }
 
-template <>
-EmitterHit LightOf<SpotLight>::intersect(const SpotLight&, const Vec3f&, const Vec3f&, float) {
+inline EmitterHit intersect_emitter(const SpotLight&, const Vec3f&, const Vec3f&, float) {
   return {};
 }
 
-template <>
-RgbF LightOf<SpotLight>::background(const SpotLight&, const Vec3f&) {
+inline RgbF background(const SpotLight&, const Vec3f&) {
   return {};
 }
 
-template <>
-LightExtent LightOf<SpotLight>::extent(const SpotLight& light) {
+inline LightExtent extent(const SpotLight& light) {
   return {.center = light.position, .facing = light.direction};
 }
 
-template <>
-std::optional<Lamp> LightOf<SpotLight>::lamp(const SpotLight& light) {
+inline std::optional<Lamp> lamp_of(const SpotLight& light) {
   return Lamp{.center = light.position,
               .facing = light.direction,
               .full = light.inner_angle * std::numbers::pi / 180,
@@ -119,8 +99,7 @@ std::optional<Lamp> LightOf<SpotLight>::lamp(const SpotLight& light) {
               .intensity = 1};
 }
 
-template <>
-std::vector<double> LightOf<SpotLight>::geometry(const SpotLight& light) {
+inline std::vector<double> geometry(const SpotLight& light) {
   return {light.position.x,  light.position.y,  light.position.z,  light.direction.x,
           light.direction.y, light.direction.z, light.outer_angle, light.inner_angle};
 }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A ball that glows.
+#pragma once
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "lights/light_of.h"
-#include "opaline/scene/light_reader.h"
+#include "lights/light_kind.h"
 
 namespace opaline {
 
-template <>
-std::vector<KeyInfo> LightReader<SphereLight>::rows() {
+inline std::vector<KeyInfo> light_keys(const SphereLight&) {
   using enum ValueType;
   return {{.key = "type", .type = choice, .meaning = "`\"sphere\"`: a spherical area light"},
           {.key = "center", .type = point, .meaning = "centre"},
@@ -23,33 +23,24 @@ std::vector<KeyInfo> LightReader<SphereLight>::rows() {
            .meaning = "emitted radiance"}};
 }
 
-template <>
-SphereLight LightReader<SphereLight>::read(const ObjectReader& reader, double mm_per_unit) {
-  return {reader.need("center").point(mm_per_unit), reader.need("radius").length(mm_per_unit),
-          reader.need("radiance").color()};
+inline void read_light(const ObjectReader& reader, double mm_per_unit, SphereLight& light) {
+  light = {reader.need("center").point(mm_per_unit), reader.need("radius").length(mm_per_unit),
+           reader.need("radiance").color()};
 }
 
-template <>
-Rgb LightOf<SphereLight>::emission(const SphereLight& light) {
-  return light.radiance;
-}
-
-template <>
-bool LightOf<SphereLight>::is_delta(const SphereLight&) {
+inline bool is_delta(const SphereLight&) {
   return false;
 }
 
-template <>
-SphereLight LightOf<SphereLight>::recentred(SphereLight light, const Vec3d& origin, double unit) {
+inline SphereLight recentred(SphereLight light, const Vec3d& origin, double unit) {
   light.center = (light.center - origin) / unit;
   light.radius /= unit;
   return light;
 }
 
 // Uniform over the cone that the sphere fills; from inside it, over all directions.
-template <>
-LightSample LightOf<SphereLight>::sample(const SphereLight& light, const Vec3f& point, const Vec3f&,
-                                         std::array<double, 2> unit_square, int samples) {
+inline LightSample sample_light(const SphereLight& light, const Vec3f& point, const Vec3f&,
+                                std::array<double, 2> unit_square, int samples) {
   const Vec3d to_center = light.center - Vec3d(point);
   const double d2 = dot(to_center, to_center), r2 = light.radius * light.radius;
   const double phi = 2 * std::numbers::pi * unit_square[1];
@@ -69,9 +60,8 @@ LightSample LightOf<SphereLight>::sample(const SphereLight& light, const Vec3f& 
   return {Vec3f(direction), float(distance), float(2 * std::numbers::pi * one_minus_cos / samples)};
 }
 
-template <>
-EmitterHit LightOf<SphereLight>::intersect(const SphereLight& light, const Vec3f& origin,
-                                           const Vec3f& direction, float far) {
+inline EmitterHit intersect_emitter(const SphereLight& light, const Vec3f& origin, const Vec3f& direction,
+                                    float far) {
   const Vec3d o(origin), d(direction);
   const Vec3d to_center = light.center - o;
   const double a = dot(d, d), b = dot(to_center, d);
@@ -83,36 +73,31 @@ EmitterHit LightOf<SphereLight>::intersect(const SphereLight& light, const Vec3f
   return {};
 }
 
-template <>
-float LightOf<SphereLight>::density(const SphereLight& light, const Vec3f& point, const Vec3f&,
-                                    const Vec3f& direction) {
+inline float sampling_density(const SphereLight& light, const Vec3f& point, const Vec3f&,
+                              const Vec3f& direction) {
   const Vec3d to_center = light.center - Vec3d(point);
   const double d2 = dot(to_center, to_center), r2 = light.radius * light.radius;
   if (d2 <= r2) return float(.25 * std::numbers::inv_pi);
-  if (!intersect(light, point, direction, std::numeric_limits<float>::infinity()).hit) return 0;
+  if (!intersect_emitter(light, point, direction, std::numeric_limits<float>::infinity()).hit) return 0;
   const double sin2 = r2 / d2, one_minus_cos = sin2 / (1 + std::sqrt(1 - sin2));
   return float(1 / (2 * std::numbers::pi * one_minus_cos));
 }
 
-template <>
-RgbF LightOf<SphereLight>::background(const SphereLight&, const Vec3f&) {
+inline RgbF background(const SphereLight&, const Vec3f&) {
   return {};
 }
 
-template <>
-LightExtent LightOf<SphereLight>::extent(const SphereLight& light) {
+inline LightExtent extent(const SphereLight& light) {
   return {.center = light.center, .radius = light.radius, .width = 2 * light.radius};
 }
 
-template <>
-std::optional<Lamp> LightOf<SphereLight>::lamp(const SphereLight& light) {
+inline std::optional<Lamp> lamp_of(const SphereLight& light) {
   return Lamp{.center = light.center,
               .radius = light.radius,
               .intensity = std::numbers::pi * light.radius * light.radius};
 }
 
-template <>
-std::vector<double> LightOf<SphereLight>::geometry(const SphereLight& light) {
+inline std::vector<double> geometry(const SphereLight& light) {
   return {light.center.x, light.center.y, light.center.z, light.radius};
 }
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A flat lamp that shines on one side.
+#pragma once
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "lights/light_of.h"
-#include "opaline/scene/light_reader.h"
+#include "lights/light_kind.h"
 
 namespace opaline {
 
-template <>
-std::vector<KeyInfo> LightReader<QuadLight>::rows() {
+inline std::vector<KeyInfo> light_keys(const QuadLight&) {
   using enum ValueType;
   return {{.key = "type",
            .type = choice,
@@ -27,35 +27,26 @@ std::vector<KeyInfo> LightReader<QuadLight>::rows() {
            .meaning = "emitted radiance"}};
 }
 
-template <>
-QuadLight LightReader<QuadLight>::read(const ObjectReader& reader, double mm_per_unit) {
+inline void read_light(const ObjectReader& reader, double mm_per_unit, QuadLight& light) {
   const Value v_value = reader.need("v");
   const Vec3d u = reader.need("u").point(mm_per_unit), v = v_value.point(mm_per_unit);
   check_parallelogram(u, v, v_value);
-  return {reader.need("corner").point(mm_per_unit), u, v, reader.need("radiance").color()};
+  light = {reader.need("corner").point(mm_per_unit), u, v, reader.need("radiance").color()};
 }
 
-template <>
-Rgb LightOf<QuadLight>::emission(const QuadLight& light) {
-  return light.radiance;
-}
-
-template <>
-bool LightOf<QuadLight>::is_delta(const QuadLight&) {
+inline bool is_delta(const QuadLight&) {
   return false;
 }
 
-template <>
-QuadLight LightOf<QuadLight>::recentred(QuadLight light, const Vec3d& origin, double unit) {
+inline QuadLight recentred(QuadLight light, const Vec3d& origin, double unit) {
   light.corner = (light.corner - origin) / unit;
   light.u = light.u / unit;
   light.v = light.v / unit;
   return light;
 }
 
-template <>
-LightSample LightOf<QuadLight>::sample(const QuadLight& light, const Vec3f& point, const Vec3f&,
-                                       std::array<double, 2> unit_square, int samples) {
+inline LightSample sample_light(const QuadLight& light, const Vec3f& point, const Vec3f&,
+                                std::array<double, 2> unit_square, int samples) {
   const Vec3d to_light = light.corner + light.u * unit_square[0] + light.v * unit_square[1] - Vec3d(point);
   const double d2 = dot(to_light, to_light);
   const Vec3d area_normal = cross(light.u, light.v);  // as long as the area
@@ -65,9 +56,8 @@ LightSample LightOf<QuadLight>::sample(const QuadLight& light, const Vec3f& poin
   return {Vec3f(to_light / d), float(d), float(facing / (d2 * d * samples))};
 }
 
-template <>
-EmitterHit LightOf<QuadLight>::intersect(const QuadLight& light, const Vec3f& origin, const Vec3f& direction,
-                                         float far) {
+inline EmitterHit intersect_emitter(const QuadLight& light, const Vec3f& origin, const Vec3f& direction,
+                                    float far) {
   const Vec3d o(origin), d(direction);
   const Vec3d n = cross(light.u, light.v);
   const double facing = dot(d, n);
@@ -80,22 +70,19 @@ EmitterHit LightOf<QuadLight>::intersect(const QuadLight& light, const Vec3f& or
   return {};
 }
 
-template <>
-float LightOf<QuadLight>::density(const QuadLight& light, const Vec3f& point, const Vec3f&,
-                                  const Vec3f& direction) {
-  const EmitterHit met = intersect(light, point, direction, std::numeric_limits<float>::infinity());
+inline float sampling_density(const QuadLight& light, const Vec3f& point, const Vec3f&,
+                              const Vec3f& direction) {
+  const EmitterHit met = intersect_emitter(light, point, direction, std::numeric_limits<float>::infinity());
   if (!met.hit) return 0;
   const double facing = -dot(cross(light.u, light.v), Vec3d(direction));
   return float(double(met.t) * double(met.t) / facing);
 }
 
-template <>
-RgbF LightOf<QuadLight>::background(const QuadLight&, const Vec3f&) {
+inline RgbF background(const QuadLight&, const Vec3f&) {
   return {};
 }
 
-template <>
-LightExtent LightOf<QuadLight>::extent(const QuadLight& light) {
+inline LightExtent extent(const QuadLight& light) {
   const double radius = 0.5 * std::max(length(light.u + light.v), length(light.u - light.v));
   const bool u_is_longer = length(light.u) > length(light.v);
   const Vec3d along = u_is_longer ? light.u : light.v, across = u_is_longer ? light.v : light.u;
@@ -106,8 +93,7 @@ LightExtent LightOf<QuadLight>::extent(const QuadLight& light) {
           .facing = normalized(cross(normalized(light.u), normalized(light.v)))};
 }
 
-template <>
-std::optional<Lamp> LightOf<QuadLight>::lamp(const QuadLight& light) {
+inline std::optional<Lamp> lamp_of(const QuadLight& light) {
   const LightExtent place = extent(light);
   return Lamp{.center = *place.center,
               .radius = place.radius,
@@ -117,8 +103,7 @@ std::optional<Lamp> LightOf<QuadLight>::lamp(const QuadLight& light) {
               .intensity = length(cross(light.u, light.v))};
 }
 
-template <>
-std::vector<double> LightOf<QuadLight>::geometry(const QuadLight& light) {
+inline std::vector<double> geometry(const QuadLight& light) {
   return {light.corner.x, light.corner.y, light.corner.z, light.u.x, light.u.y,
           light.u.z,      light.v.x,      light.v.y,      light.v.z};
 }
