@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "opaline/octree/octree.h"
+#include "opaline/exitance/octree.h"
 
 namespace opaline {
 

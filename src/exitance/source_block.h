@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "exitance/simd/lanes.h"
-#include "opaline/octree/octree.h"
+#include "opaline/exitance/octree.h"
 
 namespace opaline {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/render/held_view.h"
 
-#include "render/irradiance_lattice.h"
+#include "methods/hierarchical/near_field/irradiance_lattice.h"
 
 namespace opaline {
 namespace {

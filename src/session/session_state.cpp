@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/cancel_check.h"
+#include "methods/hierarchical/surface_caches.h"
 #include "opaline/render/choose_models.h"
-#include "opaline/render/surface_caches.h"
 
 namespace opaline {
 namespace {

@@ -11,9 +11,9 @@
 
 #include "opaline/cache/blobs.h"
 #include "opaline/diffusion/radial_table.h"
+#include "opaline/exitance/octree.h"
 #include "opaline/exitance/surface_cache.h"
 #include "opaline/irradiance/irradiance.h"
-#include "opaline/octree/octree.h"
 #include "opaline/sampling/sample_surface.h"
 #include "opaline/volume/volume_exitance.h"
 

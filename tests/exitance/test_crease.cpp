@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Across an edge of 90 degrees.
-#include "opaline/exitance/crease_error.h"
+#include "methods/hierarchical/near_field/crease_error.h"
 #include "support/clouds.h"
 #include "support/quadrature.h"
 

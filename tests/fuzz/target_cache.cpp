@@ -7,7 +7,7 @@
 #include "cache/entry_header.h"
 #include "fuzz_target.h"
 #include "methods/hierarchical/hierarchical_state.h"
-#include "opaline/render/surface_caches.h"
+#include "methods/hierarchical/surface_caches.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 #include "session/stage_codecs.h"

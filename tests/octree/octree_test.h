@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "opaline/core/random.h"
-#include "opaline/octree/octree.h"
+#include "opaline/exitance/octree.h"
 
 namespace opaline::test {
 

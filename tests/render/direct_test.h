@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "methods/direct/direct_exitance.h"
+#include "methods/direct/entry_sampler.h"
 #include "opaline/core/random.h"
 #include "opaline/render/direct.h"
-#include "render/direct_exitance.h"
-#include "render/entry_sampler.h"
 #include "support/clouds.h"
 #include "support/scenes.h"
 #include "support/statistics.h"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "methods/hierarchical/near_field/selection_bias.h"
 #include "opaline/core/random.h"
-#include "render/selection_bias.h"
 
 namespace opaline {
 namespace {

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "methods/hierarchical/hierarchical_state.h"
+#include "methods/hierarchical/surface_caches.h"
 #include "opaline/core/atomic_file.h"
 #include "opaline/image/metrics.h"
-#include "opaline/render/surface_caches.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

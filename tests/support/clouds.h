@@ -12,7 +12,7 @@
 
 #include "opaline/core/random.h"
 #include "opaline/exitance/evaluate.h"
-#include "opaline/octree/octree.h"
+#include "opaline/exitance/octree.h"
 #include "support/scenes.h"
 #include "support/surfaces.h"
 

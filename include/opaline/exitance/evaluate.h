@@ -11,7 +11,7 @@
 #include "opaline/core/monitor.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/diffusion/kernel_table.h"
-#include "opaline/octree/octree.h"
+#include "opaline/exitance/octree.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {

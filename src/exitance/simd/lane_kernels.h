@@ -8,7 +8,7 @@
 #include "exitance/expansion.h"
 #include "exitance/simd/lane_table.h"
 #include "exitance/source_block.h"
-#include "opaline/octree/octree.h"
+#include "opaline/exitance/octree.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {

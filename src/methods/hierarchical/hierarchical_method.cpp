@@ -7,10 +7,10 @@
 
 #include "methods/hierarchical/body_cloud_error.h"
 #include "methods/hierarchical/hierarchical_state.h"
+#include "methods/hierarchical/sample_field.h"
+#include "methods/hierarchical/surface_caches.h"
 #include "opaline/diffusion/tabulated.h"
 #include "opaline/exitance/cloud_error.h"
-#include "opaline/render/surface_caches.h"
-#include "render/fields/sample_field.h"
 #include "session/stage_codecs.h"
 
 namespace opaline {

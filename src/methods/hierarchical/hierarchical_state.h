@@ -6,8 +6,8 @@
 
 #include "methods/stage_store.h"
 #include "opaline/exitance/evaluate.h"
+#include "opaline/exitance/octree.h"
 #include "opaline/exitance/surface_cache.h"
-#include "opaline/octree/octree.h"
 #include "opaline/render/precompute.h"
 
 namespace opaline {

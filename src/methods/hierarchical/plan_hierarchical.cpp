@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "methods/hierarchical/hierarchical_method.h"
-#include "opaline/render/surface_caches.h"
+#include "methods/hierarchical/surface_caches.h"
 #include "render/light_distance.h"
 #include "render/plan_samples.h"
 

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
+#include "methods/direct/direct_field.h"
 #include "methods/method.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/irradiance/sample_key.h"
 #include "opaline/lights/light.h"
 #include "opaline/lights/light_tree.h"
-#include "render/fields/direct_field.h"
 #include "render/fields/local_field.h"
 #include "render/fields/partly_opaque_field.h"
 

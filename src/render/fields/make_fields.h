@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "methods/direct/entry_sampler.h"
 #include "opaline/render/render.h"
-#include "render/entry_sampler.h"
 #include "render/fields/field.h"
 
 namespace opaline {

@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "methods/hierarchical/near_field/irradiance_lattice.h"
+#include "methods/hierarchical/near_field/near_field_means.h"
+#include "methods/hierarchical/near_field/near_kernel.h"
 #include "opaline/exitance/evaluate.h"
 #include "opaline/render/precompute.h"
-#include "render/irradiance_lattice.h"
-#include "render/near_field_means.h"
-#include "render/near_kernel.h"
 
 namespace opaline {
 

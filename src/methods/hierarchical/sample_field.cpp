@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/fields/sample_field.h"
+#include "methods/hierarchical/sample_field.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "opaline/exitance/crease_error.h"
+#include "methods/hierarchical/near_field/crease_error.h"
+#include "methods/hierarchical/near_field/selection_bias.h"
 #include "opaline/exitance/surface_patch.h"
 #include "render/fields/make_fields.h"
-#include "render/selection_bias.h"
 
 namespace opaline {
 namespace {

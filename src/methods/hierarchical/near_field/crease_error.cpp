@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/exitance/crease_error.h"
+#include "methods/hierarchical/near_field/crease_error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/entry_sampler.h"
+#include "methods/direct/entry_sampler.h"
 
 #include <cmath>
 #include <numbers>

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "methods/hierarchical/hierarchical_state.h"
+#include "methods/hierarchical/near_field/near_field_sampler.h"
 #include "opaline/render/render.h"
 #include "render/fields/field.h"
-#include "render/near_field_sampler.h"
 
 namespace opaline {
 

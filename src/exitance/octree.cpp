@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/octree/octree.h"
+#include "opaline/exitance/octree.h"
 
 #include <tbb/parallel_sort.h>
 

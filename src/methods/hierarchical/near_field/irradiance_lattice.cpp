@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/irradiance_lattice.h"
+#include "methods/hierarchical/near_field/irradiance_lattice.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/own_light.h"
+#include "methods/hierarchical/near_field/own_light.h"
 
 #include <algorithm>
 #include <array>

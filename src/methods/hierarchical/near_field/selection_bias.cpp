@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/selection_bias.h"
+#include "methods/hierarchical/near_field/selection_bias.h"
 
 #include <algorithm>
 

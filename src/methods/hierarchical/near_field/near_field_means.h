@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "render/irradiance_lattice.h"
-#include "render/near_kernel.h"
+#include "methods/hierarchical/near_field/irradiance_lattice.h"
+#include "methods/hierarchical/near_field/near_kernel.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/direct_exitance.h"
+#include "methods/direct/direct_exitance.h"
 
 #include "opaline/core/random.h"
 #include "opaline/irradiance/irradiance.h"

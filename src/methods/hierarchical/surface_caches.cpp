@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/render/surface_caches.h"
+#include "methods/hierarchical/surface_caches.h"
 
 #include <algorithm>
 #include <functional>
 
 #include "methods/hierarchical/hierarchical_state.h"
+#include "methods/hierarchical/near_field/own_light.h"
 #include "methods/method.h"
 #include "render/camera_rays.h"
-#include "render/own_light.h"
 
 namespace opaline {
 namespace {

@@ -2,7 +2,7 @@
 // `direct`: the places where light entered are drawn at random, unbiased and noisy.
 #pragma once
 
-#include "render/direct_exitance.h"
+#include "methods/direct/direct_exitance.h"
 #include "render/fields/field.h"
 
 namespace opaline {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "render/near_field_sampler.h"
+#include "methods/hierarchical/near_field/near_field_sampler.h"
 
 #include <algorithm>
 #include <cmath>

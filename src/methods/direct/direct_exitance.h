@@ -2,9 +2,9 @@
 // Radiant exitance at points by sampling where the light entered.
 #pragma once
 
+#include "methods/direct/entry_sampler.h"
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/render/surface_textures.h"
-#include "render/entry_sampler.h"
 
 namespace opaline {
 
