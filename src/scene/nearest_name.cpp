@@ -222,7 +222,7 @@ std::string did_you_mean_file(const std::string& path) {
   // The project's own scenes have a script beside them that fetches their assets.
   const std::filesystem::path script = folder.parent_path() / "gallery";
   if (near.empty() && folder.filename() == "assets" && std::filesystem::is_regular_file(script, failure))
-    return " (" + printable(script.string()) + " fetches the assets of the scenes beside it)";
+    return " (" + printable(script.string()) + " downloads the assets of these scenes)";
   return near.empty() ? "" : suggestion({(folder / near.front()).string()});
 }
 
