@@ -36,7 +36,7 @@ Surroundings LightOf<Surroundings>::recentred(Surroundings light, const Vec3d&, 
   return light;
 }
 
-// Proportional to the cosine, so that the cosine times this weight is constant.
+// Proportional to the cosine, so the cosine times this weight is constant.
 template <>
 LightSample LightOf<Surroundings>::sample(const Surroundings&, const Vec3f&, const Vec3f& normal,
                                           std::array<double, 2> unit_square, int samples) {

@@ -44,7 +44,7 @@ std::string model_error_text(const BodyModel& model, Method method);
 /// The rule and its figures are derived in src/diffusion/README.md; bench_volume_models measures them.
 BodyModel choose_model(const Medium& medium, const BodyShape& shape);
 
-/// Gives the media of a scene that leave their profile open (Medium::profile is none) that of the body they are in. A
+/// Gives the media of a scene leaving their profile open (Medium::profile is none) that of the body they are in. A
 /// medium of bodies that ask for different ones becomes several media of its name.
 /// reference: bodies of another frame, whose profiles those of the same names take over
 void choose_models(Scene& scene, const World& world, std::span<const GroupPlan> reference = {});

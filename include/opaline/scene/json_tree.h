@@ -29,7 +29,7 @@ struct Node {
   int override_index = -1;                 ///< which override it came from; -1: the file
 };
 
-/// A scene's text, its tree, and the overrides that were applied to it.
+/// A scene's text, its tree, and the overrides applied to it.
 struct Document {
   std::string file;
   std::string_view text;

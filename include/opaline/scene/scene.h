@@ -67,7 +67,7 @@ struct PhysicalMedium {
 
 /// Artist's parameters after OpenPBR.
 struct ArtistMedium {
-  Rgb subsurface_color;   ///< total diffuse reflectance per entered flux, [0, 1]
+  Rgb subsurface_color;   ///< total diffuse reflectance per transmitted flux, [0, 1]
   Rgb subsurface_radius;  ///< 1/sigma_t per channel, mm, >= 0 (radius times subsurface_radius_scale)
   double anisotropy = 0;  ///< mean cosine g, (-1, 1)
   friend bool operator==(const ArtistMedium&, const ArtistMedium&) = default;
@@ -99,7 +99,7 @@ struct Medium {
   TextureMix texture_mix = TextureMix::split;
   /// Texture of ArtistMedium::subsurface_radius over its mean; the record stores the mean.
   std::optional<Texture> radius_texture{};
-  /// Share of the light that scatters inside, [0, 1]; the rest is reflected diffusely at the surface, by base_color.
+  /// Fraction of the light scattering inside, [0, 1]; the rest is reflected diffusely at the surface, by base_color.
   double subsurface_weight = 1;
   Rgb base_color{.8, .8, .8};
   std::optional<Texture> weight_texture{}, base_texture{};  ///< times these
@@ -237,7 +237,7 @@ struct SpotLight {  ///< a point's light within a cone
 struct DirectionalLight {
   static constexpr std::string_view kType = "directional";
   Vec3d direction;   ///< unit, the way the light travels
-  Rgb irradiance;    ///< on a surface that faces it, W/mm^2
+  Rgb irradiance;    ///< on a surface facing it, W/mm^2
   double angle = 0;  ///< the disc's full angle, degrees, [0, 90]; 0: parallel light
   friend bool operator==(const DirectionalLight&, const DirectionalLight&) = default;
 };

@@ -63,11 +63,11 @@ struct VolumeExitance {
   std::size_t walks = 0;       ///< a sample, of the channel and light that has most
   double relative_error =
       0;                  ///< rms over the surface of error over sqrt(exitance^2 + (1 % of the largest)^2)
-  Rgb lost{}, stopped{};  ///< shares of the light that entered: see WalkSums
+  Rgb lost{}, stopped{};  ///< fractions of the light that entered: see WalkSums
   bool has_inner_sheets = false;  ///< parts of the body overlap or touch, or its surface crosses itself
 };
 
-/// True if each light is walked alone, so that its colour takes no part: where there are few.
+/// True if each light is walked alone, so its colour takes no part: where there are few.
 bool walks_by_light(const VolumeInput& input);
 
 /// Goes on from `sums` (empty: from nothing) until there are kDefaultWalks or the error is small enough; `sums`

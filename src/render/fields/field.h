@@ -36,7 +36,7 @@ struct SurfaceHits {
   std::vector<HitTextures> textures;  ///< empty: the scene has none
 };
 
-/// Light that leaves, one entry a hit, W/mm^2; an array that the field does not know is empty.
+/// Light leaving, one entry a hit, W/mm^2; an array that the field does not know is empty.
 struct LeavingLight {
   std::vector<RgbF> exitance;    ///< radiant exitance M_o, but for the factor SurfaceTint::leaving
   std::vector<RgbF> irradiance;  ///< E at the hit
