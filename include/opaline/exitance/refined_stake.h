@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which points have their near field found by more shadow rays.
+// Choice of points with additional shadow rays in the near field.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LDR-FLIP: the difference that a person sees who flips between two pictures.
+// LDR-FLIP: visible difference when flipping between two images.
 #pragma once
 
 #include <cstdint>

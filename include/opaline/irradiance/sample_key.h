@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which low-discrepancy points a key chooses (PointIrradianceInput::keys).
+// Low-discrepancy points of a key (PointIrradianceInput::keys).
 #pragma once
 
 #include <bit>

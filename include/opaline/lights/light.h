@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lights of a scene, whatever their kind: where they are, and what arrives at a point from them.
+// Lights of any kind: positions, sampling, and radiance at a point.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct LightSample {
       0;  ///< intensity -> 1/d^2, irradiance -> 1, radiance -> solid angle / samples; 0: no light here
 };
 
-/// The light's colour: what a sample's weight multiplies.
+/// Colour of the light, a factor of a sample's weight.
 Rgb emission(const Light& light);
 
 /// The light in another colour.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which groups have their exitance evaluated all over, ahead of the picture.
+// Choice of bodies with a surface cache.
 #pragma once
 
 #include <optional>

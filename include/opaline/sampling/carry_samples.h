@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples that stay where they are on a surface while it moves or bends.
+// Samples fixed to a surface that moves or deforms.
 #pragma once
 
 #include <cstdint>

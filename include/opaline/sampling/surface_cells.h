@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which parts of the triangles belong to which sample: cells that can bend with their surface.
+// Assignment of triangle parts to samples: cells that deform with their surface.
 #pragma once
 
 #include <cstdint>

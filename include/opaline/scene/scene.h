@@ -73,7 +73,7 @@ struct ArtistMedium {
   friend bool operator==(const ArtistMedium&, const ArtistMedium&) = default;
 };
 
-/// Profile of a medium that names none.
+/// Default profile of a medium.
 struct ChosenProfile {
   ProfileKind kind = ProfileKind::dipole;
   double thickness = std::numeric_limits<double>::infinity();  ///< as Medium::thickness
@@ -338,9 +338,9 @@ struct Settings {
   std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
   std::optional<double>
       until_error;             ///< direct, volume: stop at this estimated relative error of the pixels, cells
-  bool reenter = true;         ///< volume: light that has left a body may enter it again elsewhere
+  bool reenter = true;         ///< volume: enables re-entry of light into a body
   double cell_size = 2;        ///< volume_diffusion: of the cells at the surface, mean free paths
-  std::optional<int> bounces;  ///< 1: surfaces that are lit light others, once; none: bounces_of()
+  std::optional<int> bounces;  ///< 1: one bounce of light between surfaces; none: bounces_of()
   std::uint64_t seed = 0;
   int reference_frame = 1;  ///< frame in which samples are placed; they move with the surface in others
   Laboratory laboratory{};
