@@ -20,7 +20,7 @@ constexpr double kMargin = 1.05;  // margin of the sphere that the picture holds
 constexpr int kSamplesPerPixel = 4;
 
 /// A ball that lights the asset, unseen: where, in units along the picture's right, the world's up and towards the camera;
-/// its radius over that of the asset; and the radiance of a white matte surface at the asset's centre that faces it.
+/// its radius over that of the asset; and the radiance of a white matte surface at the asset's centre facing it.
 struct DefaultLight {
   const char* name;
   Vec3d direction;

@@ -24,7 +24,7 @@ struct AssetScene {
   Json media = Json::object(), shapes = Json::array(), lights = Json::array(), camera, film = Json::object();
   Vec3d center;                  ///< center of the box around the shapes
   double radius = 1;             ///< from there to the outermost vertex
-  double center_irradiance = 0;  ///< that its lights bring to a surface there that faces them
+  double center_irradiance = 0;  ///< that its lights bring to a surface there facing them
   bool is_one_mesh = false;      ///< its shapes are parts of one body
   bool has_vertex_colors = false;
   std::vector<std::string> translated, not_carried;
@@ -65,7 +65,7 @@ AssetScene import_mesh(const std::string& path, const std::string& mesh_path);
 /// Gives a camera and lights to a scene without, and an exposure that suits its lights.
 void add_defaults(AssetScene& scene);
 
-/// The scene file's text: indented, numbers that belong together on one line, what was not carried over in
+/// The scene file's text: indented, numbers belonging together on one line, what was not carried over in
 /// comments at its top.
 std::string scene_text(const AssetScene& scene, const std::string& asset);
 

@@ -298,8 +298,7 @@ class MaterialTranslator {
   double index_of_refraction() {
     const double ior = values("KHR_materials_ior").number("ior", kGltfIor);
     if (ior >= kLeastIor && ior <= kMostIor) return ior;
-    not_carried(fmt::format("ior {:.4g}, which is outside {} to {}: {} is taken", ior, kLeastIor, kMostIor,
-                            kGltfIor));
+    not_carried(fmt::format("ior {:.4g}, outside {} to {}: uses {}", ior, kLeastIor, kMostIor, kGltfIor));
     return kGltfIor;
   }
 

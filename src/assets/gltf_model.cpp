@@ -138,7 +138,7 @@ Kept& kept() {
   return last;
 }
 
-/// The bytes of a buffer that lies outside of the asset's own file.
+/// The bytes of a buffer lying outside of the asset's own file.
 /// in    files: its file is added
 std::string bytes_of_uri(const GltfModel& gltf, std::size_t index, const std::string& uri,
                          std::vector<std::string>& files) {

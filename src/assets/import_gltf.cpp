@@ -21,7 +21,7 @@ bool is_finite(const Transform& t) {
   return is_finite(t.x) && is_finite(t.y) && is_finite(t.z) && is_finite(t.translation);
 }
 
-/// A node that belongs to the scene, with its place in the world; of a mesh that is there several times, which one.
+/// A node belonging to the scene, with its place in the world; of a mesh that is there several times, which one.
 struct PlacedNode {
   std::size_t index, instance;
   Transform to_world;
@@ -200,7 +200,7 @@ class GltfImporter {
                     is_faceted ? ", faceted: it has no normals (\"normals\": \"smooth\" makes some)" : ""));
   }
 
-  /// Primitives of one node that share a medium are one body.
+  /// Primitives of one node sharing a medium are one body.
   void add_surface(Json& shape, const MaterialUse& use, const PlacedNode& placed, bool has_siblings) {
     const Surface& surface = surface_of(use);
     if (surface.medium.empty()) shape["reflectance"] = triple_json(surface.reflectance);

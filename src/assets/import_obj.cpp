@@ -152,7 +152,7 @@ class ObjImporter {
     return file.path.string();
   }
 
-  /// A material that is defined again replaces the earlier one, as in other programs.
+  /// A material defined again replaces the earlier one, as in other programs.
   void read_library(const std::string& path) {
     const MtlLibrary library = read_mtl_library(path, read_asset_text(path));
     for (const MtlStatement& statement : library.unassigned)

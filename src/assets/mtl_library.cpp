@@ -45,7 +45,7 @@ bool is_everywhere(std::string_view text, double number) {
   return color.value && color.complaint.empty() && *color.value == Vec3d(number);
 }
 
-/// True for values that leave a matte surface as it is: black highlights, full opacity.
+/// True for values leaving a matte surface as it is: black highlights, full opacity.
 bool has_no_effect(const std::string& keyword, std::string_view text) {
   for (const char* other : {"ka", "ns", "ni", "illum", "sharpness", "pcr", "anisor", "map_ka", "map_aat"})
     if (keyword == other) return true;

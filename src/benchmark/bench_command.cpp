@@ -142,7 +142,7 @@ int verdict(const BenchArguments& arguments, const std::vector<WatchedRung>& bef
 }
 
 int run_bench(const BenchArguments& arguments) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not cost the CSV
+  std::signal(SIGPIPE, SIG_IGN);  // a reader leaving must not cost the CSV
   const std::vector<WatchedRung> before = read_before(arguments);
   if (!arguments.csv.empty()) AtomicFile(arguments.csv);  // reports an unwritable file before the work
   const BenchFolder folder(arguments.report);

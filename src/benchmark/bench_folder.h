@@ -28,7 +28,7 @@ class BenchFolder {
   bool temporary_ = false;
 };
 
-/// A render that leaves a picture.
+/// A render leaving a picture.
 struct KeptRun {
   std::string name;                    ///< name of its record in runs/
   std::string picture;                 ///< within the folder

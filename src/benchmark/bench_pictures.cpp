@@ -41,7 +41,7 @@ Image image_of(const Layer& layer) {
   return image;
 }
 
-/// Pixels that share a value of a reference's noise. Random walks are counted on cells, half of which are seen, and
+/// Pixels sharing a value of a reference's noise. Random walks are counted on cells, half of which are seen, and
 /// interpolated over about five (the noise of a pixel is 2.3 times less than that of a cell).
 double alike_pixels(const std::vector<std::uint8_t>& object, std::size_t cells) {
   constexpr double kSeen = .5, kBlended = 5;
@@ -70,7 +70,7 @@ struct Reference {
   std::array<Layer, 2> halves;
   Layer mean;
   std::vector<std::uint8_t> object;
-  double alike = 1;  // pixels that share their noise
+  double alike = 1;  // pixels sharing their noise
 };
 
 BenchSubject subject_of(const BenchScene& scene, const Reference& reference) {

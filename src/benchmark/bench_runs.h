@@ -31,7 +31,7 @@ struct BudgetJob {
 
 std::vector<BenchJob> list_jobs(const std::vector<BenchScene>& scenes);
 
-/// Round by round, so that a machine that warms up or is busy for a while is so for all rungs.
+/// Round by round, so a machine that warms up or is busy for a while is so for all rungs.
 /// out   how many of the runs were recalled from the folder
 /// error as run_or_recall; what fails is in the job
 std::size_t run_jobs(const BenchArguments& arguments, const BenchFolder& folder, std::vector<BenchJob>& jobs,

@@ -13,7 +13,7 @@
 namespace opaline {
 
 std::string page_of(const Json& data) {
-  std::string text;  // "<" escaped, so that no "</script>" or "<!--" in a name ends the script element
+  std::string text;  // "<" escaped, so no "</script>" or "<!--" in a name ends the script element
   for (const char c : data.dump(-1, ' ', false, Json::error_handler_t::replace))
     text += c == '<' ? std::string("\\u003c") : std::string(1, c);
   constexpr std::string_view mark = "{{data}}";

@@ -26,7 +26,7 @@ struct PictureError {
 };
 
 /// in    R, G, B layers of the same size, linear; halves with independent noise; object: a flag a pixel
-///       alike: pixels that share a value of the noise, on the average
+///       alike: pixels sharing a value of the noise, on the average
 PictureError picture_error(const Layer& picture, const Layer& half1, const Layer& half2,
                            const std::vector<std::uint8_t>& object, double alike = 1);
 

@@ -17,7 +17,7 @@ std::string to_page(const ProfileReport& report);
 /// "classical" and "grosjean" around a point source.
 nlohmann::ordered_json profile_page_data(const ProfileReport& report);
 
-/// Shares of the entered flux: a row a channel, way of entry or model, and face.
+/// Shares of the transmitted flux: a row a channel, way of entry or model, and face.
 CsvTable totals_table(const ProfileReport& report);
 /// R_d by rings: a row a channel, face and ring; walks by both ways of entry, and each model's mean over the ring.
 CsvTable rings_table(const ProfileReport& report);

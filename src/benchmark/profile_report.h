@@ -53,7 +53,7 @@ struct ModelFace {
   const ChannelProfile* profile;
   double height = 0;  ///< thickness for the far face, mm
 
-  double within(double r) const;      ///< share of the entered flux that leaves there, nearer than r
+  double within(double r) const;      ///< fraction of the transmitted flux leaving there, nearer than r
   double profile_at(double r) const;  ///< 1/mm^2
   double total() const;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Error against CPU time: which settings are worth having, and what lies between two of them.
+// Error against CPU time: efficient settings, and interpolation between two of them.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace opaline {
 
-/// A measured setting; both > 0. One whose error the reference's noise hides stands at that noise: it is
-/// better than it looks.
+/// A measured setting; both > 0. An error below the noise of the reference is replaced by that noise: it is
+/// an upper bound.
 struct TradePoint {
   std::size_t row = 0;  ///< row of the benchmark's rows
   double cpu = 0;       ///< s, of the whole job
@@ -22,29 +22,29 @@ struct TradePoint {
   double fixed_cpu = 0;  ///< CPU time independent of the random values: all but the shading, s
 };
 
-/// Settings that differ in the value of one knob, from cheap to dear.
+/// Settings that differ in one value, from cheap to expensive.
 struct TradeSeries {
   std::string name;  ///< "hierarchical dual_tree, by tolerance"
   std::string method;
   std::vector<TradePoint> points;
 };
 
-/// The rows of one scene that have an error, in the order in which their series first appear. `lambert` is
-/// not among them: what it leaves out is no error that could be made smaller.
+/// Rows of one scene with an error, in the order in which their series first appear. Without `lambert`,
+/// because its error cannot be reduced.
 std::vector<TradeSeries> trade_series(std::span<const BenchRow> rows, const std::string& scene);
 
-/// Indices of the points that no other is both at least as cheap and at least as accurate as, cheap to dear.
-/// It ends where the noise begins: beyond, nothing tells them apart.
+/// Indices of the Pareto-optimal points in cost and error, from cheap to expensive.
+/// Ends at the noise: errors below it are not distinguishable.
 std::vector<std::size_t> pareto_front(std::span<const TradePoint> points);
 
-/// A figure that was not measured itself.
+/// A derived value.
 struct Estimate {
   enum Kind {
-    none,          ///< beyond what was measured
+    none,          ///< outside the measured range
     interpolated,  ///< on the straight line of log CPU and log error between two neighbours
     extrapolated,  ///< `direct` alone: its error falls with the root of the time, as any mean's of random
                    ///< values
-    at_most,       ///< the nearest setting does better already, or the noise hides how good it is
+    at_most,       ///< upper bound: the nearest setting is better, or its error is below the noise
   } kind = none;
   double value = 0;
 };
@@ -52,7 +52,7 @@ struct Estimate {
 /// CPU time at which the series first reaches an error.
 Estimate cpu_at_error(const TradeSeries& series, double error);
 
-/// Error that the series reaches in a CPU time.
+/// Error of the series in a CPU time.
 Estimate error_at_cpu(const TradeSeries& series, double cpu);
 
 /// 1, 2 and 5 times powers of ten within [low, high], ascending.

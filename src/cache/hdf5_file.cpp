@@ -15,7 +15,7 @@ Hdf5Handle create_in_memory() {
   return {H5Fcreate("cache entry", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose};
 }
 
-/// In one piece, so that whoever knows where it begins can copy it.
+/// In one piece, so whoever knows where it begins can copy it.
 Hdf5Handle set_properties() {
   Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties.id(), false);  // the same input gives the same bytes
@@ -37,7 +37,7 @@ hid_t number_type(BlobNumber number) {
   return -1;
 }
 
-/// Member type of a number that stands alone, or of an array of them.
+/// Member type of a number standing alone, or of an array of them.
 Hdf5Handle member_type(const BlobMember& member) {
   const hsize_t count = member.count;
   if (count == 1) return {H5Tcopy(number_type(member.number)), H5Tclose};

@@ -49,7 +49,7 @@ class Hdf5Turn {
 /// Bytes in front of the file that HDF5 leaves alone.
 inline constexpr std::size_t kUserBlock = 1024;
 
-/// A file that is made in memory: HDF5 (1.10) cannot let go of one whose disk is full. After the first
+/// A file made in memory: HDF5 (1.10) cannot let go of one whose disk is full. After the first
 /// failure what follows does nothing.
 class Hdf5Writer final : public BlobWriter {
  public:

@@ -226,7 +226,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
 Error unknown_option(const CLI::App& command, const std::string& text) {
   const std::string name = text.substr(0, text.find('='));
   const std::vector<std::string> names = option_names(command);
-  // A beginning stands for its words, and a letter that is none for those that begin with it.
+  // A beginning stands for its words, and a letter that is none for those beginning with it.
   const bool is_letter = name.size() == 2;
   const std::string beginning = is_letter ? '-' + name : name;
   std::vector<std::string> meant = is_letter ? std::vector<std::string>{} : ways_to_set(command, name);

@@ -85,7 +85,7 @@ void add_common_options(CLI::App& app, std::string& scene, Options& options) {
 
 void add_picture_options(CLI::App& app, Options& options) {
   const auto option = [&](auto& value, const char* key, const char* type) {
-    return add_key(app, value, key)->type_name(type)->group("Picture");
+    return add_key(app, value, key)->type_name(type)->group("Image");
   };
   option(options.spp, "film.samples_per_pixel", "N");
   option(options.resolution, "film.resolution", "WxH")->check(resolution_check());
@@ -96,7 +96,7 @@ void add_picture_options(CLI::App& app, Options& options) {
          "--environment", options.environment,
          "lat-long environment map (EXR, HDR, PNG) that replaces the lights of the scene; sets exposure 0")
       ->type_name("FILE")
-      ->group("Picture");
+      ->group("Image");
   option(options.method, "settings.method", "NAME");
   option(options.evaluator, "settings.evaluator", "NAME");
   option(options.entry_samples, "settings.entry_samples", "N");

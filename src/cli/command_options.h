@@ -31,7 +31,7 @@ struct Options {
   std::string layers;
 };
 
-/// The option that stands for a key of a scene: "film.crop" -> "--crop"; empty where none does.
+/// The option standing for a key of a scene: "film.crop" -> "--crop"; empty where none does.
 std::string_view option_of_key(std::string_view key);
 /// The other way: "--crop" -> "film.crop"; empty where it stands for none.
 std::string_view key_of_option(std::string_view option);

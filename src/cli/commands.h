@@ -19,7 +19,7 @@ void import_command(const ImportArguments& arguments);
 void info_command(const InfoArguments& arguments);
 
 /// Prints how far a picture is from its reference, and writes the error picture; the exit code: 0, or 1 where
-/// the error is above the bound or the picture has values that are not finite.
+/// the error is above the bound or the picture has non-finite values.
 /// error Error{bad_input}: a file that is no picture, without the layer, or of another size or crop;
 ///       Error{run_failed}: the error picture cannot be written
 int compare_command(const CompareArguments& arguments);

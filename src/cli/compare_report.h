@@ -18,7 +18,7 @@ struct FlipReport {
   double exposure = 0;  ///< stops
 };
 
-/// Counts of values that are not finite.
+/// Counts of non-finite values.
 struct NonFiniteReport {
   std::string path;
   NonFinite count;

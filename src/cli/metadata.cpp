@@ -32,7 +32,7 @@ Json settings_in_use(const Scene& scene, const World& world, std::span<const Bod
   return json;
 }
 
-/// A name that begins like an option would be taken for one.
+/// A name beginning like an option would be taken for one.
 std::string quoted_path(const std::string& path) {
   return shell_quoted(path.starts_with('-') ? "./" + path : path);
 }

@@ -47,7 +47,7 @@ std::string picture_text(const Film& film) {
     const auto& [x0, y0, x1, y1] = *film.crop;
     text += fmt::format("crop x {} to {}, y {} to {}, ", x0, x1 - 1, y0, y1 - 1);
   }
-  text += counted(std::size_t(film.samples_per_pixel), "sample") + " each";
+  text += counted(std::size_t(film.samples_per_pixel), "camera ray") + " per pixel";
   return text + fmt::format(", {} filter", name_of(film.filter));
 }
 
@@ -109,7 +109,7 @@ Paragraphs paragraphs_of(const Scene& scene, const World& world, const Plan& pla
           fmt::format("{}: {}, {}", scene.file, counted(scene.shapes.size(), "shape"),
                       counted(plan.triangles, "triangle")));
   if (!scene.translation.empty()) add_row(text, "asset", scene.translation);
-  add_row(text, "picture", picture_text(scene.film));
+  add_row(text, "image", picture_text(scene.film));
   add_row(text, "lights", lights_text(scene.lights));
   for (std::size_t g = 0; g < std::min(plan.groups.size(), kMostShown); ++g)
     add_group(text, scene, world, plan.groups[g]);

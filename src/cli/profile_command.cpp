@@ -173,7 +173,7 @@ Json report_json(const ProfileReport& report) {
 }  // namespace
 
 void profile_command(const ProfileArguments& arguments) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not cost the report
+  std::signal(SIGPIPE, SIG_IGN);  // a reader leaving must not cost the report
   const ProfileRequest request = request_of(arguments);
   if (!arguments.report.empty()) prepare_folder(arguments.report);
   std::optional<tbb::global_control> threads;

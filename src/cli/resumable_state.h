@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// Sums that are kept in the --resume file, if there is one.
+/// Sums kept in the --resume file, if there is one.
 class ResumableState {
  public:
   ResumableState(const RenderArguments& arguments, const Scene& scene)

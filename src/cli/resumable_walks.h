@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Sums that are kept in the --resume file, if there is one: those of all bodies and lights. Nothing of the camera
+/// Sums kept in the --resume file, if there is one: those of all bodies and lights. Nothing of the camera
 /// or of colours is in them.
 class ResumableWalks {
  public:

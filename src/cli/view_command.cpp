@@ -21,7 +21,7 @@
 namespace opaline {
 namespace {
 
-/// A file by a process of its own, so that it is what `opaline render` writes and the view goes on meanwhile.
+/// A file by a process of its own, so it is what `opaline render` writes and the view goes on meanwhile.
 void render_file(const ViewArguments& arguments, const std::vector<std::string>& overrides,
                  std::optional<int> frame, const std::string& path, Monitor& monitor) {
   std::vector<std::string> words{"render", arguments.scene, "-o", path, "--log", "json"};
@@ -55,7 +55,7 @@ void open_on_desktop(std::string url) {
 }  // namespace
 
 void view_command(const ViewArguments& arguments) {
-  std::signal(SIGPIPE, SIG_IGN);  // a page that leaves must not end the others'
+  std::signal(SIGPIPE, SIG_IGN);  // a page leaving must not end the others'
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));

@@ -19,7 +19,7 @@ class CancelScope {
   Monitor* before_;
 };
 
-/// Made by the thread that begins a stage, for the loops of all its threads; cheap enough for each comparison of a sort.
+/// Made by the thread beginning a stage, for the loops of all its threads; cheap enough for each comparison of a sort.
 class CancelCheck {
  public:
   CancelCheck();

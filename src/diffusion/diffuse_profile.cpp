@@ -111,7 +111,7 @@ ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& mediu
 double invert_albedo(ProfileKind kind, double total, double eta) {
   if (total >= 1) return 0;
   if (total <= 0) return 1;
-  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1. Its logarithm is looked for, so that the relative error of
+  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1. Its logarithm is looked for, so the relative error of
   // 1 - alpha' is small where the medium hardly absorbs.
   constexpr double kLeast = -80, kTolerance = 1e-12;
   const auto excess = [&](double logarithm) {

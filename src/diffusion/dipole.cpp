@@ -68,7 +68,7 @@ struct Source {
   double z, s;  // depth, mm; sigma_tr z
 };
 
-// One of the two sources by its share of the total, and what is left of `beyond` in (0, 1]. The virtual one
+// One of the two sources by its fraction of the total, and what is left of `beyond` in (0, 1]. The virtual one
 // has the far end, where 1 - beyond would keep no digits.
 Source choose_source(const Dipole& dipole, double& beyond) {
   const double ratio = std::exp(dipole.s_real - dipole.s_virtual), share = ratio / (1 + ratio);
@@ -88,7 +88,7 @@ double sample_diffusion_distance(const Dipole& dipole, double beyond) {
   return source.z * std::sqrt(ratio - 1) * std::sqrt(ratio + 1);
 }
 
-// The share of one source within R is 1 - z/d exp(-sigma_tr (d - z)) (1 + R^2 (1 + sigma_tr d) / (2 d^2)):
+// The fraction of one source within R is 1 - z/d exp(-sigma_tr (d - z)) (1 + R^2 (1 + sigma_tr d) / (2 d^2)):
 // bisected on d/z, for its tail is a power law without absorption.
 double sample_chord_sphere_radius(const Dipole& dipole, double u, double) {
   double rest = 1 - u;

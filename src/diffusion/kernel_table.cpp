@@ -17,13 +17,13 @@ KernelTable KernelTable::of_far_side(const DiffuseProfile& profile, double r_min
 }
 
 KernelTable::KernelTable(const DiffuseProfile& profile, Kernel kernel, double r_min, double r_max) {
-  // One length scale, so that s does not change when everything is scaled by a power of two.
+  // One length scale, so s does not change when everything is scaled by a power of two.
   const double scale = r_max;
   inverse_scale2_ = float(1 / (scale * scale));
   const auto reflectance = [&](std::size_t channel, double s) {
     return kernel(profile.channels[channel], std::sqrt(s) * scale);
   };
-  // End where even the last channel has fallen under 1e-30 of the entered flux per squared scale.
+  // End where even the last channel has fallen under 1e-30 of the transmitted flux per squared scale.
   const auto negligible = [&](double s) {
     double largest = 0;
     for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, reflectance(c, s));

@@ -167,7 +167,7 @@ constexpr int kPerOctave = 16;
 constexpr double kTrusted = 1e-9;  // shares beyond, where they are what the images leave of the total
 constexpr double kTableStep = std::numbers::ln2 / kPerOctave;
 
-/// From a ten-thousandth of the smallest length to where a share of 1e-20 is left.
+/// From a ten-thousandth of the smallest length to where a fraction of 1e-20 is left.
 std::shared_ptr<const ShareTable> make_shares(const Multipole& p) {
   ShareTable table;
   const double all = total(p, 0), slowest = std::hypot(p.decay, pi / height(p));

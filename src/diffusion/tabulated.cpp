@@ -51,7 +51,7 @@ RadialReference reference_of(double absorbed, double eta) {
   return {decay_constant(absorbed), 1 + 2. / 3 * (1 + inside) / (1 - inside)};
 }
 
-/// The reference's share of each ring: before the first knot, between knots, and beyond the last one.
+/// The reference's fraction of each ring: before the first knot, between knots, and beyond the last one.
 std::vector<double> reference_shares(const RadialReference& reference) {
   const auto ring = [&](double r) { return 2 * std::numbers::pi * r * reference(r); };
   using Rule = boost::math::quadrature::gauss<double, 10>;
@@ -67,7 +67,7 @@ std::vector<double> reference_shares(const RadialReference& reference) {
   return shares;
 }
 
-/// f at the knots, so that the reference times e^f has the walked shares: the least of the Poisson deviance of the
+/// f at the knots, so the reference times e^f has the walked shares: the least of the Poisson deviance of the
 /// rings and of penalties on first and second differences of f. Convex; by Newton's method.
 class SmoothFit {
  public:

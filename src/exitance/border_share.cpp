@@ -27,7 +27,7 @@ std::vector<double> ring_shares(const std::vector<double>& within) {
   return shares;
 }
 
-// The part of the rings that lies on this side of a straight border at distance t h.
+// The part of the rings lying on this side of a straight border at distance t h.
 double inside_border(const std::vector<double>& shares, double t) {
   double sum = 0;
   for (int i = 0; i < kRings; ++i) {
@@ -57,7 +57,7 @@ std::vector<double> near_shares(const ChannelProfile& profile, double h) {
   return ring_shares(within);
 }
 
-// Over h, for each row the distance at which a border leaves its share of the areas on this side.
+// Over h, for each row the distance at which a border leaves its fraction of the areas on this side.
 std::array<double, SplitKernel::kBorderRows> border_distances() {
   const std::vector<double> area = area_shares();
   std::array<double, SplitKernel::kBorderRows> distances{};

@@ -108,7 +108,7 @@ struct Trials {
   std::vector<RgbF> irradiance;
 };
 
-/// From a sample to somewhere in the disc that stands for its cell, in the tangent plane's axes.
+/// From a sample to somewhere in the disc standing for its cell, in the tangent plane's axes.
 struct Step {
   Vec3f u, v;
   float along_u, along_v;

@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t kTogether = 4;  // packets that go down the tree side by side
 // Third-order terms of a node's series that the second moment leaves, for the shapes that nodes have, and how
-// the errors of many nodes add up: measured, so that the promise holds (test_dual_tree).
+// the errors of many nodes add up: measured, so the promise holds (test_dual_tree).
 constexpr float kErrorShare = 0.7f;
-// Below this share of the p99 of all queries' exitance (under the promise's, for guesses run high), or this
+// Below this fraction of the p99 of all queries' exitance (under the promise's, for guesses run high), or this
 // one of the brightest possible, a relative error is not asked for.
 constexpr float kDark = 2e-4f, kDarkest = 1e-8f;
 
@@ -48,7 +48,7 @@ struct alignas(16) Takers {
 
 using Guesses = std::array<RgbF, PacketCut::kMost>;  // exitance estimates of a chunk's packets
 
-// Up to kChunk queries that lie near each other.
+// Up to kChunk queries lying near each other.
 class Chunk {
  public:
   Chunk(const EvaluateInput& input, const LaneKernels& kernels, std::span<const std::uint32_t> order,

@@ -48,7 +48,7 @@ void walk(const EvaluateInput& input, const Query& query, Gather& gather) {
   }
 }
 
-// The share of the irradiance at the point itself for which it and the samples' mean around, weighted by
+// The fraction of the irradiance at the point itself for which it and the samples' mean around, weighted by
 // (1 - t^2)^2 with mean square radius h^2/4, have the near kernel's mean square radius.
 double own_share(const ChannelProfile& profile, double h) {
   double flux = 0, moment = 0;
@@ -61,7 +61,7 @@ double own_share(const ChannelProfile& profile, double h) {
   return flux > 0 ? std::clamp(1 - 4 * moment / flux, 0.0, 1.0) : 0;
 }
 
-// SplitKernel::own_irradiance; near: the near field's share of the total.
+// SplitKernel::own_irradiance; near: the near field's fraction of the total.
 float own_irradiance(const ChannelProfile& profile, double h, double near, NearIrradiance wanted) {
   if (wanted != NearIrradiance::mixed) return wanted == NearIrradiance::point ? 1.0f : 0.0f;
   // Where little of the light depends on it the irradiance at the point is not worth its shadow rays; faded,

@@ -18,7 +18,7 @@ namespace {
 
 // Fraction of the exitance on both sides beyond the reach that is neglected.
 constexpr double kNeglected = 3e-4;
-// Area over squared distance of a node that stands as a point.
+// Area over squared distance of a node standing as a point.
 constexpr float kSolidAngle = 0.06f;
 constexpr float kNarrow = 0.85f;  // cosine of such a node's cone
 
@@ -41,7 +41,7 @@ double reach_of(const ChannelProfile& profile, double r_min, double r_max) {
   return std::min(r_max, r * step);
 }
 
-// Queries that follow each other, with bounds on where they lie and face.
+// Queries following each other, with bounds on where they lie and face.
 struct QueryBounds {
   Vec3f low, high, axis;
   float cosine = 0, sine = 1;  // cosine and sine of the angle around the axis; cosine 0: any direction
@@ -97,7 +97,7 @@ class CrossingLight {
       const NormalCone cone = octree_.normal_cones.empty() ? NormalCone{} : octree_.normal_cones[i];
       const Sheets sheets = sheets_of(bounds, cone.axis, cone.cosine, cone.sine);
       if (gap2 <= reach2_ && sheets != Sheets::same) {
-        // A node that lies across the border of 120 degrees is of the sheet of its middle.
+        // A node lying across the border of 120 degrees is of the sheet of its middle.
         const bool is_point = gap2 > 0 && node.flux[3] < kSolidAngle * gap2 && cone.cosine > kNarrow;
         if (!is_point && !node.leaf) {
           ++i;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light that crosses a plate: samples of other sheets than a point's.
+// Light crossing a plate: samples of other sheets than a point's.
 #pragma once
 
 #include <memory>

@@ -28,7 +28,7 @@ constexpr float kBent = 0.95f;
 // shadow's edge, as the near field blurs it, shows at vertices closer than kBlur.
 constexpr double kReach = 2, kFinest = 0.25, kBlur = 0.5;
 
-// Two vertices between which the light that depends on the irradiance at the place itself changes by more
+// Two vertices between which the light depending on the irradiance at the place itself changes by more
 // than twice this part of all light may have a shadow's edge between them.
 constexpr float kJump = 0.02f;
 

@@ -28,7 +28,7 @@ auto content(const FluxSample& s) {
                   s.irradiance.z, s.normal.x, s.normal.y, s.normal.z);
 }
 
-// Samples along the Morton curve; equal keys in the order of their content, so that input order has no say.
+// Samples along the Morton curve; equal keys in the order of their content, so input order has no say.
 std::vector<Keyed> morton_order(std::span<const FluxSample> samples) {
   Vec3f low = samples[0].position, high = low;
   for (const FluxSample& s : samples) {

@@ -38,7 +38,7 @@ PointSums<Points4> sums_at(const EvaluateInput& input, const PacketSums& from, s
     sums.near_flux[c] = load(from.near_flux[c] + lane);
     square += sums.near_flux[c] * sums.near_flux[c];
   }
-  // The irradiance varies around the point by the same share of its mean in each channel.
+  // The irradiance varies around the point by the same fraction of its mean in each channel.
   const Points4 spread = square > 0 ? load(from.near_squares + lane) / square : Points4{};
   for (std::size_t c = 0; c < 3; ++c) {
     sums.far[c] = larger(Points4{}, load(from.exitance[c] + lane));

@@ -100,7 +100,7 @@ SourceMesh tessellate(const BoxShape& box, const std::string& name) {
     add_quad(mesh, box.low + w, u, v);
     add_quad(mesh, box.low, v, u);
   }
-  // sums of the corners may round differently from face to face: snap them, so that the box is closed
+  // sums of the corners may round differently from face to face: snap them, so the box is closed
   for (Vec3d& p : mesh.positions)
     for (std::size_t i = 0; i < 3; ++i) p[i] = p[i] == box.low[i] ? box.low[i] : box.high[i];
   return mesh;

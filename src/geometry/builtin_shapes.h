@@ -11,7 +11,7 @@ namespace opaline {
 
 /// Vertices lie on the true surface; the area is within 1e-3 of the true one; all but the quad are closed.
 /// name  of the shape, for messages
-/// error Error{bad_input} for a size that is not finite and > 0
+/// error Error{bad_input} for a size that is not finite or not above 0
 SourceMesh tessellate(const SphereShape& sphere, const std::string& name);
 SourceMesh tessellate(const BoxShape& box, const std::string& name);
 SourceMesh tessellate(const QuadShape& quad, const std::string& name);

@@ -236,7 +236,7 @@ class MeshChecker {
     warn_of(report_.duplicates_dropped, " duplicate triangles were removed");
   }
 
-  /// Corner data of the remaining triangles; those that fill holes have none. given: data of the source, or empty
+  /// Corner data of the remaining triangles; those filling holes have none. given: data of the source, or empty
   template <class Corners>
   std::vector<Corners> mended(const std::vector<Corners>& given) const {
     std::vector<Corners> corners;
@@ -249,7 +249,7 @@ class MeshChecker {
     return corners;
   }
 
-  /// Triangles that fill holes are in no group.
+  /// Triangles filling holes are in no group.
   Smoothing mended_smoothing() const {
     Smoothing smoothing{{}, source_.smoothing.crease_angle};
     if (source_.smoothing.groups.empty()) return smoothing;
@@ -299,7 +299,7 @@ class MeshChecker {
     return mesh;
   }
 
-  static constexpr std::uint32_t kNew = ~0u;  // index of a triangle that fills a hole
+  static constexpr std::uint32_t kNew = ~0u;  // index of a triangle filling a hole
 
   const CheckSettings& settings_;
   SourceMesh source_;

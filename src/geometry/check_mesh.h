@@ -19,7 +19,7 @@ struct CheckSettings {
   bool has_inside = false;   ///< wind open parts outward, too
 };
 
-/// Results of mesh checks that depend on connectivity only, not on positions.
+/// Results of mesh checks depending on connectivity only, not on positions.
 struct CheckMemory {
   bool holds = false, recalled = false;  ///< recalled: the last call made use of it
   bool fill_holes = false, may_be_open = false, has_inside = false;

@@ -50,7 +50,7 @@ class Fans {
     return dot(normals_[t], normals_[u]) < least_cosine_;
   }
 
-  /// Joins the fans at both ends of an edge of two triangles that starts at these corners.
+  /// Joins the fans at both ends of an edge of two triangles starting at these corners.
   void join(const std::vector<Triangle>& triangles, std::uint32_t a, std::uint32_t b) {
     if (is_crease(a / 3, b / 3)) return;
     const bool same_way = triangles[a / 3][a % 3] == triangles[b / 3][b % 3];

@@ -200,7 +200,7 @@ double total_area(const std::vector<Vec3d>& corners, const std::vector<Triangle>
 struct FanMeasures {
   Vec3d area_vector;        // twice
   double area = 0;          // twice
-  double area_outside = 0;  // twice, of triangles that face the other way than the whole
+  double area_outside = 0;  // twice, of triangles facing the other way than the whole
 };
 
 FanMeasures measure_fan(const std::vector<Vec3d>& corners) {

@@ -29,7 +29,7 @@ struct PolygonCuts {
 };
 
 /// Cuts of the polygons whose fans reach beyond them: ears of their projection along the mean normal, so a quad is cut
-/// at its reflex corner. All others keep their fans. Of a polygon that crosses itself the cut of the smaller area is taken.
+/// at its reflex corner. All others keep their fans. Of a polygon crossing itself the cut of the smaller area is taken.
 /// in    positions finite; fans of at least two triangles
 /// from  Meisters 1975, Polygons have ears; mean normal after Newell
 PolygonCuts cut_concave_polygons(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,

@@ -51,7 +51,7 @@ void fit(SourceMesh& mesh, double size, const std::string& name) {
   for (Vec3d& p : mesh.positions) p = (p - origin) * scale;
 }
 
-/// The map of normals: the inverse transpose up to a positive factor, so that they stay on their side.
+/// The map of normals: the inverse transpose up to a positive factor, so they stay on their side.
 struct NormalMap {
   Vec3d x, y, z;
   Vec3f operator()(const Vec3f& n) const {

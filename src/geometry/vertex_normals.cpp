@@ -18,7 +18,7 @@ Vec3d area_vector(const Mesh& mesh, const Triangle& t) {
   return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
 }
 
-/// out   triangles that face against around(v), of any length, at each of their vertices v
+/// out   triangles facing against around(v), of any length, at each of their vertices v
 template <class Around>
 std::vector<std::uint32_t> triangles_against(const Mesh& mesh, const Around& around) {
   std::vector<std::uint32_t> found;

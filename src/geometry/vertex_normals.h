@@ -12,7 +12,7 @@ namespace opaline {
 
 /// Gives every vertex a unit normal on the outer side of its triangles: its own, normalised, where
 /// mesh.normals has one, turned round where it points inward; else the average over the triangles at its
-/// position, up to the creases, weighted by their angle there, so that it does not depend on how the surface is cut
+/// position, up to the creases, weighted by their angle there, so it does not depend on how the surface is cut
 /// into triangles; without creases those that a fold has reversed do not count. Vertices on creases become several.
 /// in    mesh.normals: empty, and no two vertices at one position; or one a vertex, zero where
 /// there is none; every triangle has an area

@@ -200,7 +200,7 @@ class OiioPicture : public CachedPicture {
   std::string warning() const override {
     if (ignored_ == 0) return {};
     return source_->path + ": the file does not define the meaning of " +
-           (ignored_ == 1 ? "a channel beside grey, which is" : "channels beside grey, which are") +
+           (ignored_ == 1 ? "a channel besides grey, which is" : "channels besides grey, which are") +
            " not used";
   }
 

@@ -19,7 +19,7 @@ Vec3d with_soft_highlights(const Vec3d& color, double start) {
   return color * (shown / peak * kept) + Vec3d(shown * (1 - kept));
 }
 
-/// Subtracts the specular reflection of a dielectric in a white environment, so that base colours are unchanged.
+/// Subtracts the specular reflection of a dielectric in a white environment, so base colours are unchanged.
 Vec3d neutral(const Vec3d& color) {
   constexpr double kMirrored = .04;
   const double least = min_component(color);

@@ -81,7 +81,7 @@ std::uint32_t CellPoints::add(std::uint32_t index, std::span<const std::uint32_t
     if (!(height2 > 0) || !is_within(cells_.back(), d)) continue;
     const float height = std::sqrt(height2);
     lines_.push_back({number, count++, Ray(s.position + d + normal * height, -normal, 2 * height)});
-    // No ray finds the sample's triangle as surely: something that stands on it lies in the same plane.
+    // No ray finds the sample's triangle as surely: something standing on it lies in the same plane.
     const Hit hit = own.at(d);
     if (hit.mesh != Hit::kMiss)
       add_crossing(lines_.back(), rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v));

@@ -35,7 +35,7 @@ class Halves {
 };
 
 // Half of the rays are a worse set than all: how much worse depends on their number and the light, and a
-// single ray has no halves. What a point is off the nearer of two neighbours by, when points that follow each
+// single ray has no halves. What a point is off the nearer of two neighbours by, when points following each
 // other lie together, is noise, or a little more: the halves' errors are scaled to it on the whole, and never
 // raised.
 void fit_to_neighbours(const std::vector<float>& weights, bool single, std::vector<float>& deviations) {
@@ -60,7 +60,7 @@ struct ErrorSums {
   double variance = 0, sum = 0;
 };
 
-// Traces lights that share their rays; unblocked: weights without occlusion.
+// Traces lights sharing their rays; unblocked: weights without occlusion.
 void trace_transfers(const IrradianceInput& input, std::span<const Light> lights,
                      std::span<LightTransfer> transfers, std::span<std::vector<float>> unblocked) {
   const std::size_t n = input.samples.size();
@@ -143,7 +143,7 @@ void add_point(const PointIrradianceInput& input, std::size_t i, ShadowBatch& ba
   batch.add(input.points[i], shift, part * std::uint64_t(batch.samples()), lobe);
 }
 
-// To lights that share their rays.
+// To lights sharing their rays.
 std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std::span<const Light> lights) {
   const std::size_t n = input.points.size(), batch_size = batch_points(input.light_samples);
   std::vector<PointTransfers> transfers(lights.size());

@@ -6,7 +6,7 @@
 namespace opaline {
 namespace {
 
-// Three coordinates of 21 bits; each is at least 1 and below 2^21 - 1, so that a step to a neighbour stays in
+// Three coordinates of 21 bits; each is at least 1 and below 2^21 - 1, so a step to a neighbour stays in
 // its bits.
 constexpr int kBits = 21;
 constexpr float kWidest = 0x1p20f;

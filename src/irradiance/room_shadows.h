@@ -12,7 +12,7 @@
 namespace opaline {
 
 /// Visibility of each block of an environment map from neighbouring points. The points form two halves; the rays of one
-/// half predict the visibility for the other, so that a prediction is independent of its own rays.
+/// half predict the visibility for the other, so a prediction is independent of its own rays.
 class RoomShadows {
  public:
   explicit RoomShadows(const EnvironmentPicture& room);
@@ -26,7 +26,7 @@ class RoomShadows {
   /// To be called when all rays are added; has_dark: of each half, whether anything was in the way of its rays.
   void estimate(const std::array<bool, 2>& has_dark);
 
-  /// The part of a block's light that reaches points of a half, in [0, 1].
+  /// The part of a block's light reaching points of a half, in [0, 1].
   float open(std::size_t half, std::size_t block) const { return halves_[1 - half].open[block]; }
   /// The irradiance of a surface of that half, were this so; as EnvironmentPicture::unshadowed.
   /// in    normal: unit, in the picture's space

@@ -34,7 +34,7 @@ inline std::size_t sharing_rays(std::span<const Light> lights) {
 }
 
 /// Shadow rays of a batch of points towards one light, with what each carries if nothing blocks it; or towards
-/// lights that share their rays.
+/// lights sharing their rays.
 class ShadowBatch {
  public:
   /// samples: rays a point; 1 for lights without an area, whatever is asked. Of ManyLights each goes to one of them.
@@ -51,7 +51,7 @@ class ShadowBatch {
   ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
       : ShadowBatch(rays, std::span(&light, 1), eta, samples, seed) {}
 
-  /// To be called where points that follow each other do not lie together: their rays are sorted before they are traced.
+  /// To be called where points following each other do not lie together: their rays are sorted before they are traced.
   void sort_rays() { scattered_ = samples_ == 1; }
 
   /// To be told where points lie together: what hides a room from some tells of others.
@@ -353,7 +353,7 @@ class ShadowBatch {
         }
   }
 
-  // Points that follow each other need not lie together, and rays that do are traced in half the time.
+  // Points following each other need not lie together, and rays that do are traced in half the time.
   void trace_sorted() {
     constexpr float kCells = 1023;
     Vec3f low = shadow_[0].origin, high = low;

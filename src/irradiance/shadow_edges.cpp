@@ -13,9 +13,9 @@
 namespace opaline {
 namespace {
 
-// Samples this many spacings apart are neighbours: those that share a side of their cells, and few more.
+// Samples this many spacings apart are neighbours: those sharing a side of their cells, and few more.
 constexpr float kReach = 1.5f;
-// An edge is sharp where neighbours that face the light see parts of it that differ by more than kChange, and
+// An edge is sharp where neighbours facing the light see parts of it that differ by more than kChange, and
 // where that is worth more than kOfMean of the light's mean weight. Lower
 // ones (.25, .1) were measured on bunny-marble and gain nothing.
 constexpr float kChange = .5f, kOfMean = .25f;

@@ -7,7 +7,7 @@
 
 namespace opaline {
 
-// The share of [0, 1) that `u` lies in, by its end; u becomes its place within.
+// The fraction of [0, 1) that `u` lies in, by its end; u becomes its place within.
 inline std::size_t draw(const float* ends, std::size_t count, double& u) {
   // As upper_bound, which would wait for each comparison before the next; the last end is 1.
   const float wanted = float(u);

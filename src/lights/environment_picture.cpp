@@ -149,7 +149,7 @@ void EnvironmentPicture::make_means() {
     std::vector<double> weights(columns_);
     std::vector<Rgb> sums(columns_);
     for (std::size_t y = r * step_; y < std::min(height_, (r + 1) * step_); ++y) {
-      // A row's share of the sphere.
+      // A row's fraction of the sphere.
       const double band =
           std::cos(kPi * double(y) / double(height_)) - std::cos(kPi * double(y + 1) / double(height_));
       for (std::size_t x = 0; x < width_; ++x) {

@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Directions that are drawn for each shadow ray that is to show what a lobe mirrors.
+/// Directions drawn for each shadow ray that is to show what a lobe mirrors.
 inline constexpr int kLobeDraws = 4;
 
 inline constexpr std::size_t kMostAtOnce = 8;

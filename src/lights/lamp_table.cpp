@@ -121,7 +121,7 @@ WeighedDraw::WeighedDraw(const LampTable& lamps, std::span<const float> weights,
     sum += sums_[b];
   }
   if (!(sum > 0)) return;
-  // Weights of certain lights go to the others, so that more lights become certain.
+  // Weights of certain lights go to the others, so more lights become certain.
   scale_ = draws / sum;
   for (std::size_t sure = 0;;) {
     std::size_t now = 0;

@@ -57,14 +57,14 @@ class WeighedDraw {
     return is_sure(weights_[i]) ? 1 : double(weights_[i]) * scale_;
   }
 
-  /// One draw among lamps that lie side by side, each as long as it is expected.
+  /// One draw among lamps lying side by side, each as long as it is expected.
   struct Stratum {
     double place = 0;  ///< where it is drawn, in [0, 1)
     std::size_t lamp = 0;
     float expected = 0;  ///< how often it takes the lamp from all strata; 0: nothing was drawn
     RgbF brought{};      ///< mean contribution without occlusion (LampTable::brought)
   };
-  /// Gives a stratum to each lamp that is expected once. Returns how many these are.
+  /// Gives a stratum to each lamp expected once. Returns how many these are.
   std::size_t take_sure(std::span<Stratum> strata) const;
   /// The other lamps, in strata of one length.
   void take_others(std::span<Stratum> strata) const;

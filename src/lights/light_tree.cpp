@@ -15,9 +15,9 @@ namespace {
 
 // Nodes are split until their ball is this much smaller than its distance.
 constexpr float kWide = .5f;
-// Those that bring a lobe more than this share of the most are split until they are narrower than it.
+// Those that bring a lobe more than this fraction of the most are split until they are narrower than it.
 constexpr float kMirrored = .03f;
-// Share of a bound on the cosine at the surface in a node's importance; the rest is the cosine of its middle. Less than
+// Fraction of a bound on the cosine at the surface in a node's importance; the rest is the cosine of its middle. Less than
 // .25 is no better in the mean, and worse at its worst (city of 1000: max 26 % in place of 25 % at .1, 86 % at .03).
 constexpr float kBound = .25f;
 // Added to cosines: what rounding may take from those that lights need to be seen.
@@ -52,7 +52,7 @@ std::uint64_t hash_of(std::span<const Light> lights) {
   return hash;
 }
 
-/// Share of their brightness that a node's lights have towards a point, at most.
+/// Fraction of their brightness that a node's lights have towards a point, at most.
 /// in    cosine: of the angle from the node's way to the point, from its middle; ball: sine of half the angle that the
 ///       node's ball fills from there
 double facing(const LightTree::Node& node, float cosine, float ball) {

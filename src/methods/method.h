@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interface of a method: one way to compute the light that leaves translucent bodies.
+// Interface of a method: one way to compute the light leaving translucent bodies.
 #pragma once
 
 #include <cmath>
@@ -80,7 +80,7 @@ class SubsurfaceMethod {
   /// Adds light from other surfaces.
   /// in    bounced: transmitted irradiance, one a sample; key: of that
   virtual void add_bounced(BodyStages&, std::span<const RgbF> /*bounced*/, const StageKey& /*key*/) const {}
-  /// A state under the lights alone, for light that is gathered from this body.
+  /// A state under the lights alone, for light gathered from this body.
   virtual std::unique_ptr<MethodState> direct_state(const BodyStages&) const { return nullptr; }
   /// Last step, once all light is there. Returns true if it computed or reused anything.
   virtual bool finish(BodyStages&) const { return false; }

@@ -32,7 +32,7 @@ class ShadingCost {
 /// ones.
 double finishing_cost(const Image& probe, const Film& film, const FinishPicture& finish);
 
-/// Every few pixels of a picture, so that about so many are left.
+/// Every few pixels of a picture, so about so many are left.
 Image thinned(const Image& picture, double pixels);
 
 /// Planned fraction of the available time; the rest covers underestimates.

@@ -19,7 +19,7 @@ constexpr double kUsualSamples = 17000, kUsualError = 0.006, kSlope = 0.8;
 // Where they are too few they grow by this factor at least, and so much beyond what the slope says: one step
 // is cheaper than two.
 constexpr double kLeastGrowth = 2.5, kBeyond = 1.25, kMostGrowth = 4;
-// Shadow rays grow where their noise alone is more than this share of the target.
+// Shadow rays grow where their noise alone is more than this fraction of the target.
 constexpr double kMostNoise = 0.5;
 constexpr int kMostLightSamples = 65536;
 constexpr int kMostSteps = 12;

@@ -19,7 +19,7 @@ constexpr double kThinnest = 3;  // mean free paths: the table has no thinner bo
 // Minimum fraction for cells, samples and shadow rays if the model error uses all of the target: 4 % of the promise.
 constexpr double kLeastShare = .3;
 constexpr double kCoarsest = 3, kFinest = .25;  // cells, mean free paths
-constexpr double kMargin = .85;  // margin of the error that is aimed at: two steps cost more than one
+constexpr double kMargin = .85;                 // margin of the error aimed at: two steps cost more than one
 constexpr int kMostSteps = 6, kMostLightSamples = 4096;
 constexpr double kProbePixels = 64 * 64;
 constexpr std::size_t kEnoughPoints = 1500;

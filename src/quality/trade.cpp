@@ -20,7 +20,7 @@ constexpr double kFewest = 300;                         // minimum samples of an
 constexpr double kUsualSlope = .8;  // power of the number of samples with which the error falls
 constexpr double kProbePixels = 128 * 128;
 
-/// Few digits, so that what is set can be read.
+/// Few digits, so what is set can be read.
 double rounded(double value, double digits) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - digits + 1);
   return std::round(value / unit) * unit;

@@ -28,7 +28,7 @@ struct Appearance {
   /// Range of a textured or anisotropic roughness.
   std::shared_ptr<const RoughnessRange> roughnesses = {};
   float roughness = 0;  ///< where it is no texture
-  /// Angular distribution of light that was traced inside; none: given by the boundary.
+  /// Angular distribution of light traced inside; none: given by the boundary.
   std::shared_ptr<const AngularExit> exit = {};
 
   /// The same at a point whose textures are known.
@@ -41,7 +41,7 @@ struct Appearance {
     return here;
   }
 
-  /// The share of light towards a direction that is mirrored.
+  /// The fraction of light towards a direction that is mirrored.
   float reflectance(float cosine) const {
     return rough ? rough->reflectance(cosine) : fresnel_reflectance(cosine, eta);
   }
@@ -53,7 +53,7 @@ struct Appearance {
     return metalness > 0 ? entered * (1 - metalness) : entered;
   }
   bool mirrors() const { return has_boundary && eta != 1; }
-  /// The share of even light that is mirrored towards a direction.
+  /// The fraction of even light that is mirrored towards a direction.
   RgbF mirrored_share(float cosine) const {
     const float dielectric = reflectance(cosine);
     if (!(metalness > 0)) return RgbF(dielectric);

@@ -15,7 +15,7 @@
 namespace opaline {
 namespace {
 
-/// 0: of no channel that scatters is it longer.
+/// 0: of no channel scattering is it longer.
 double smallest_mean_free_path(const DiffuseProfile& profile) {
   double smallest = INFINITY;
   for (std::size_t c = 0; c < 3; ++c)

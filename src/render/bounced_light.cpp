@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 4000;
 // Rays from a sample, whose neighbours' are added to its own by the medium; from a hit that nothing stands for; from a
-// place that stands for the pixels around it: for each of them, at least and at most (which closer places take).
+// place standing for the pixels around it: for each of them, at least and at most (which closer places take).
 constexpr int kOfSample = 16, kOfHit = 24, kOfPixel = 3, kFewestOfPlace = 48, kMostOfPlace = 192;
 constexpr std::size_t kPlacesAtOnce = 256;  // each of many rays, and the threads share them
 constexpr int kAcross = 64;                 // places along the picture's longer side, of the first lattice

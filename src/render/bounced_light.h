@@ -46,7 +46,7 @@ class BouncedPlaces {
     /// How well places first, first + 1, ... of a row stand for a point.
     std::array<float, kBeside> weights(const Asked& asked, std::size_t first) const;
   };
-  /// Places over the picture and a little around it, so that a crop is a piece of it; row after row.
+  /// Places over the picture and a little around it, so a crop is a piece of it; row after row.
   struct Lattice {
     int step;  ///< pixels from one place to the next
     int columns, rows;

@@ -23,7 +23,7 @@ Ray leaving(const SurfacePoint& point, const Vec3f& direction) {
   return {point.position + point.geometric * point.offset, direction};
 }
 
-// Directions drawn by the cosine, those that leave the surface.
+// Directions drawn by the cosine, those leaving the surface.
 void add_rays(const GatherInput& input, std::size_t p, std::uint32_t place, Rays& drawn) {
   const SurfacePoint& point = input.points[p];
   Vec3f x, y;

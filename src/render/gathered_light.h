@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// Points whose rays are traced together, and what they meet is shaded together: trees are summed for many points that lie
+/// Points whose rays are traced together, and what they meet is shaded together: trees are summed for many points lying
 /// all around in half of the time that they take for few.
 inline constexpr std::size_t kGatheredAtOnce = 1024;
 
@@ -30,7 +30,7 @@ struct GatherInput {
   HeldView* view = nullptr;  ///< that has it
 };
 
-/// Light that reaches a point from a surface.
+/// Light reaching a point from a surface.
 struct SurfaceLight {
   std::size_t point;  ///< its index
   Vec3f towards;      ///< the surface; unit

@@ -277,7 +277,7 @@ bool reaches_a_surface(const Light& light, const World& world) {
   });
 }
 
-/// Advice for a light that reaches no surface.
+/// Advice for a light reaching no surface.
 std::string way_to_turn(const Scene& scene, const World& world, const Light& light) {
   if (!is_delta(light)) return "it emits on the side of u x v; exchange u and v";
   const Bounds box = box_of(world);

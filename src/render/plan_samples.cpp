@@ -22,7 +22,7 @@ constexpr double kFewestSamples = 10000, kFewestOfAll = 2e6, kFewestOfMany = 100
 constexpr double kSuspiciouslyFew = 100;
 constexpr const char* kTheMinimum = "the minimum";
 
-// As far apart as samples may be. Light that enters at a point leaves within a few mean free paths around it;
+// As far apart as samples may be. Light transmitted at a point leaves within a few mean free paths around it;
 // what is nearer than the spacing comes from the irradiance at the shading point itself (SplitKernel), so
 // that one and a half of them are near enough, but for a medium in which light decays over a shorter way than
 // that: what it brings to the dark then hangs on where exactly the samples stand. Measured on bunnies: within
@@ -52,7 +52,7 @@ std::optional<double> set_samples(const Settings& settings, double area) {
   return {};
 }
 
-/// The least length over which diffused light fades, of the channels that scatter, mm.
+/// The least length over which diffused light fades, of the scattering channels, mm.
 double shortest_fading(Medium medium) {
   medium.profile = ProfileKind::dipole;  // the classical D, as of the equation that is solved
   const DiffuseProfile profile = make_diffuse_profile(medium);
@@ -153,7 +153,7 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
                     group.name, group.thickness / length));
 }
 
-// At least one sample where a cell cuts the surface; the number of parts of a cell's edge that comes nearest to what is
+// At least one sample where a cell cuts the surface; the number of parts of a cell's edge coming nearest to what is
 // asked for.
 void choose_cut(const Settings& settings, double fewest, GroupPlan& group,
                 std::vector<std::string>& warnings) {

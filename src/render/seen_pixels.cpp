@@ -23,7 +23,7 @@ constexpr int kCells = 64;      // along each side, at most
 constexpr int kNarrowest = 16;  // pixels of a cell
 constexpr double kApart = 3;    // pixels around a triangle: the filter's radius, and rounding
 
-/// The cells around a place of the picture, outside of the part -1 or their number: x0, -x1, y0, -y1, so that what
+/// The cells around a place of the picture, outside of the part -1 or their number: x0, -x1, y0, -y1, so what
 /// holds two boxes is the smaller of each.
 typedef short CellBox __attribute__((vector_size(8)));
 CellBox around_both(const CellBox& a, const CellBox& b) {

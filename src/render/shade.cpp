@@ -63,7 +63,7 @@ void keep_mirrored_outside(SurfacePoint& point, const Vec3f& direction) {
   point.normal = normalized(normalized(mirrored + point.geometric * (kLeastCosine - cosine)) - d);
 }
 
-/// AngularExit for the share of what leaves that comes from inside.
+/// AngularExit for the fraction of what leaves coming from inside.
 RgbF scattered_exit(const AngularExit& exit, float cosine, const SurfaceHits& hits, const LeavingLight& light,
                     std::size_t i) {
   RgbF factor = exit.at(cosine);
@@ -211,7 +211,7 @@ std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedR
   return seen;
 }
 
-// Sorts the hits by field; rays that meet a light or nothing are done.
+// Sorts the hits by field; rays meeting a light or nothing are done.
 std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch* held) const {
   const std::span<const TracedRay> rays = batch.rays;
   const std::span<const std::uint64_t> keys = batch.keys;

@@ -69,7 +69,7 @@ class Shader {
     int mirrors = 0;  ///< that the rays have left, one after the other
     bool is_of_camera = false;
   };
-  /// Rays that leave surfaces, as their cones do.
+  /// Rays leaving surfaces, as their cones do.
   struct Cones {
     float spread = 0;
     std::vector<float> widths;  ///< empty: nobody asks

@@ -19,9 +19,9 @@ constexpr int kFacets = 16, kLightSamples = 16;
 // These, too, over those of what is seen in a mirror.
 constexpr int kFewerOfMirrored = 4;
 // One after the other that a camera ray is followed through: metals, and coats, which mirror less. A further one mirrors
-// the light that arrives there as if it were even.
+// the light arriving there as if it were even.
 constexpr int kMostMirrors = 4, kMostCoats = 2;
-// Shadow rays towards a surface that is seen in a mirror, over those where it is seen: a mirror takes most away.
+// Shadow rays towards a surface seen in a mirror, over those where it is seen: a mirror takes most away.
 constexpr int kFewerInMirrors = 4;
 // Glossy spread of the cones around directions of a lobe, for textures that they meet.
 constexpr float kGlossySpread = .1f;

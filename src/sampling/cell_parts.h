@@ -26,7 +26,7 @@ struct PlainTriangle {
 /// All triangles of a surface, counted through its meshes.
 std::vector<PlainTriangle> plain_triangles(const World& world, std::span<const std::uint32_t> meshes);
 
-/// Surface share of a sample's cell on the triangles of the new frame, relative to the sample's position.
+/// Surface fraction of a sample's cell on the triangles of the new frame, relative to the sample's position.
 SurfaceShare carried_share(const SurfaceCells& cells, std::size_t sample,
                            std::span<const PlainTriangle> triangles, const Vec3f& position);
 

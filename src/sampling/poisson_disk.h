@@ -32,7 +32,7 @@ class PoissonDisk {
     for (std::size_t i = 0; i < throws; ++i) throw_some(each, i == 0 ? seed : hash_bits(seed, i), monitor);
   }
 
-  /// The last round: the centroids of triangles with nothing near, so that no part of the surface, however
+  /// The last round: the centroids of triangles with nothing near, so no part of the surface, however
   /// small, stays without a sample.
   void cover_centroids(Monitor* monitor) {
     run_round(triangles_.size(), 2 * radius_, monitor,
@@ -122,7 +122,7 @@ class PoissonDisk {
     });
   }
 
-  // In Morton order, so that neighbours in space are neighbours in memory.
+  // In Morton order, so neighbours in space are neighbours in memory.
   void reserve_cells(const std::vector<CandidateEntry>& entries, const std::vector<std::uint32_t>& runs,
                      Monitor* monitor) {
     std::vector<std::uint64_t> keys;

@@ -123,7 +123,7 @@ class SampleGrid {
   }
 
  private:
-  // Brings an array of the samples' to the order of cells that begin at `firsts`, the accepted ones last.
+  // Brings an array of the samples' to the order of cells beginning at `firsts`, the accepted ones last.
   template <class T, class Accepted>
   void merge(std::vector<T>& array, const std::vector<std::uint32_t>& firsts, std::size_t total,
              const Accepted& accepted) const {

@@ -126,7 +126,7 @@ class CloseCells {
       slot = (slot + 1) & (entries_.size() - 1);
     return slot;
   }
-  // Most cells that are asked for are empty, and a bit for each that is not stays in the nearest memory.
+  // Most cells asked for are empty, and a bit for each that is not stays in the nearest memory.
   std::size_t bit_of(std::uint64_t key) const {
     return std::size_t((key * 0xD6E8FEB86659FD93ull) >> 30) & (64 * seen_.size() - 1);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each sample's share of the surface: its Voronoi cell on the mesh.
+// Each sample's fraction of the surface: its Voronoi cell on the mesh.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct SurfaceShare {
                     ///< centroid
 };
 
-/// Part of a triangle that belongs to a sample, or of a part of it with a task of its own.
+/// Part of a triangle belonging to a sample, or of a part of it with a task of its own.
 struct SurfacePiece {
   std::uint32_t triangle, sample;  ///< in the list, in the grid
   float share, u, v;               ///< as in CellPart

@@ -17,7 +17,7 @@
 
 namespace opaline {
 
-/// Part of a triangle that belongs to a sample.
+/// Part of a triangle belonging to a sample.
 struct Share {
   std::uint32_t sample, triangle;
   double area;
@@ -25,7 +25,7 @@ struct Share {
 };
 
 // A sample in the plane of a triangle: `power` is its squared height above the plane plus its squared
-// distance from the plane's origin, so that bisectors are lines.
+// distance from the plane's origin, so bisectors are lines.
 struct Site {
   std::uint32_t sample;
   Point2 place;

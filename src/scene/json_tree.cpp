@@ -173,7 +173,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     return std::min(start, token);  // a comma or colon is no token to the cursor
   }
 
-  /// The path to the value that comes next.
+  /// The path to the value coming next.
   std::string next_path() const {
     std::string path;
     for (std::size_t i = 0; i < open_.size(); ++i) {

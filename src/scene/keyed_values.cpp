@@ -33,7 +33,7 @@ class KeyedValue {
     for (const Node& member : node.children) {
       if (member.key == "keyed") continue;
       if (member.key != "between")
-        fail(member, "unknown key '" + printable(member.key) + "' beside 'keyed'", "between");
+        fail(member, "unknown key '" + printable(member.key) + "' with 'keyed'", "between");
       if (member.kind != Node::Kind::string || (member.text != "linear" && member.text != "spline"))
         fail(member, "'between' is not known", "\"linear\" or \"spline\"");
       spline_ = member.text == "spline";

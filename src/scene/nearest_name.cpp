@@ -14,7 +14,7 @@
 namespace opaline {
 namespace {
 
-/// Insertions, deletions, substitutions and swaps of neighbours that turn a into b (optimal string
+/// Insertions, deletions, substitutions and swaps of neighbours turning a into b (optimal string
 /// alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
@@ -132,7 +132,7 @@ Names nearest_name(std::string_view name, std::span<const std::string_view> cand
   return nearest;
 }
 
-/// The candidates that end with this word, `specular_roughness` for `roughness`, unless they are many.
+/// The candidates ending with this word, `specular_roughness` for `roughness`, unless they are many.
 Names longer_names(std::string_view name, std::span<const std::string_view> candidates) {
   constexpr std::size_t most = 3;
   Names found;
@@ -147,7 +147,7 @@ Names similar_names(std::string_view name, std::span<const std::string_view> can
   return {};
 }
 
-/// The sections that stand once in a scene, so that their keys have one path.
+/// The sections standing once in a scene, so their keys have one path.
 constexpr std::array<std::string_view, 4> kSingleSections{"camera", "film", "settings",
                                                           "settings.laboratory"};
 
@@ -222,7 +222,7 @@ std::string did_you_mean_file(const std::string& path) {
   // The project's own scenes have a script beside them that fetches their assets.
   const std::filesystem::path script = folder.parent_path() / "gallery";
   if (near.empty() && folder.filename() == "assets" && std::filesystem::is_regular_file(script, failure))
-    return " (" + printable(script.string()) + " fetches the assets of the scenes beside it)";
+    return " (" + printable(script.string()) + " downloads the assets of these scenes)";
   return near.empty() ? "" : suggestion({(folder / near.front()).string()});
 }
 

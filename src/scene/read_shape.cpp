@@ -119,7 +119,7 @@ void read_gloss(const ObjectReader& reader, Shape& shape) {
   }
   gloss.grain = read_grain(reader);
   if (ior) gloss.eta = ior->number();
-  constexpr double kTrace = 1e-4;  // minimum weight of the dielectric, so that metals keep a boundary
+  constexpr double kTrace = 1e-4;  // minimum weight of the dielectric, so metals keep a boundary
   if (weight) gloss.eta = weighted_ior(gloss.eta, std::max(weight->number(), kTrace));
 }
 
@@ -163,7 +163,7 @@ Shape read_shape(const Value& value, const std::string& name, ShapeContext& cont
   shape.name = own_name ? own_name->string() : name;
   shape.source = read_source(reader, context, shape.place);
   if (transform) shape.to_world = read_transform(*transform, context.mm_per_unit);
-  // A mesh file that is not fitted to a size in mm is still in scene units.
+  // A mesh file not fitted to a size in mm is still in scene units.
   const auto* mesh = std::get_if<MeshFile>(&shape.source);
   if (mesh != nullptr && !mesh->fit_size)
     for (Vec3d* axis : {&shape.to_world.x, &shape.to_world.y, &shape.to_world.z})

@@ -41,7 +41,7 @@ Texture read_normal_map(const Value& value);
 /// Its scale in mm; none: it is flat.
 std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit);
 
-/// The index that mirrors the weight's share of what `ior` mirrors at right angles.
+/// The index that mirrors the weight's fraction of what `ior` mirrors at right angles.
 /// from  OpenPBR Surface 1.1, specular_weight
 double weighted_ior(double ior, double weight);
 

@@ -154,7 +154,7 @@ std::span<const Member<Film>> film_members() {
                                   "pixels, each 1 to 65536, at most 2^28 in total",
                                   {1, kLargestSide},
                                   "[512, 512]",
-                                  "[width, height]"},
+                                  "image size, [width, height]"},
       crop{"film",
            "crop",
            list,

@@ -21,7 +21,7 @@ bool is_light_of(const LightTransfer& transfer, std::size_t samples);
 /// One a sample, finite and >= 0.
 bool are_values_of(std::span<const RgbF> values, std::size_t samples);
 
-/// True if the byte at `offset` of every item is 0 or 1, so that it may be read as a bool.
+/// True if the byte at `offset` of every item is 0 or 1, so it may be read as a bool.
 bool has_flags(std::span<const char> items, std::size_t item_bytes, std::size_t offset);
 
 /// Nodes divide their parents' samples between them, in depth-first order, to a depth that build_octree can

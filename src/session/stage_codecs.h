@@ -23,7 +23,7 @@ namespace opaline {
 struct SampledSurface {
   const World& world;
   std::span<const std::uint32_t> meshes;  ///< the body's, in its order
-  std::size_t count;                      ///< samples that were asked for
+  std::size_t count;                      ///< samples asked for
 };
 
 /// Samples of a surface. Entries number meshes by their position in the body: a scene may number its shapes differently.

@@ -71,7 +71,7 @@ void Session::State::keep_samples(Body& body, BodyKeys& known) {
   note_decision(body, fmt::format("{} samples reused", body.surface.samples.size()));
 }
 
-// Next to nothing beside what follows, so that they are not kept in a cache.
+// Next to nothing beside what follows, so they are not kept in a cache.
 void Session::State::cut_anew(Body& body, BodyKeys& known, const PrecomputeInput& input) {
   const StageKey key = cut_surface_key(body.plan, mesh_keys_, world_->unit);
   if (key == known.samples_key) return keep_samples(body, known);

@@ -37,7 +37,7 @@ Error not_walks(const std::string& path) {
   return bad_file(path, "does not hold the sums of random walks", "a file written by --resume");
 }
 
-/// Takes the next of the arrays that lie one after the other.
+/// Takes the next of the arrays lying one after the other.
 class Arrays {
  public:
   Arrays(const std::string& path, const Image& image) : path_(path), image_(image) {

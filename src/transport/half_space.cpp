@@ -143,7 +143,7 @@ HalfSpace::HalfSpace(double absorbed, double eta) : absorbed_(absorbed) {
   diffuse_share_ = std::clamp(left / entered, 0.0, 1.0);
 }
 
-// By reciprocity it is the radiance that comes up along the direction where light enters from everywhere.
+// By reciprocity it is the radiance coming up along the direction where light enters from everywhere.
 double HalfSpace::share(double cos_inside) const {
   if (sources_.empty()) return diffuse_share_;
   double sum = 0;

@@ -49,7 +49,7 @@ struct Experiment {
   HomogeneousMedium medium;
   SlabBody body;
   SlabEntry entry;
-  double entered;  ///< share of the incident flux
+  double entered;  ///< fraction of the incident flux
   std::uint64_t seed, most_collisions;
   std::size_t walks_each;
   TallyBins bins;

@@ -82,7 +82,7 @@ std::vector<WalkedRing> summarize_rings(const TallyBins& bins, const BatchMeans&
   return rings;
 }
 
-/// Equal cosines; the cosine-weighted share of a bin is high^2 - low^2.
+/// Equal cosines; the cosine-weighted fraction of a bin is high^2 - low^2.
 template <class ValueOf>
 std::vector<WalkedCosine> cosine_table(std::size_t count, const ValueOf& value_of) {
   std::vector<WalkedCosine> table(count);

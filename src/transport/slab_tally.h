@@ -26,7 +26,7 @@ struct SlabTally {
       returned;  ///< by cosine of entry, diffuse entry alone: weight at the start, and back
 };
 
-/// Where light that leaves is counted.
+/// Where light leaving is counted.
 struct TallyBins {
   std::vector<double> radii, squared_radii;
   std::size_t cosines = 0;

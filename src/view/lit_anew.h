@@ -11,7 +11,7 @@ namespace opaline {
 
 struct LitAnew {
   Image image;
-  /// The channels have one factor, so that it is within 1e-4 of what is rendered. Else 99 % of the values are within
+  /// The channels have one factor, so it is within 1e-4 of what is rendered. Else 99 % of the values are within
   /// settings.tolerance, and the error layer, which is an estimate, within a tenth.
   bool has_one_factor = false;
 };

@@ -67,7 +67,7 @@ void PageConnection::send(std::shared_ptr<const ViewPicture> picture) {
 }
 
 void PageConnection::shown(std::uint32_t frame) {
-  // Numbers need not rise: a layer that was packed before keeps its own.
+  // Numbers need not rise: a layer packed before keeps its own.
   const auto last = std::find(unshown_.rbegin(), unshown_.rend(), frame);
   unshown_.erase(unshown_.begin(), last.base());
   write();

@@ -22,7 +22,7 @@ using SharedText = std::shared_ptr<const std::string>;
 using HttpRequest = boost::beast::http::request<boost::beast::http::empty_body>;
 
 /// Messages for a page, in the order of sending. A newer text of a kind replaces a waiting one, so
-/// kind, so that no page makes the server store more than one of each.
+/// kind, so no page makes the server store more than one of each.
 enum class PageText : std::size_t {
   schema,
   scene,

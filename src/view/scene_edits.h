@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene under edit: the file as it was opened, the values that were changed since, and the way back.
+// A scene under edit: the opened file, the changed values, and undo.
 #pragma once
 
 #include <cstdint>
@@ -12,61 +12,61 @@
 
 namespace opaline {
 
-/// A larger picture is refused, pixels.
+/// Maximum number of pixels of an image.
 inline constexpr std::size_t kMostViewPixels = std::size_t(1) << 24;
 
 class SceneEdits {
  public:
-  /// given: overrides of the command line, which no undo takes back
-  /// frames: that can be gone to, rising; empty: from the first key to the last of values that change, if there are any
+  /// given: overrides of the command line, not subject to undo
+  /// frames: selectable frames, ascending; empty: from the first key to the last of keyed values, if any
   /// error as load_scene; Error{bad_input}: more than kMostViewPixels
   SceneEdits(const std::string& file, std::vector<std::string> given, std::vector<int> frames = {});
 
-  // Each changes the scene or throws and changes nothing. What changes nothing does not count as a step.
+  // Each changes the scene, or throws without a change. An edit without a change is not a step of undo.
   // error as parse_scene; Error{bad_input}: more than kMostViewPixels, or other mesh files than the opened scene's
 
-  /// A value that has keys gets one at the frame that is shown and keeps the others. The camera's position or point of
-  /// interest ends the view's own camera.
+  /// A keyed value gets a key at the current frame and keeps the others. An edit of the camera position or point of
+  /// interest ends the free camera.
   void set(const SetValues& message);
   void undo();
   void redo();
   void reset();
-  /// Does nothing where the scene has been edited before.
+  /// No effect after an edit of the scene.
   void restore(const std::vector<std::string>& edits);
 
-  /// Shows another frame; that is no step of undo.
+  /// Shows another frame; not a step of undo.
   /// error as parse_scene; Error{bad_input}: none of frames()
   void go_to_frame(int frame);
 
-  // The view's own camera: no edit, no step of undo, and in no file.
+  // Free camera of the view: not an edit, not a step of undo, not in files.
   // error as parse_scene
   void look(const LookFrom& look);
   void look_back();
   /// An edit of the scene's camera, as `set` makes it.
   void keep_look();
 
-  /// Empty: the scene has none, and is shown as it is at frame 1.
+  /// Empty: a scene without frames, shown at frame 1.
   const std::vector<int>& frames() const { return frames_; }
-  /// The one that is shown, where there are any.
+  /// Current frame, if any.
   std::optional<int> frame() const;
-  /// The scene at settings.reference_frame, on whose surfaces samples are placed, where there are frames.
+  /// Scene at settings.reference_frame, for the placement of samples, if there are frames.
   std::optional<Scene> reference() const;
 
-  /// By the view's own camera, where it has one.
+  /// Scene with the free camera, if any.
   const Scene& scene() const { return scene_; }
   const std::optional<LookFrom>& own_camera() const { return look_; }
   const std::string& file() const { return file_; }
-  /// Counts changes, from 1.
+  /// Number of changes, from 1.
   std::uint32_t revision() const { return revision_; }
   bool can_undo() const { return at_ > 0; }
   bool can_redo() const { return at_ + 1 < history_.size(); }
-  /// As `--set` takes them, without those of the command line.
+  /// Edits as `--set` takes them, without those of the command line.
   const std::vector<std::string>& edits() const { return history_[at_]; }
   std::vector<std::string> overrides() const;
 
-  /// All of the scene's values as JSON, those that change as in the frame that is shown.
+  /// All values of the scene as JSON, keyed values at the current frame.
   std::string json() const;
-  /// The scene file with the edits in it: what they leave alone stays as it is written, comments too.
+  /// Scene file with the edits; unchanged parts keep their text, including comments.
   std::string file_text() const;
 
  private:

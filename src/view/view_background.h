@@ -63,7 +63,7 @@ struct BackgroundEvents {
   std::function<void(std::uint32_t revision, const std::string& why)> failed;
 };
 
-/// Has a session and a thread to itself, so that the pictures a person waits for neither depend on it nor wait for its
+/// Has a session and a thread to itself, so the pictures a person waits for neither depend on it nor wait for its
 /// end. The session is there only while something is asked for.
 class ViewBackground {
  public:

@@ -18,9 +18,9 @@
 namespace opaline {
 namespace {
 
-constexpr double kFrame = 1.0 / 30, kDraft = .022;  // s: a picture that follows the hand, its rays
-constexpr double kKnob = .06;                       // s: a picture that follows a knob
-constexpr double kPatience = .5;                    // s: of what waits, with work that follows the hand
+constexpr double kFrame = 1.0 / 30, kDraft = .022;  // s: a picture following the hand, its rays
+constexpr double kKnob = .06;                       // s: a picture following a knob
+constexpr double kPatience = .5;                    // s: of what waits, with work following the hand
 constexpr double kLongFinal = .25;                  // s: worth a sharper picture before
 constexpr int kCoarsest = 16;
 

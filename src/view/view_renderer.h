@@ -63,14 +63,14 @@ class ViewRenderer {
   ViewRenderer& operator=(const ViewRenderer&) = delete;
 
   /// Takes the place of a scene that waits, and cancels the pictures of the one under way; what is on its way within
-  /// a frame's time is still shown, so that a knob that turns without pause shows pictures.
+  /// a frame's time is still shown, so a knob turning without pause shows pictures.
   /// reference: of a scene with frames, the one whose surfaces all frames' samples are placed on (Session::anchor)
   void show(Scene scene, std::uint32_t revision, std::optional<Scene> reference = {});
 
   /// For whoever shows progress.
   const Monitor& monitor() const { return monitor_; }
   bool is_drawing();
-  /// Ends work that follows the hand, which no newer scene cancels, where it takes long and one waits. To be called now
+  /// Ends work following the hand, which no newer scene cancels, where it takes long and one waits. To be called now
   /// and then while it draws.
   void end_stale_work();
 

@@ -28,7 +28,7 @@ struct Wall {
   bool is_body = false;  ///< or something that stops light
 };
 
-/// The body is the union of what its closed meshes enclose. Sheets that lie inside, where parts overlap or touch,
+/// The body is the union of what its closed meshes enclose. Sheets lying inside, where parts overlap or touch,
 /// are no boundary: light goes through.
 class BodyInside {
  public:

@@ -12,7 +12,7 @@ constexpr double kDeep = .5;         // where no surface is nearer than that fli
 constexpr double kVoxel = 1;         // edge of FreeDistance's voxels, in the channel where it is least
 constexpr double kMediumVoxel = .5;  // edge of MediumVoxels' in the mean medium
 constexpr double kLeast = .2;        // Russian roulette below this fraction of the first weight
-constexpr double kOutside = .5;      // the same for a walk that leaves
+constexpr double kOutside = .5;      // the same for a walk leaving
 constexpr std::uint64_t kMostFlights = 1'000'000;
 constexpr int kMostBounces = 16;  // outside, from one place of the body to another
 
@@ -37,10 +37,10 @@ std::optional<MediumVoxels> voxels_of(const VolumeInput& input, const Bounds& bo
 
 }  // namespace
 
-/// The walks that one start brings about: the first, and those that begin where light enters again.
+/// The walks that one start brings about: the first, and those beginning where light enters again.
 class BodyWalks::Walker {
  public:
-  /// weight: of the light that arrives
+  /// weight: of the light arriving
   Walker(const BodyWalks& body, std::size_t channel, const SphereExits& exits, WalkCounts& counts,
          WalkNumbers inside_numbers, WalkNumbers outside_numbers, double weight)
       : body_(body),
@@ -144,7 +144,7 @@ class BodyWalks::Walker {
     return distance < most;
   }
 
-  // To the surface of the largest sphere that lies inside; whether the walk goes on.
+  // To the surface of the largest sphere lying inside; whether the walk goes on.
   bool leap(WalkState& state, double mean_free_paths) {
     std::size_t size = 0;
     while (size + 1 < SphereExits::kSizes && SphereExits::kRadii[size + 1] < mean_free_paths) ++size;

@@ -42,7 +42,7 @@ class BodyWalks {
   static double expected_bytes(const World& world, std::span<const std::uint32_t> meshes,
                                double mean_free_path);
 
-  /// For all walks of a pass, whatever their light and channel. Each pass has its own, so that what is chance in
+  /// For all walks of a pass, whatever their light and channel. Each pass has its own, so what is chance in
   /// them is chance of the pass.
   SphereExits exits_of(std::size_t pass) const;
 

@@ -167,7 +167,7 @@ class Cutter {
     }
   }
 
-  /// Leaves out what does not bound the solid. Parts that lie beside such a piece are taken in smaller pieces.
+  /// Leaves out what does not bound the solid. Parts lying beside such a piece are taken in smaller pieces.
   void keep_outer(const RayScene& rays, std::span<const std::uint32_t> meshes) {
     constexpr double kLeastGap = .5;  // cells
     const OuterSurface outer(rays, world_, meshes, kLeastGap * lattice_.cell);

@@ -26,12 +26,12 @@ struct Boundary {
   std::vector<std::uint32_t> of_sample;
 };
 
-/// Triangles clipped at the planes of the lattice, so that each cell has the area that is in it.
+/// Triangles clipped at the planes of the lattice, so each cell has the area that is in it.
 /// rays: of the world; pieces that do not bound the solid are left out (OuterSurface). Null: every piece counts
 CutSurface cut_by_lattice(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice,
                           const RayScene* rays);
 
-/// The elements of a lattice's cells, merged from samples that lie in one of them each.
+/// The elements of a lattice's cells, merged from samples lying in one of them each.
 Boundary merged(std::span<const BoundaryElement> samples, const Lattice& lattice);
 
 }  // namespace opaline

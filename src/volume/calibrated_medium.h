@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A medium as diffusion sees it, with a boundary that gives a half space the share of light that transport gives.
+// A medium as diffusion sees it, with a boundary that gives a half space the fraction of light that transport gives.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ struct CalibratedMedium {
   /// Exitance over the fluence at a depth under the boundary.
   double conductance(double depth) const { return 1 / (2 * mismatch + depth / diffusion); }
 
-  /// Albedo of a half space for light that enters at this cosine, over that of diffusion.
+  /// Albedo of a half space for light transmitted at this cosine, over that of diffusion.
   double entry_factor(double cos_inside) const;
 
   double eta = 1;

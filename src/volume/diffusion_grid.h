@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells that fill a body: small ones at its surface, larger ones further in.
+// Cells filling a body: small ones at its surface, larger ones further in.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace opaline {
 
 /// Cells of 1, 2, 4 and 8 lattice cells; a cell has none of less than half its size beside it. Those that the
-/// surface cuts are of size 1, with the share of their volume and of their faces that is inside.
+/// surface cuts are of size 1, with the fraction of their volume and of their faces that is inside.
 class DiffusionGrid {
  public:
   static constexpr std::uint32_t kNone = ~0u;

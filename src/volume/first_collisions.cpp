@@ -29,7 +29,7 @@ double golden_point(std::size_t i) {
 constexpr std::size_t kDirections = 8;  // towards what is no point
 constexpr std::size_t kAllAround = 3;   // directions of uniform light; neighbours use others
 
-/// Directions that light comes from, each with its share of what enters there.
+/// Directions that light comes from, each with its fraction of what enters there.
 struct Directions {
   struct One {
     Vec3f outward;
@@ -318,7 +318,7 @@ void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, const Rgb
   }
 }
 
-// Light that enters at an element from one direction: what collides between the element and the centre of its cell leaves in
+// Light transmitted at an element from one direction: what collides between the element and the centre of its cell leaves in
 // part at once, as between two resistances; the rest goes on.
 void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) {
   const BoundaryElement& element = space_.boundary.elements[i];
@@ -353,7 +353,7 @@ void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) 
   leave(way, *exit, i, arriving);
 }
 
-// Light that enters at each element, W: the sum over the samples.
+// Light transmitted at each element, W: the sum over the samples.
 template <class OfSample>
 std::vector<Rgb> entering_flux(const DiffusionSpace& space, const OfSample& entering) {
   std::vector<Rgb> flux(space.boundary.elements.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where light that enters a body collides for the first time, or leaves it without a collision.
+// Where light entering a body collides for the first time, or leaves it without a collision.
 #pragma once
 
 #include <array>

@@ -12,20 +12,20 @@ namespace {
 constexpr int kReach = 15;  // voxels: 15^2 fits into a byte
 constexpr std::uint8_t kFar = kReach * kReach;
 
-/// Squared gap between voxels that are `steps` apart along one axis: those that touch have none.
+/// Squared gap between voxels that are `steps` apart along one axis: those touching have none.
 constexpr int gap2(int steps) {
   const int gap = std::max(0, std::abs(steps) - 1);
   return gap * gap;
 }
 
-/// Into how many pieces the sides of a triangle are cut, so that none is longer than an edge: as many, squared, in all.
+/// Into how many pieces the sides of a triangle are cut, so none is longer than an edge: as many, squared, in all.
 int pieces_along(const Vec3d& ab, const Vec3d& ac, double inverse_edge) {
   const Vec3d bc = ac - ab;
   const double longest = std::sqrt(std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)}));
   return int(std::clamp(std::ceil(longest * inverse_edge), 1.0, 4096.0));
 }
 
-/// The share of a triangle's box that lies in another.
+/// The fraction of a triangle's box lying in another.
 double share_inside(const Bounds& box, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d low = component_min(component_min(a, b), c), high = component_max(component_max(a, b), c);
   double share = 1;

@@ -27,10 +27,10 @@ double side_of(const Vec3d& a, const Vec3d& b, double x, double y) {
 
 bool is_within(double side, const Vec3d& a, const Vec3d& b) {
   if (side != 0) return side > 0;
-  return a.y != b.y ? a.y > b.y : a.x > b.x;  // one of the two that share the edge
+  return a.y != b.y ? a.y > b.y : a.x > b.x;  // one of the two sharing the edge
 }
 
-// The lines that cross a triangle; corners in half cells.
+// The lines crossing a triangle; corners in half cells.
 template <class Found>
 void cross_triangle(std::array<Vec3d, 3> p, int columns, int rows, const Found& found) {
   const double area = side_of(p[0], p[1], p[2].x, p[2].y);

@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Cubes that fill a box, each with the media of its middle.
+/// Cubes filling a box, each with the media of its middle.
 class MediumVoxels {
  public:
   /// edge: of a cube, wanted; larger where there would be more than kMost

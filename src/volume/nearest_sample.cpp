@@ -21,7 +21,7 @@ Vec3f sheet_normal(const SurfaceSample& sample, const World* world) {
   return surface_point(world->meshes[sample.mesh], sample.triangle, sample.u, sample.v).geometric;
 }
 
-// The 26 steps to a cube's neighbours, those that share a face first: the nearest sample is found early.
+// The 26 steps to a cube's neighbours, those sharing a face first: the nearest sample is found early.
 constexpr auto kNeighbours = [] {
   std::array<std::array<std::int8_t, 3>, 26> steps{};
   std::size_t count = 0;

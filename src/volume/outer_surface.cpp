@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostSheets = 64;  // that a ray goes through
 constexpr double kEndless = std::numeric_limits<double>::infinity();
-constexpr double kFacing = -.5;        // cosine between the normals of sheets that touch
+constexpr double kFacing = -.5;        // cosine between the normals of sheets touching
 constexpr std::size_t kTested = 4096;  // pieces
 
 /// Calls met(traced) for each triangle along a ray, as long as it returns true.
@@ -95,7 +95,7 @@ OuterSurface::Windings OuterSurface::windings_at(const BoundaryPiece& piece, con
   return windings;
 }
 
-/// True if another sheet of the body faces it from nearby: light that leaves enters again.
+/// True if another sheet of the body faces it from nearby: light leaving enters again.
 bool OuterSurface::touches(const BoundaryPiece& piece, const Vec3d& outward) const {
   bool found = false;
   follow(rays_, Vec3d(piece.middle) + outward * offset(piece), outward, least_gap_,

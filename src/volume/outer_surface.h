@@ -33,7 +33,7 @@ struct Boundedness {
 class OuterSurface {
  public:
   /// in    meshes: the body's, closed
-  ///       least_gap: sheets nearer than this that face each other touch; world units
+  ///       least_gap: sheets nearer than this facing each other touch; world units
   OuterSurface(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
                double least_gap);
 

@@ -78,7 +78,7 @@ double length_to_resolve(double mean_free_path, double absorbed) {
 }
 
 // For a face of a cell: cells grow inwards (measured on bunnies and spheres: 4.3 to 4.6). Thin bodies have the smallest ones
-// alone, those that fill them and those that their surface cuts.
+// alone, those filling them and those that their surface cuts.
 double expected_cells(double area, double thickness, double cell) {
   constexpr double kOfThick = 4.5, kCut = .75;
   const double for_face = thickness > 0 ? std::min(kOfThick, thickness / (2 * cell) + kCut) : kOfThick;

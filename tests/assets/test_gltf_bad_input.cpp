@@ -63,7 +63,7 @@ TEST(GltfBadInput, IsNamed) {
       {[](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 0; },
        "test.gltf: meshes[0].primitives[0].material refers to nothing (expected nothing: there is none, got "
        "0)"},
-      {[](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 1; }, "test.gltf: shows nothing"},
+      {[](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 1; }, "test.gltf: contains no visible mesh"},
       {[](Json& j) { j["nodes"][0]["mesh"] = 5; }, "test.gltf: nodes[0].mesh refers to nothing"},
       {[](Json& j) { j["nodes"][0]["children"] = {0}; },
        "test.gltf: nodes[0] has two parents, or is its own"},

@@ -226,7 +226,7 @@ TEST(CliAssets, WhatChangesTheImageIsAWarning) {
   std::filesystem::copy(OPALINE_TEST_INPUTS "/mask.glb", folder.file("mask.glb"));
   const Outcome mask = run_program({"render", "mask.glb", "-o", "a.png", "--resolution", "8x8"}, folder.path);
   EXPECT_EQ(mask.exit_code, 0);
-  EXPECT_TRUE(contains(mask.err, "warning: mask.glb: material 'leaf': alphaMode 'MASK': shown whole"))
+  EXPECT_TRUE(contains(mask.err, "warning: mask.glb: material 'leaf': alphaMode 'MASK': ignored"))
       << mask.err;
 }
 

@@ -48,7 +48,7 @@ TEST(CliBench, QuickEndToEnd) {
 #endif
   const Outcome outcome = run_program(line, ".", limits);
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-  EXPECT_TRUE(contains(outcome.err, "1 of 9 rungs failed")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "1 of 9 runs failed")) << outcome.err;
   EXPECT_TRUE(contains(outcome.out, "x lambert")) << outcome.out;
   const CsvTable table = table_of(folder);
   ASSERT_EQ(table.rows.size(), 9u);

@@ -98,7 +98,7 @@ TEST(CliInfo, FewerSamplesWhereBodiesAreMany) {
   EXPECT_TRUE(contains(plan_of(2), "10,000 samples (the minimum)")) << plan_of(2);
   const std::string many = plan_of(300);
   EXPECT_TRUE(contains(many, "6,667 samples (the minimum)")) << many;
-  EXPECT_TRUE(contains(many, "and 250 bodies more")) << many;
+  EXPECT_TRUE(contains(many, "and 250 more bodies")) << many;
 }
 
 // Claim: a plan's warnings are on stderr, or events. Source: plan.h. Fails if: warnings are dropped.

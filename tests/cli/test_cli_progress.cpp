@@ -119,7 +119,7 @@ TEST(CliProgress, IsQuietInALog) {
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err, "");
   EXPECT_TRUE(contains(outcome.out, "\n3 of 3 frames made in ")) << outcome.out;
-  EXPECT_TRUE(contains(run_program(line).out, "\n0 of 3 frames made, 3 there already in "));
+  EXPECT_TRUE(contains(run_program(line).out, "\n0 of 3 frames rendered, 3 skipped in "));
 }
 
 // Claim: over a range of frames the terminal's line is about all of it: which frame of how many. Source:

@@ -45,7 +45,7 @@ TEST(ShapePlaces, ErrorsNameLineAndColumnOfTheScene) {
   put_bytes(folder.file("gallery"), "fetches them");
   EXPECT_EQ(world_error(folder, R"({"shapes": [{"file": "assets/a.obj"}]})"),
             scene + ":1:22: " + folder.file("assets/a.obj") + ": no such mesh file (" +
-                folder.file("gallery") + " fetches the assets of the scenes beside it)");
+                folder.file("gallery") + " downloads the assets of these scenes)");
 }
 
 // Claim: where a record is written is no part of it: two texts of one scene are equal, and edits that move

@@ -208,7 +208,7 @@ TEST(TextureColors, GreyTiffWithUnspecifiedChannelIsGrey) {
     EXPECT_NEAR(double(right_of(*texture)[c]), .6, .005);
   }
   EXPECT_FALSE(texture->has_channel(3));
-  EXPECT_NE(texture->warning().find("yz.tif: the file does not define the meaning of a channel beside grey"),
+  EXPECT_NE(texture->warning().find("yz.tif: the file does not define the meaning of a channel besides grey"),
             std::string::npos)
       << texture->warning();
   spec.channelnames = {"Y", "A"};

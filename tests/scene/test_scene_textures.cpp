@@ -122,7 +122,7 @@ TEST(SceneTextures, AreRefusedWhereTheyStand) {
   expect(shape(R"("reflectance": {"texture": "two.png", "uv_scale": [1]})"), {"uv_scale", "2 numbers"});
   expect(shape(R"("reflectance": {"scale": 1})"), {"texture"});
   expect(shape(R"("reflectance": {"texture": "even.png", "scale": 9})"), {"reflectance", "out of range"});
-  expect(shape(R"("specular_ior": 1.4)"), {"specular_ior", "matte"});
+  expect(shape(R"("specular_ior": 1.4)"), {"specular_ior", "diffuse"});
   expect(medium(R"("subsurface_color": 0.5, "subsurface_radius": {"texture": "two.png", "channel": "g"})"),
          {"subsurface_radius", "three numbers"});
   expect(medium(R"("subsurface_color": 0.5, "subsurface_radius": {"texture": "even.png", "scale": -1})"),

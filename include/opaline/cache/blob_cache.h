@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results on the disk, found again by what they were computed from.
+// Results on the disk, by the hash of their inputs.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The entries of a cache as files: what there is, whether it is whole, and what goes first.
+// Cache entries as files: list, integrity, and eviction order.
 #pragma once
 
 #include <cstdint>

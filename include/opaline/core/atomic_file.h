@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Output files that appear whole or not at all.
+// Output files, written completely or not at all.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Deterministic parallel loops: fixed chunks, so that results never depend on the number of threads.
+// Deterministic parallel loops: fixed chunks, so results never depend on the number of threads.
 #pragma once
 
 #include <tbb/parallel_for.h>

@@ -24,16 +24,16 @@ using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion,
 /// The profile of a kind; monostate where the medium does not scatter.
 ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& medium);
 
-/// R_d(r), 1/mm^2, per entered flux, r > 0 in mm.
+/// R_d(r), 1/mm^2, per transmitted flux, r > 0 in mm.
 double diffuse_reflectance_profile(const ChannelProfile& profile, double r);
-/// The share of the entered flux that leaves within r, mm: the integral of 2 pi r' R_d(r').
+/// The fraction of the transmitted flux leaving within r, mm: the integral of 2 pi r' R_d(r').
 double diffuse_reflectance_within(const ChannelProfile& profile, double r);
-/// The share of the entered flux that leaves at all, [0, 1].
+/// The fraction of the transmitted flux leaving at all, [0, 1].
 double total_diffuse_reflectance(const ChannelProfile& profile);
 
 /// Distance beyond which a share `beyond` of the profile's total leaves: density 2 pi r R_d(r) / total when
 /// `beyond` is uniform.
-/// in    beyond in (0, 1]; a profile that scatters
+/// in    beyond in (0, 1]; a profile scattering
 /// out   mm, finite, >= 0; relative error of the share under 1e-12 down to beyond = 1e-15
 /// from  normalized diffusion: Golubev's closed form; dipole: each source is z exp(-sigma_tr (d - z)) / d
 ///       beyond d, inverted by Lambert's W; the rest of `beyond` within its source is used again
@@ -56,7 +56,7 @@ bool has_far_side(const ChannelProfile& profile);
 /// Radiant exitance on the far face of a plate per unit of transmitted flux, 1/mm^2, at the straight-line distance s, mm:
 /// T(r) at s^2 = thickness^2 + r^2, and T(0) for s < thickness. R_d(s) for profiles without a far side.
 double far_side_profile(const ChannelProfile& profile, double distance);
-/// The share of the entered flux that leaves by the other face, `thickness` away in mm, within r along the plate.
+/// The fraction of the transmitted flux leaving by the other face, `thickness` away in mm, within r along the plate.
 double diffuse_transmittance_within(const ChannelProfile& profile, double r, double thickness);
 /// To any distance.
 double total_diffuse_transmittance(const ChannelProfile& profile, double thickness);
@@ -74,7 +74,7 @@ struct DiffuseProfile {
   Rgb mean_free_path{};          ///< 1/sigma_t'; 0 where the medium neither scatters nor absorbs
   Rgb diffuse_mean_free_path{};  ///< 1/sigma_tr: over which light decays far inside; infinite without
                                  ///< absorption
-  Rgb total{};                   ///< total diffuse reflectance per entered flux
+  Rgb total{};                   ///< total diffuse reflectance per transmitted flux
   double eta = 1;
   double average_reflectance = 0;  ///< F_bar, from outside
   bool translucent = false;        ///< some channel scatters

@@ -23,9 +23,9 @@ struct Dipole {
 Dipole make_dipole(double mean_free_path, double absorbed, double boundary_mismatch);
 
 /// R_d(r) = alpha'/(4 pi) times the sum over both sources of z (1 + sigma_tr d) exp(-sigma_tr d) / d^3, d =
-/// sqrt(r^2 + z^2); 1/mm^2, per entered flux, r >= 0 in mm.
+/// sqrt(r^2 + z^2); 1/mm^2, per transmitted flux, r >= 0 in mm.
 double diffuse_reflectance_profile(const Dipole& dipole, double r);
-/// Integral of 2 pi r' R_d(r') from 0 to r: the share of the entered flux that leaves within r.
+/// Integral of 2 pi r' R_d(r') from 0 to r: the fraction of the transmitted flux leaving within r.
 double diffuse_reflectance_within(const Dipole& dipole, double r);
 /// The same to infinity: alpha'/2 (1 + exp(-4/3 A s)) exp(-s), s = sqrt(3 (1 - alpha')).
 double total_diffuse_reflectance(const Dipole& dipole);

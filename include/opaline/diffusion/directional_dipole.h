@@ -45,7 +45,7 @@ struct DirectedPlace {
 ///       defined: the entry's own, or any at right angles
 double directional_reflectance(const DirectionalDipole& profile, const DirectedPlace& entry,
                                const Vec3d& towards_light, const DirectedPlace& exit);
-/// The share that leaves of light that entered a plane at this cosine outside; by quadrature.
+/// The share leaving of light that entered a plane at this cosine outside; by quadrature.
 double total_directional_reflectance(const DirectionalDipole& profile, double cosine);
 
 /// Profile for make_channel_profile (diffuse_profile.h).

@@ -10,7 +10,7 @@
 
 namespace opaline {
 
-/// Distances by the share of light beyond them.
+/// Distances by the fraction of light beyond them.
 struct ShareTable {
   /// Ascending ln r, ln of the shares within and beyond, and the derivatives of ln r by those.
   std::vector<double> distance, within, beyond, slope_within, slope_beyond;
@@ -20,7 +20,7 @@ struct ShareTable {
 /// A plate of a given thickness. The source is one point at the mean depth of first collisions within the plate, as
 /// strong as the light that collides there: in a thick plate one mean free path deep, the dipole's. Mirrored again
 /// and again at both extrapolated faces. What crosses the plate without a collision is in neither side.
-/// Lengths in mean free paths, so that every member but the thickness is finite for any mean free path.
+/// Lengths in mean free paths, so every member but the thickness is finite for any mean free path.
 struct Multipole {
   double mean_free_path = 0;                 ///< 1/sigma_t', mm
   double thickness = 0;                      ///< may be infinite: then it is the dipole
@@ -33,9 +33,9 @@ struct Multipole {
 
 /// Profile for make_channel_profile (diffuse_profile.h).
 Multipole make_profile(const ReducedMedium& medium, std::type_identity<Multipole>);
-/// R_d(r), 1/mm^2, per entered flux, r >= 0 in mm.
+/// R_d(r), 1/mm^2, per transmitted flux, r >= 0 in mm.
 double diffuse_reflectance_profile(const Multipole& profile, double r);
-/// The share of the entered flux that leaves by the same face within r, mm.
+/// The fraction of the transmitted flux leaving by the same face within r, mm.
 double diffuse_reflectance_within(const Multipole& profile, double r);
 /// strength sinh(s (d + b - z)) cosh(s b) / sinh(s (d + 2 b)), b the extrapolation, z the source's depth.
 double total_diffuse_reflectance(const Multipole& profile);
@@ -47,7 +47,7 @@ double slowest_decay(const Multipole& profile);
 
 /// T(r), what leaves by the other face, 1/mm^2; r, along the plate, >= 0 in mm.
 double diffuse_transmittance_profile(const Multipole& profile, double r);
-/// The share of the entered flux that leaves by the other face within r, mm.
+/// The fraction of the transmitted flux leaving by the other face within r, mm.
 double diffuse_transmittance_within(const Multipole& profile, double r);
 /// strength sinh(s (z + b)) cosh(s b) / sinh(s (d + 2 b)).
 double total_diffuse_transmittance(const Multipole& profile);

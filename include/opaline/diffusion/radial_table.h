@@ -15,7 +15,7 @@ struct RadialReference {
   double operator()(double r) const;
 };
 
-/// Share per area of all light that leaves, of integral 1 over the plane, lengths in mean free paths: the
+/// Share per area of all light leaving, of integral 1 over the plane, lengths in mean free paths: the
 /// reference times exp(f(ln r)), f a cubic spline through its values at knots, constant before the first and
 /// after the last of them. Falls everywhere. Close to 0 it is a power law 1/r, far away the reference.
 class RadialTable {

@@ -8,7 +8,7 @@
 
 namespace opaline {
 
-/// Shares of the light that entered one face: what leaves there, and what leaves the other. The rest is
+/// Fractions of the light that entered one face: what leaves there, and what leaves the other. The rest is
 /// absorbed.
 struct SlabLight {
   double back = 0, through = 0;

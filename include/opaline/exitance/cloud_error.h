@@ -17,7 +17,7 @@ struct CloudErrorInput {
   double tolerance = 0.005;
   double max_solid_angle = 0.05;
   InstructionSet instruction_set = InstructionSet::automatic;
-  std::array<float, 3> light_from_points{};  ///< share of the light that comes from lights without area
+  std::array<float, 3> light_from_points{};  ///< fraction of the light coming from lights without area
 };
 
 /// The sums beside some 64 samples are compared with those of a near field that is sqrt(2) times as wide, whose

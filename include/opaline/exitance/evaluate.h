@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Radiant exitance from the tree of entered flux.
+// Radiant exitance from the tree of transmitted flux.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ namespace opaline {
 
 struct LaneTable;
 
-/// The kernel between the two sides of a plate or body: between samples and points that belong to other sheets
-/// (same_sheet). Nothing else parts a node of the tree by sides, so that it comes as a correction (far_side.h).
+/// The kernel between the two sides of a plate or body: between samples and points belonging to other sheets
+/// (same_sheet). Nothing else parts a node of the tree by sides, so it comes as a correction (far_side.h).
 struct FarSide {
   KernelTable table;  ///< far_side_profile
   float reach = 0;    ///< mm; farther away what leaves is alike on both sides
@@ -119,11 +119,11 @@ struct EvaluateInput {
 /// Radiant exitance at each query point, in their order; finite and >= 0.
 /// `dual_tree`: clusters of queries walk the tree together. A node is either added to a series around the
 /// cluster's centre or replaced by its centroid and second moment. Either is allowed if, in each channel, a
-/// bound on the error that it makes is below a share of the cluster's exitance.
+/// bound on the error that it makes is below a fraction of the cluster's exitance.
 /// Accuracy, per channel (test_dual_tree): p99 of |result - brute force| / max(|brute force|, 1e-3 P) <=
 /// tolerance, with P the p99 of brute force over all queries. This holds if P is over 1e-3 of the brightest
 /// possible exitance and the tolerance is over the error of the far kernel's table, which is 1e-3, or 2.5e-3
-/// where the mean free path is below the sample spacing. Queries that are not finite get 0.
+/// where the mean free path is below the sample spacing. Non-finite queries get 0.
 /// `classic`: each query walks
 /// the tree from its root and takes a node as one flux at its centroid when the node's area over its squared
 /// distance is at most max_solid_angle and it lies wholly beyond h; leaves are summed sample by sample.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples gathered into a tree of entered flux.
+// Samples gathered into a tree of transmitted flux.
 #pragma once
 
 #include <array>
@@ -63,7 +63,7 @@ inline constexpr std::uint32_t kLeafSamples = 8;
 /// equal points end in one leaf.
 Octree build_octree(std::vector<FluxSample> samples);
 
-/// Lists each node's children, so that to find one need not wait for its sibling's `skip` from memory.
+/// Lists each node's children, so to find one need not wait for its sibling's `skip` from memory.
 void list_children(Octree& tree);
 
 /// Bounds the normals of each node's samples: asked for by kernels of two sides (exitance/evaluate.h).

@@ -41,7 +41,7 @@ struct SurfaceCache {
     std::uint32_t first = 0, segments = 0;
   };
 
-  /// SplitKernel's if the nodes' exitance is without the light that depends on the irradiance at the place
+  /// SplitKernel's if the nodes' exitance is without the light depending on the irradiance at the place
   /// itself, which has the shadows' edges in it; 0 if they have it all.
   std::array<float, 3> own_irradiance{};
   /// True if the exitance at a point depends on the irradiance at the point itself.

@@ -20,7 +20,7 @@ inline std::uint32_t lattice_index(std::uint32_t segments, std::uint32_t i, std:
   return j * (2 * segments + 3 - j) / 2 + i;
 }
 
-/// One of the cells^2 triangles that a triangle is cut into, and a place on it. Cells that stand on their
+/// One of the cells^2 triangles that a triangle is cut into, and a place on it. Cells standing on their
 /// head, between three others, have their first corner at (i + 1, j + 1) and run backwards.
 struct CellPlace {
   std::uint32_t i = 0, j = 0;

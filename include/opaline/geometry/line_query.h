@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that a line crosses, or that is in a cube.
+// Triangles on a line, or in a cube.
 #pragma once
 
 #include <array>

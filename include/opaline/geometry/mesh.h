@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A triangle mesh as plain data, and what loading it found.
+// Triangle mesh as plain data, with the report of its loading.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mesh files as files: what their names and bytes tell without reading the mesh.
+// Mesh files: format from the name, and contents as a hash, without reading the mesh.
 #pragma once
 
 #include <string>

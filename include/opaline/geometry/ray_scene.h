@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-/// A ray in the layout Embree traces, so that batches need no copy (checked in ray_scene.cpp).
+/// A ray in the layout Embree traces, so batches need no copy (checked in ray_scene.cpp).
 struct alignas(16) Ray {
   Vec3f origin;
   float near = 0;
@@ -41,7 +41,7 @@ struct TracedRay {
   Hit hit;
 };
 
-/// How a ray structure is built. Rays meet the same triangles either way, at the same places; one that meets
+/// How a ray structure is built. Rays meet the same triangles either way, at the same places; one meeting
 /// two at the same distance may be given the other one. On the bunny (69k triangles) `quick` takes .004 s in
 /// place of .025 s, and then camera rays take 0 to 5 % longer and shadow rays from all over the surface 15 %.
 enum class RayBuild { careful, quick };
@@ -59,7 +59,7 @@ class RayScene {
   void intersect(std::span<TracedRay> rays) const;
   /// The same for a ray on its own way, which the statistics do not count: the clock would cost as much.
   void intersect_one(TracedRay& ray) const;
-  /// Sets far < 0 for each ray that meets a triangle between near and far.
+  /// Sets far < 0 for each ray meeting a triangle between near and far.
   void occluded(std::span<Ray> rays) const;
 
   /// Geometry at a place of a triangle, from the single precision vertices that the rays meet; offset is set.

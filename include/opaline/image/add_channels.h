@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// More layers for a picture that is there.
+// Adds layers to an image.
 #pragma once
 
 #include <span>

@@ -21,7 +21,7 @@ RgbF brightness_ordered_colour(double place);
 constexpr double darkest_error = 1e-4, brightest_error = 1;
 
 /// R, G, B for write_png at exposure 0: each pixel's largest error over the channels as a colour. Grey where
-/// there is no object, green where an object's pixel has a value that is not finite.
+/// there is no object, green where an object's pixel has a non-finite value.
 /// in    errors of `layer`'s pixels; object: a flag a pixel
 Image error_colours(const RelativeErrors& errors, const Layer& layer,
                     const std::vector<std::uint8_t>& object);

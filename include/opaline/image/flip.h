@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LDR-FLIP: the difference that a person sees who flips between two pictures.
+// LDR-FLIP: visible difference when flipping between two images.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ constexpr double flip_pixels_per_degree = 67.02064327658226;
 
 /// LDR-FLIP of each pixel, 0 (the same) to 1, after multiplication by 2^exposure and a cut to [0, 1].
 /// in    two layers of three channels, R, G, B, linear Rec.709, of the same size; pixels_per_degree > 0.
-///       Values that are not finite count as 0; beyond the border the border's pixels go on
+///       Non-finite values count as 0; beyond the border the border's pixels go on
 /// out   width * height values, finite; the same for any number of threads
 /// from  Andersson et al. 2020, FLIP: A Difference Evaluator for Alternating Images, sections 4.1 to 4.3;
 ///       within 5e-5 of its authors' program (test_flip)

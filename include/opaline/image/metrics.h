@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// Some channels of a picture that belong together, a plane each.
+/// Some channels of a picture belonging together, a plane each.
 struct Layer {
   int width = 0, height = 0;
   std::vector<std::string> names;            ///< names of the channels in the file: "R" or "diffuse.R"
@@ -26,7 +26,7 @@ Layer extract_layer(const Image& image, const std::string& name);
 /// The names that extract_layer answers, "R,G,B" standing for the empty one.
 std::vector<std::string> layers_of(const Image& image);
 
-/// 1 for each pixel that shows an object: coverage (channel A) above 0, or NaN, so that a defect is not lost;
+/// 1 for each pixel that shows an object: coverage (channel A) above 0, or NaN, so a defect is not lost;
 /// 1 everywhere without a channel A.
 std::vector<std::uint8_t> object_pixels(const Image& image);
 
@@ -65,7 +65,7 @@ ErrorStatistics error_statistics(std::span<const double> errors);
 /// The same over all channels as one set of values.
 ErrorStatistics error_statistics(const RelativeErrors& errors);
 
-/// Smallest value that a share of the values does not exceed (nearest rank); 0 of none.
+/// Smallest value that a fraction of the values does not exceed (nearest rank); 0 of none.
 /// in    share in (0, 1]; no NaN
 double percentile(std::vector<double> values, double share);
 
@@ -97,7 +97,7 @@ HalvesComparison compare_with_halves(const Layer& h, const Layer& d1, const Laye
 /// the mean of ((h - d)^2 - v) / (r^2 + (0.01 m)^2) over the object's pixels, m the largest d of the channel there. r^2 is
 /// d^2 where v is 0; where the noise of a pixel is 5 % or more, it is the mean of d^2 - v over its neighbours, for the
 /// pixel's own noise would bias the quotient. 0 where the noise explains the whole difference.
-/// in    three layers of the same size and number of channels, linear; object: a flag a pixel. Pixels that are not finite
+/// in    three layers of the same size and number of channels, linear; object: a flag a pixel. Non-finite pixels
 ///       in all three are left out
 double error_beyond_noise(const Layer& h, const Layer& d, const Layer& variance,
                           const std::vector<std::uint8_t>& object);

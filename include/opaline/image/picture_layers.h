@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which layers of a picture a file holds.
+// Layers of an image in a file.
 #pragma once
 
 #include <string>

@@ -65,7 +65,7 @@ struct PointIrradianceInput {
   std::span<Rgb> variance = {};
   /// If not empty: one a point, what other surfaces send there. Known already: irradiance_at does not add it.
   std::span<const RgbF> bounced = {};
-  /// True if points that follow each other lie together: what hides a room from some then tells of others.
+  /// True if points following each other lie together: what hides a room from some then tells of others.
   bool is_together = false;
 };
 
@@ -86,7 +86,7 @@ void add_transfers(const PointIrradianceInput& input, std::vector<PointTransfers
 std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers,
                                  const PointIrradianceInput& input);
 
-/// Light that reaches a point by one shadow ray: index of the light and of the point, unit direction towards the light,
+/// Light reaching a point by one shadow ray: index of the light and of the point, unit direction towards the light,
 /// irradiance per unit emission.
 using UseOfRay =
     std::function<void(std::size_t light, std::size_t point, const Vec3f& towards_light, float irradiance)>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which low-discrepancy points a key chooses (PointIrradianceInput::keys).
+// Low-discrepancy points of a key (PointIrradianceInput::keys).
 #pragma once
 
 #include <bit>
@@ -35,7 +35,7 @@ constexpr std::uint64_t permuted(std::uint64_t i, std::uint64_t count, std::uint
   return i;
 }
 
-/// The key of a camera ray among those of its pixel: together they take successive parts of one sequence, so that the
+/// The key of a camera ray among those of its pixel: together they take successive parts of one sequence, so the
 /// pixel's mean has the error of all their light samples as one set. Parts are in an order of the pixel's own: the
 /// places of its rays are points of the same sequence, each of which would send its light rays one way.
 /// in    ray: the rays of a pixel are numbered one after the other, from a multiple of samples_per_pixel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture of all that is around, as radiance by direction.
+// Environment map: radiance by direction.
 #pragma once
 
 #include <array>

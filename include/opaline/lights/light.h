@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lights of a scene, whatever their kind: where they are, and what arrives at a point from them.
+// Lights of any kind: positions, sampling, and radiance at a point.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct LightSample {
       0;  ///< intensity -> 1/d^2, irradiance -> 1, radiance -> solid angle / samples; 0: no light here
 };
 
-/// The light's colour: what a sample's weight multiplies.
+/// Colour of the light, a factor of a sample's weight.
 Rgb emission(const Light& light);
 
 /// The light in another colour.
@@ -49,14 +49,14 @@ struct Lobe {
 /// Relative density of a lobe at an angle from its axis: that of the facets at the half angle, over its maximum.
 float mirrored(const Lobe& lobe, float cosine);
 
-/// Directions that are drawn for each shadow ray that is to show what a lobe mirrors: of a room, whose lamps are many and
+/// Directions drawn for each shadow ray that is to show what a lobe mirrors: of a room, whose lamps are many and
 /// small, some, of which the ray takes one. Where what the lobe mirrors of the room is known they are alike, and count as one.
 int lobe_draws(const Light& light, const Lobe& lobe);
 
 /// True for the channels of one picture, or of one tree of lights: their samples have the same directions.
 bool share_rays(const Light& a, const Light& b);
 
-/// Seed of a light's random numbers: by its name, so that adding or removing another light leaves them alone.
+/// Seed of a light's random numbers: by its name, so adding or removing another light leaves them alone.
 std::uint64_t light_seed(std::uint64_t seed, const Light& light);
 
 /// The light in a world's space: moved by -origin, its lengths and a point's intensity, W/sr per square of

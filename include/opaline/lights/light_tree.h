@@ -21,7 +21,7 @@ class LampTable;
 /// computed at each point, instead of that of nodes.
 /// from  Conty Estevez & Kulla 2018, Importance Sampling of Many Lights with Adaptive Tree Splitting: bounds,
 ///       importance and splitting; Madow 1949, systematic sampling: no light is drawn twice needlessly; single lights are
-///       drawn one per stratum, so that draws are independent
+///       drawn one per stratum, so draws are independent
 class LightTree {
  public:
   /// in    lights: recentred, of the kinds above; all of them is_delta, or none; at least one
@@ -75,7 +75,7 @@ class LightTree {
     bool fades_by_square = false;
     double brightness = 0;  ///< sum of intensities in the brightest direction, W/sr, mean of the channels
     std::uint32_t first = 0, count = 0;  ///< its lights, of those in the leaves' order
-    std::uint32_t children = 0;          ///< the first of two nodes that follow each other; 0: a leaf
+    std::uint32_t children = 0;          ///< the first of two nodes following each other; 0: a leaf
   };
   /// Bound of the contribution of a node's lights at a point: irradiance, W/mm^2, or a measure of reflected light.
   static double importance(const Node& node, const Place& at);

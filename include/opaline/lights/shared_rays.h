@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lights that share their rays: the channels of one picture.
+// Lights sharing their rays: the channels of one picture.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace opaline {
 
 /// A sample of all of them at once, as sample_light gives it for each.
-/// in    lights: one, or up to three that share their rays
+/// in    lights: one, or up to three sharing their rays
 /// out   weights: of each light; the sample's own is the first's
 LightSample sample_lights(std::span<const Light> lights, const Vec3f& point, const Vec3f& normal,
                           std::array<double, 2> unit_square, int samples, std::span<float> weights);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Quality as the knob: the settings that reach an error at the least cost.
+// Settings that reach an error at the lowest cost.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time as the knob: the settings that bring the smallest error within a CPU time.
+// Settings with the smallest error within a CPU time.
 #pragma once
 
 #include <cstddef>

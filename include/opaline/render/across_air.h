@@ -6,7 +6,7 @@
 
 namespace opaline {
 
-/// A kernel knows distances alone, and so light gets from one part of a body to another that faces it, ear to back, without
+/// A kernel knows distances alone, and so light gets from one part of a body to another facing it, ear to back, without
 /// having left the body. Of what it carries in even light the share that does, in the channel where that is largest: between
 /// places whose chord lies outside at both ends. Chords that begin and end inside and cross the air between are not counted:
 /// a lower bound.

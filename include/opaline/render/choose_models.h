@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which radial profile stands for a medium in a body, where the scene leaves that open; and how far from the truth
-// that is expected to be.
+// Automatic choice of the radial profile of a medium in a body, and its expected error against random walks.
 #pragma once
 
 #include <optional>
@@ -36,7 +35,7 @@ struct BodyModel {
   std::optional<double> expected_error_of_diffusion;  ///< the same of Method::volume_diffusion
 };
 
-/// Which profile, and why.
+/// Chosen profile, and the reason.
 std::string model_text(const BodyModel& model);
 /// Text of the expected model error of a method; empty: unknown, or none.
 std::string model_error_text(const BodyModel& model, Method method);
@@ -44,7 +43,7 @@ std::string model_error_text(const BodyModel& model, Method method);
 /// The rule and its figures are derived in src/diffusion/README.md; bench_volume_models measures them.
 BodyModel choose_model(const Medium& medium, const BodyShape& shape);
 
-/// Gives the media of a scene that leave their profile open (Medium::profile is none) that of the body they are in. A
+/// Gives the media of a scene leaving their profile open (Medium::profile is none) that of the body they are in. A
 /// medium of bodies that ask for different ones becomes several media of its name.
 /// reference: bodies of another frame, whose profiles those of the same names take over
 void choose_models(Scene& scene, const World& world, std::span<const GroupPlan> reference = {});

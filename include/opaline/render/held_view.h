@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cached results of an image that depend on the camera, the surfaces and the positions of lights, but not on
+// Cached results of an image depending on the camera, the surfaces and the positions of lights, but not on
 // colours and media.
 #pragma once
 
@@ -40,7 +40,7 @@ struct HeldView {
     std::unique_ptr<Coat> coat;            ///< null: what it mirrors is to be found
     std::unique_ptr<Gathering> gathering;  ///< gathering of hits without places around them (BouncedLight)
   };
-  /// Camera rays that are shaded together.
+  /// Camera rays shaded together.
   struct Batch {
     bool is_traced = false;
     std::vector<CameraHit> hits;       ///< empty: all missed
@@ -119,10 +119,10 @@ struct HeldView {
   /// Sets the fields. Results for the same meshes with the same boundary remain valid.
   void set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<float>& eta);
 
-  /// Discards all results that depend on the camera.
+  /// Discards all results depending on the camera.
   void forget_camera();
 
-  /// Discards all results that depend on the kinds of surfaces.
+  /// Discards all results depending on the kinds of surfaces.
   void forget_surfaces();
 
   /// Discards specular reflection.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The layers of a picture and what one ray adds to them.
+// Layers of an image, and the contribution of one ray.
 #pragma once
 
 #include <cmath>

@@ -8,11 +8,11 @@
 
 namespace opaline {
 
-/// The number that stands for a name, as the bits of a float that is neither denormal, infinite nor NaN.
+/// The number standing for a name, as the bits of a float that is neither denormal, infinite nor NaN.
 /// from  Cryptomatte specification 1.2.0: MurmurHash3 (x86, 32 bits, seed 0), uint32_to_float32
 float matte_id(std::string_view name);
 
-/// Names of a pixel by the share of it that they cover, as many as are kept.
+/// Names of a pixel by the fraction of it that they cover, as many as are kept.
 inline constexpr std::size_t kMatteRanks = 6;
 
 /// Appends the layers CryptoObject and CryptoMaterial to a picture, and their metadata. An object is a shape. Its material

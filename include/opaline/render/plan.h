@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// Translucent shapes that share samples and one tree.
+/// Translucent shapes sharing samples and one tree.
 struct GroupPlan {
   std::string name;                   ///< the group's, or its only shape's
   bool shared = false;                ///< a named group: others may join; a lone shape stays alone
@@ -25,7 +25,7 @@ struct GroupPlan {
   /// That of the settings, or another one if that does not suit the body.
   Method method = Method::hierarchical;
   std::string reason_against_method = {};  ///< why not that of the settings; empty: it is that
-  double smallest_mean_free_path = 0;      ///< over the channels that scatter, mm
+  double smallest_mean_free_path = 0;      ///< over the scattering channels, mm
   double spacing = 0;                      ///< sqrt(area / samples), mm
   std::size_t samples = 0;
   std::string reason;  ///< why this many

@@ -26,7 +26,7 @@ struct MethodState {
   virtual ~MethodState() = default;
 };
 
-/// Translucent shapes that share samples.
+/// Translucent shapes sharing samples.
 struct Body {
   GroupPlan plan;
   DiffuseProfile profile;
@@ -70,7 +70,7 @@ CutSurface cut_surface(const PrecomputeInput& input, const Body& body);
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
                                                   HeldView* view = nullptr);
 
-/// The light that enters at a body's samples, tinted.
+/// The light transmitted at a body's samples, tinted.
 /// in    lights: those of its transfers
 std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights);
 

@@ -10,7 +10,7 @@
 namespace opaline {
 
 /// The tiles that a picture is made of, row by row. They lie on a fixed grid of the whole picture and are
-/// whole even where a crop shows part of them: points that are evaluated together are the same, and so are a
+/// whole even where a crop shows part of them: points evaluated together are the same, and so are a
 /// crop's pixels.
 std::vector<Rectangle> tiles_of(const Film& film);
 

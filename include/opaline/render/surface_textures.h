@@ -55,7 +55,7 @@ class SurfaceTextures {
   /// Factors of light that enters and exits at a place. An opaque surface's reflectance texture and vertex colours apply
   /// on exit; a body's subsurface weight applies once.
   SurfaceTint tint(const Place& place) const;
-  /// Share of the light entering a body that it reflects diffusely at its surface instead.
+  /// Fraction of the light entering a body that it reflects diffusely at its surface instead.
   RgbF reflected(const Place& place) const;
   MediumFactors medium(const Place& place) const;
   /// None: the surface's own.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples that stay where they are on a surface while it moves or bends.
+// Samples fixed to a surface that moves or deforms.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct CarryInput {
   Monitor* monitor = nullptr;
 };
 
-/// True if the meshes have the same triangles, so that samples can be carried.
+/// True if the meshes have the same triangles, so samples can be carried.
 bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, const World& to,
                std::span<const std::uint32_t> to_meshes);
 
@@ -34,7 +34,7 @@ struct CarriedSamples {
 };
 
 /// Each sample at its place of its triangle (barycentrics), with the normal there. Where the surface bends,
-/// its cell bends with it: the parts of each triangle stay with their samples and keep their share of it, and
+/// its cell bends with it: the parts of each triangle stay with their samples and keep their fraction of it, and
 /// areas and middles are theirs as they are now. Where it is squeezed until samples of one sheet are closer
 /// than kClosest radii some go; where it is stretched until a ball of kWidest radii is empty some come: the
 /// others stay, and all shares are divided anew. The result depends on the two surfaces alone, not on what

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples that cost next to nothing, for a picture to be thrown away.
+// Fast samples for previews.
 #pragma once
 
 #include <cstdint>

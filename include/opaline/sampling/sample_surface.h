@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Poisson-disk samples over surfaces, each with its own share of the area.
+// Poisson-disk samples over surfaces, each with its own fraction of the area.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which parts of the triangles belong to which sample: cells that can bend with their surface.
+// Assignment of triangle parts to samples: cells that deform with their surface.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace opaline {
 
-/// Part of a triangle that belongs to one sample. Parts keep their fraction of the area if the triangle moves.
+/// Part of a triangle belonging to one sample. Parts keep their fraction of the area if the triangle moves.
 struct CellPart {
   std::uint32_t triangle;  ///< counted through the meshes of the surface in their order
-  float share;             ///< share of the triangle's area
+  float share;             ///< fraction of the triangle's area
   float u, v;              ///< barycentrics of the part's middle, of the second and third corner
 };
 

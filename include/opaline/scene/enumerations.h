@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The choices that a scene makes, each beside the words that scene files, options, reports and metadata use
+// Enumerations of a scene, with the names used by scene files, options, reports and metadata
 // for it, in the order of the enumeration: names_of(value).
 #pragma once
 
@@ -117,10 +117,10 @@ constexpr NameList names_of(ColorSpace) {
 
 /// How a PNG shows linear light, whose white is 1 (view_transform.h).
 enum class ViewTransform {
-  soft,     ///< as it is below .8; what is brighter bends towards white
+  soft,     ///< unchanged below 0.8, compressed above
   neutral,  ///< Khronos PBR Neutral
   agx,      ///< AgX with its default contrast, approximated
-  srgb      ///< as it is; what is brighter than white is cut
+  srgb      ///< clipped at white
 };
 inline constexpr std::array<std::string_view, 4> kViewNames{"soft", "neutral", "agx", "srgb"};
 constexpr NameList names_of(ViewTransform) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A JSON text as a tree that remembers where every key and value stood, for messages.
+// JSON tree with the source position of every key and value, for messages.
 #pragma once
 
 #include <cstddef>
@@ -26,10 +26,10 @@ struct Node {
   std::string key;                         ///< key of a member of an object
   std::size_t key_offset = 0, offset = 0;  ///< bytes from the start of the text
   std::size_t end_offset = 0;              ///< just behind the value's last byte; 0: not in the text
-  int override_index = -1;                 ///< which override it came from; -1: the file
+  int override_index = -1;                 ///< index of its override; -1: the file
 };
 
-/// A scene's text, its tree, and the overrides that were applied to it.
+/// A scene's text, its tree, and the overrides applied to it.
 struct Document {
   std::string file;
   std::string_view text;

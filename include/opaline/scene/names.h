@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The word for a value of a choice that a scene makes.
+// Names of the values of enumerations.
 #pragma once
 
 #include <string_view>

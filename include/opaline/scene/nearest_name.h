@@ -10,7 +10,7 @@
 namespace opaline {
 
 /// " (did you mean 'x' or 'y'?)" for the candidates that other programs call so, else for the one with the smallest edit
-/// distance if it is close, else for those that end with this word; or nothing.
+/// distance if it is close, else for those ending with this word; or nothing.
 std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates);
 
 /// The same for a key that is none of the section's: in the scene, camera, film and settings also the path of

@@ -67,13 +67,13 @@ struct PhysicalMedium {
 
 /// Artist's parameters after OpenPBR.
 struct ArtistMedium {
-  Rgb subsurface_color;   ///< total diffuse reflectance per entered flux, [0, 1]
+  Rgb subsurface_color;   ///< total diffuse reflectance per transmitted flux, [0, 1]
   Rgb subsurface_radius;  ///< 1/sigma_t per channel, mm, >= 0 (radius times subsurface_radius_scale)
   double anisotropy = 0;  ///< mean cosine g, (-1, 1)
   friend bool operator==(const ArtistMedium&, const ArtistMedium&) = default;
 };
 
-/// Profile of a medium that names none.
+/// Default profile of a medium.
 struct ChosenProfile {
   ProfileKind kind = ProfileKind::dipole;
   double thickness = std::numeric_limits<double>::infinity();  ///< as Medium::thickness
@@ -99,7 +99,7 @@ struct Medium {
   TextureMix texture_mix = TextureMix::split;
   /// Texture of ArtistMedium::subsurface_radius over its mean; the record stores the mean.
   std::optional<Texture> radius_texture{};
-  /// Share of the light that scatters inside, [0, 1]; the rest is reflected diffusely at the surface, by base_color.
+  /// Fraction of the light scattering inside, [0, 1]; the rest is reflected diffusely at the surface, by base_color.
   double subsurface_weight = 1;
   Rgb base_color{.8, .8, .8};
   std::optional<Texture> weight_texture{}, base_texture{};  ///< times these
@@ -240,7 +240,7 @@ struct DirectionalLight {
   static constexpr std::string_view kType = "directional";
   static constexpr bool kCanBeSeen = true;
   Vec3d direction;   ///< unit, the way the light travels
-  Rgb irradiance;    ///< on a surface that faces it, W/mm^2
+  Rgb irradiance;    ///< on a surface facing it, W/mm^2
   double angle = 0;  ///< the disc's full angle, degrees, [0, 90]; 0: parallel light
   friend bool operator==(const DirectionalLight&, const DirectionalLight&) = default;
 };
@@ -346,9 +346,9 @@ struct Settings {
   std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
   std::optional<double>
       until_error;             ///< direct, volume: stop at this estimated relative error of the pixels, cells
-  bool reenter = true;         ///< volume: light that has left a body may enter it again elsewhere
+  bool reenter = true;         ///< volume: enables re-entry of light into a body
   double cell_size = 2;        ///< volume_diffusion: of the cells at the surface, mean free paths
-  std::optional<int> bounces;  ///< 1: surfaces that are lit light others, once; none: bounces_of()
+  std::optional<int> bounces;  ///< 1: one bounce of light between surfaces; none: bounces_of()
   std::uint64_t seed = 0;
   int reference_frame = 1;  ///< frame in which samples are placed; they move with the surface in others
   Laboratory laboratory{};

@@ -63,9 +63,9 @@ class Value {
   /// One member of an object, read by a row of the schema.
   std::optional<Value> member(std::string_view key, const KeyInfo& info) const;
 
-  /// Throws an error at the value: "'path' message (expected ..., got what it is)".
+  /// Throws an error at the value: "'path' message (expected ..., got the value)".
   [[noreturn]] void fail(const std::string& message, const std::string& expected = {}) const;
-  /// The same at its key, without what it is.
+  /// The same at its key, without the value.
   [[noreturn]] void fail_key(const std::string& message, const std::string& expected = {}) const;
 
  protected:

@@ -11,7 +11,7 @@ namespace opaline {
 
 /// A light of the scene; the channels of one environment are one.
 struct LightGroup {
-  std::string layer;  ///< the light's name; characters that compositors do not take are "_"
+  std::string layer;  ///< name of the light, with "_" for characters invalid in compositors
   std::vector<std::size_t> lights;
   bool is_seen = false;  ///< camera rays may meet it
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How light that was scattered inside leaves by angle.
+// How light scattered inside leaves by angle.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace opaline {
 
 /// Radiance of what leaves a half space in even light from all around, over that of as much light behind the boundary
 /// that comes to it evenly from all sides: 1 where nothing is absorbed, else more towards the horizon, whence light comes
-/// that did not go deep. By reciprocity it goes as the share that comes back of what enters at that angle.
+/// that did not go deep. By reciprocity it goes as the share coming back of what enters at that angle.
 /// from  HalfSpace; measured against random walks in src/volume/README.md
 class AngularExit {
  public:

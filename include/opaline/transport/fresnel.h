@@ -28,7 +28,7 @@ T fresnel_transmittance(T cos_outside, T eta) {
 /// F_bar: cosine-weighted hemispherical average of F seen from outside; numerical, error below 1e-9.
 double average_reflectance_outside(double eta);
 
-/// F_dr: the same average for light that arrives from inside; 1 - F_dr = (1 - F_bar) / eta^2.
+/// F_dr: the same average for light arriving from inside; 1 - F_dr = (1 - F_bar) / eta^2.
 double average_reflectance_inside(double eta);
 
 /// C2: the integral of F mu^2 over the cosine mu in [0, 1] at which light arrives from inside; numerical, error

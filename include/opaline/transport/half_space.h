@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exact albedo of a half space that scatters evenly behind a smooth boundary.
+// The exact albedo of a half space scattering evenly behind a smooth boundary.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ class HalfSpace {
   ///       reflection inside by a linear system over its quadrature points; derived in src/diffusion/README.md
   HalfSpace(double absorbed, double eta);
 
-  /// The share of diffuse light that comes back of what entered: total diffuse reflectance per entered flux.
+  /// The fraction of diffuse light coming back of what entered: total diffuse reflectance per transmitted flux.
   /// out   [0, 1]; relative error below 1e-9 for eta from .1 to 10; exactly 1 where absorbed is 0
   double diffuse_share() const { return diffuse_share_; }
   /// The same of light with one direction.

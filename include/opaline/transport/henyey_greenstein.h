@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Share of scattered light per solid angle, 1/sr, at the cosine of the scattering angle; g in (-1, 1).
+/// Fraction of scattered light per solid angle, 1/sr, at the cosine of the scattering angle; g in (-1, 1).
 inline double henyey_greenstein(double g, double cosine) {
   const double denominator = 1 + g * g - 2 * g * cosine;
   return (1 - g * g) / (4 * std::numbers::pi * denominator * std::sqrt(denominator));

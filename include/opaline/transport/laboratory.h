@@ -33,7 +33,7 @@ struct WalkedValue {
   double value = 0, error = 0;
 };
 
-/// Light that leaves at a distance from the beam.
+/// Light leaving at a distance from the beam.
 struct WalkedRing {
   double low = 0, high = 0;  ///< distances, mm
   WalkedValue share;         ///< that leaves between them
@@ -47,11 +47,11 @@ struct WalkedCosine {
   WalkedValue value;
 };
 
-/// Light that leaves one face.
+/// Light leaving one face.
 struct WalkedFace {
   WalkedValue total, uncollided;  ///< shares: all of it, and the part of it that was never scattered
   std::vector<WalkedRing> rings;
-  WalkedValue beyond;  ///< share that leaves farther away than the last ring
+  WalkedValue beyond;  ///< share leaving farther away than the last ring
   /// Radiance over that of a Lambert emitter of the same flux: cosine-weighted mean 1. Zero where nothing leaves.
   std::vector<WalkedCosine> angular_exit;
 };
@@ -59,17 +59,17 @@ struct WalkedFace {
 struct SlabWalks {
   std::size_t walks = 0;
   double collisions = 0;  ///< mean of a walk
-  double entered = 1;     ///< share of the incident flux that enters, exact: 1 - F(cosine), or 1 - F_bar
+  double entered = 1;     ///< fraction of the incident flux entering, exact: 1 - F(cosine), or 1 - F_bar
   WalkedFace back, through;
   WalkedValue absorbed;
   WalkedValue unfinished;  ///< still inside after most_collisions
   WalkedValue energy;      ///< sum of all shares; its mean is 1
-  /// Albedo under diffuse light by cosine of entry: fraction of the light transmitted at these cosines that leaves by the
+  /// Albedo under diffuse light by cosine of entry: fraction of the light transmitted at these cosines leaving by the
   /// entry face. Zero at total reflection.
   std::vector<WalkedCosine> albedo_by_entry;
 };
 
-/// The share of the incident flux for a share of what entered.
+/// The fraction of the incident flux for a fraction of what entered.
 inline WalkedValue per_incident(const SlabWalks& walks, const WalkedValue& share) {
   return {share.value * walks.entered, share.error * walks.entered};
 }

@@ -12,7 +12,7 @@ struct HomogeneousMedium {
   double eta = 1;      ///< index of refraction, inside over outside, in [.1, 10]
 
   double sigma_t() const { return sigma_a + sigma_s; }
-  /// Share of the light that a collision does not absorb; 0 where nothing collides.
+  /// Fraction of the light that a collision does not absorb; 0 where nothing collides.
   double albedo() const { return sigma_t() > 0 ? sigma_s / sigma_t() : 0; }
   /// 1/sigma_t' = 1/(sigma_a + (1-g) sigma_s), mm; infinite where there is no matter.
   double reduced_mean_free_path() const { return 1 / (sigma_a + (1 - g) * sigma_s); }

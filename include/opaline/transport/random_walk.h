@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random walks of light inside a body: free flights, collisions, and what leaves at each flight's end.
 //
-// A walk carries a weight, the share of light that it stands for. What leaves at the boundary is counted as its
-// expected value, absorption takes its share of the weight, and roulette ends walks without bias. The
+// A walk carries a weight, the fraction of light that it stands for. What leaves at the boundary is counted as its
+// expected value, absorption takes its fraction of the weight, and roulette ends walks without bias. The
 // derivation is in src/transport/README.md.
 #pragma once
 
@@ -46,7 +46,7 @@ inline Crossing cross(const HomogeneousMedium& medium, const WalkState& walk, co
 
 /// One flight: what leaves is known, and the walk goes on with the rest.
 struct Flight {
-  double leaving = 0;    ///< weight that crosses the boundary
+  double leaving = 0;    ///< weight crossing the boundary
   double remaining = 0;  ///< weight that goes on
   double distance = 0;   ///< to where it goes on: a collision, or the boundary, where it is reflected
   bool collides = false;
@@ -70,7 +70,7 @@ inline bool survives(double& weight, double least, WalkNumbers& numbers) {
   return true;
 }
 
-/// Half of all walks that reach 1024, 4096, 16384, ... collisions end, the others stand for both.
+/// Half of all walks reaching 1024, 4096, 16384, ... collisions end, the others stand for both.
 inline bool survives_long(double& weight, std::uint64_t collisions, WalkNumbers& numbers) {
   constexpr std::uint64_t kFirst = 1024, kEvenBits = 0x5555555555555555u;
   const bool is_power_of_two = (collisions & (collisions - 1)) == 0;
@@ -112,7 +112,7 @@ inline Vec3d scattered(const Vec3d& direction, double g, WalkNumbers& numbers) {
   return deflected(direction, cosine, numbers.next_angle());
 }
 
-/// Light that crosses the boundary from inside; it continues as refracted_outward(direction, normal, eta).
+/// Light crossing the boundary from inside; it continues as refracted_outward(direction, normal, eta).
 struct LeavingLight {
   Vec3d position, direction;  ///< on the boundary; inside, before the refraction
   Vec3d normal;
@@ -127,9 +127,9 @@ struct WalkEnd {
 };
 
 /// Follows one walk to its end; `walk` is left as it was last.
-/// in    body.ahead(position, direction): BoundaryAhead of a ray that starts inside
+/// in    body.ahead(position, direction): BoundaryAhead of a ray starting inside
 ///       watcher.visit(walk, ahead, crossing): told before every flight
-///       watcher.leave(LeavingLight): told of all light that leaves
+///       watcher.leave(LeavingLight): told of all light leaving
 ///       most_collisions: a walk with as many is given up
 /// out   mean over walks: weight that left + absorbed + unfinished = weight at the start
 template <class Body, class Watcher>

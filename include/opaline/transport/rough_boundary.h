@@ -31,12 +31,12 @@ class RoughBoundary {
   /// The larger one.
   float alpha() const { return alphas_.along; }
 
-  /// The share of light from a direction that is reflected, to any side; from a table, error below .002.
+  /// The fraction of light from a direction that is reflected, to any side; from a table, error below .002.
   float reflectance(float cosine) const;
   /// The same of facets that reflect all light: 1 without the light that would meet a second one.
   float reflected_once(float cosine) const;
 
-  /// Light that is reflected by a facet drawn with the density of those that the viewer sees (Heitz 2018).
+  /// Light reflected by a facet drawn with the density of those that the viewer sees (Heitz 2018).
   struct Sample {
     Vec3f direction;
     float weight;  ///< reflected radiance over the radiance from there, over the density; 0: it goes below
@@ -51,7 +51,7 @@ class RoughBoundary {
  private:
   friend class RoughnessRange;
   bool is_isotropic() const { return alphas_.along == alphas_.across; }
-  float smith(const Vec3f& direction) const;  ///< share of facets that are seen from there, G1
+  float smith(const Vec3f& direction) const;  ///< fraction of facets seen from there, G1
   float facets(const Vec3f& normal) const;    ///< their distribution, D
 
   static constexpr std::size_t kCosines = 33;

@@ -10,7 +10,7 @@
 
 namespace opaline {
 
-/// Reflectance for light that arrives from inside; eta = inside / outside. Exactly 0 at eta = 1 and 1 beyond
+/// Reflectance for light arriving from inside; eta = inside / outside. Exactly 0 at eta = 1 and 1 beyond
 /// the critical angle.
 inline double inside_reflectance(double cos_inside, double eta) {
   return eta == 1 ? 0 : fresnel_reflectance(cos_inside, 1 / eta);

@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// A stream that depends on the seed and the walk's index alone: walks may run in any order on any thread.
+/// A stream depending on the seed and the walk's index alone: walks may run in any order on any thread.
 class WalkNumbers {
  public:
   WalkNumbers(std::uint64_t seed, std::uint64_t walk) : key_(hash_bits(seed, walk)) {}

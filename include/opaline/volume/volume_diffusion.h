@@ -29,10 +29,10 @@ struct VolumeDiffusionInput {
 
 /// Diffuse mean free paths that count as one mean free path, where they are less. Measured, src/volume/README.md.
 inline constexpr double kPerFading = .45;
-/// How far light goes before it is scattered, or before it has faded where that is less: what cells are to resolve.
+/// Length that cells resolve: the mean free path, or the decay length if that is shorter.
 /// in    mean_free_path: 1/sigma_t', of any unit; absorbed: 1 - albedo'
 double length_to_resolve(double mean_free_path, double absorbed);
-/// Edge of a cell over that, at most: what is shorter is taken as this, the albedo as it is.
+/// Maximum edge of a cell over that length; shorter mean free paths are replaced by this one, with the same albedo.
 inline constexpr double kWidestCell = 3;
 
 /// About how many cells a body has.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The truth: what leaves a body by random walks inside of it.
+// Radiant exitance of a body by random walks inside it: the reference.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct VolumeInput {
   std::optional<double> until_error = {};  ///< bound of VolumeExitance::relative_error; none: kDefaultWalks
   std::uint64_t seed = 0;
   Monitor* monitor = nullptr;
-  bool reenter = true;  ///< light that has left may meet the body again and enter
+  bool reenter = true;  ///< enables re-entry of light into the body
   /// Factor on light from the lamps as it enters at a place: mesh, triangle and barycentrics. Empty: none.
   std::function<RgbF(std::uint32_t mesh, std::uint32_t triangle, float u, float v)> entering_tint = {};
   MediaInside media_inside = {};  ///< instead of `media`, which are about its mean. Empty: these throughout
@@ -40,9 +40,9 @@ inline constexpr std::size_t kDefaultWalks = 64, kMostWalks = 65536;
 /// Sums over the walks of one channel, pass by pass.
 struct WalkSums {
   std::size_t passes = 0;
-  std::vector<float> flux;   ///< one a sample: flux that left its cell, in areas of a start
+  std::vector<float> flux;   ///< per sample: outgoing flux of its cell, in areas of a start
   std::vector<float> roots;  ///< roots of the sums over passes of its square
-  double entered = 0;        ///< flux that entered from the lights
+  double entered = 0;        ///< transmitted flux of the lights
   double lost = 0;           ///< fraction lost through holes of the mesh
   double stopped = 0;        ///< fraction that ended at other meshes inside the body
 };
@@ -52,7 +52,7 @@ struct SourceSums {
   std::array<WalkSums, 3> channels;
 };
 
-/// All that going on later takes, and all that other colours of the lights take.
+/// State to resume from, also with other colours of the lights.
 struct VolumeSums {
   std::vector<SourceSums> sources;
 };
@@ -63,11 +63,11 @@ struct VolumeExitance {
   std::size_t walks = 0;       ///< a sample, of the channel and light that has most
   double relative_error =
       0;                  ///< rms over the surface of error over sqrt(exitance^2 + (1 % of the largest)^2)
-  Rgb lost{}, stopped{};  ///< shares of the light that entered: see WalkSums
+  Rgb lost{}, stopped{};  ///< fractions of the light that entered: see WalkSums
   bool has_inner_sheets = false;  ///< parts of the body overlap or touch, or its surface crosses itself
 };
 
-/// True if each light is walked alone, so that its colour takes no part: where there are few.
+/// True if each light is walked alone, so its colour takes no part: where there are few.
 bool walks_by_light(const VolumeInput& input);
 
 /// Goes on from `sums` (empty: from nothing) until there are kDefaultWalks or the error is small enough; `sums`

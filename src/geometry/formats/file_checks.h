@@ -17,7 +17,7 @@ namespace opaline {
 /// Coordinates must stay below this: Embree drops triangles beyond 1.8e18 without a word.
 inline constexpr double coordinate_limit = 1e18;
 
-/// Counts the vertices whose coordinates are not finite or too large, so that one error names them all.
+/// Counts the vertices whose coordinates are not finite or too large, so one error names them all.
 class VertexCheck {
  public:
   /// line: 1-based, 0 in binary files
@@ -59,7 +59,7 @@ class PolygonFan {
   std::size_t corners_ = 0;
 };
 
-/// Cuts concave polygons, see cut_concave_polygons, and polygons that are given twice alike; the mesh gets the new triangles, and a warning of those that cross
+/// Cuts concave polygons, see cut_concave_polygons, and polygons that are given twice alike; the mesh gets the new triangles, and a warning of those crossing
 /// themselves. The result is for what else the file gives to corners.
 std::vector<Recut> cut_polygons(const std::string& path, SourceMesh& mesh, const std::vector<Fan>& fans);
 

@@ -111,7 +111,7 @@ class ObjReader {
     first_unread_line_ = line(at);
   }
 
-  /// Sets the smoothing group of the faces that follow; faces before the first `s` belong to none.
+  /// Sets the smoothing group of the faces following; faces before the first `s` belong to none.
   void smoothing_group(TextCursor& at) {
     has_groups_ = true;
     groups_.resize(mesh_.triangles.size(), group_);

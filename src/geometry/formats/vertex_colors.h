@@ -23,7 +23,7 @@ class FileColors {
     colors_.resize(index, kNone);
     colors_.push_back(color);
   }
-  /// From the file's scale to one that ends at 1.
+  /// From the file's scale to one ending at 1.
   void divide_by(float one) {
     for (RgbF& color : colors_)
       if (color != kNone) color = color / one;

@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-// Entries that carry less than this share of a usual one are dropped at random and the others made up for it:
+// Entries carrying less than this fraction of a usual one are dropped at random and the others made up for it:
 // far sides of a steep profile would cost shadow rays for nothing.
 constexpr float kRouletteBelow = 0.05f;
 
@@ -36,7 +36,7 @@ RgbF entering_tint(const DirectExitanceInput& input, const Entry& entry, std::si
   return input.textures->tint(place).entering;
 }
 
-/// How much of the light that enters there from a direction leaves at the exit.
+/// How much of the light entering there from a direction leaves at the exit.
 RgbF weight_of(const EntrySampler& sampler, const SurfacePoint& exit, const Entry& entry,
                const Vec3f& towards_light) {
   if (!sampler.is_directional() || !(entry.inverse_density > 0)) return entry.weight;

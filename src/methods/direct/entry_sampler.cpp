@@ -143,7 +143,7 @@ EntrySampler::Line EntrySampler::chord_line(const SurfacePoint& exit, const Entr
   return {Ray(middle - frame.normal * float(half), frame.normal, float(2 * half)), false};
 }
 
-// Mean of R_d / total over the channels that scatter.
+// Mean of R_d / total over the scattering channels.
 float EntrySampler::channel_mean(float r2) const {
   alignas(16) float kernel[4];
   _mm_store_ps(kernel, table_(r2));

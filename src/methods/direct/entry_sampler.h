@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where light that leaves a point may have entered.
+// Where light leaving a point may have entered.
 #pragma once
 
 #include <array>
@@ -25,10 +25,10 @@ struct EntryRandom {
 struct Entry {
   SurfacePoint point;
   RgbF weight;                ///< R_d / density per area, per channel
-  float inverse_density = 0;  ///< per area; 0: the weight is of light that leaves where it entered
+  float inverse_density = 0;  ///< per area; 0: the weight is of light leaving where it entered
   std::uint32_t mesh = Hit::kMiss, triangle = 0;  ///< mesh and triangle of the point; kMiss: the exit itself
   float u = 0, v = 0;
-  RgbF tint{1, 1, 1};  ///< tint of the light that enters
+  RgbF tint{1, 1, 1};  ///< tint of the light entering
 };
 
 /// Draws entry points on the surfaces of one group of translucent meshes with a density near R_d of their
@@ -82,7 +82,7 @@ class EntrySampler {
   double reach_;  // no two points of the group are farther apart, mm
   EntryStrategy strategy_;
   RgbF local_;                         // total of the channels whose light leaves where it enters
-  std::vector<std::size_t> channels_;  // the others that scatter
+  std::vector<std::size_t> channels_;  // the others scattering
   float usual_weight_ = 0;
   std::array<float, 3> inverse_total_{};  // 1 / (channels x total)
 };

@@ -14,7 +14,7 @@ namespace {
 // Few rays: more do not differ by half of the light by chance (shadow_edges.cpp).
 constexpr int kFewRays = 8;
 
-/// Light shares of the light that enters, per channel.
+/// Light fractions of the light entering, per channel.
 struct LightShares {
   std::array<float, 3> shifted{};  ///< LightTransfer::edge_shift of all lights, as far as it is due to chance
   std::array<float, 3> from_points{};  ///< from lights without area

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which groups have their exitance evaluated all over, ahead of the picture.
+// Choice of bodies with a surface cache.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ std::size_t expected_cache_places(const GroupPlan& group, const World& world);
 /// For each group of the plan the most places that a surface cache may have: most_wanted_places if the
 /// settings ask for one, 0 if they ask for another evaluator; if they leave it open a part of the points at
 /// which the camera sees the group, times the pictures. A crop counts as the whole picture, whose bytes it
-/// shares. 0 where a tint colours light that enters: a cache does not know its details.
+/// shares. 0 where a tint colours light entering: a cache does not know its details.
 std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::span<const Body> groups,
                                            std::size_t pictures = 1);
 

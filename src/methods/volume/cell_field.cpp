@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kBlocks = 16;
 
-/// Hits that lie close together: of 4 x 4 pixels of a tile of 16 x 16, whose rays go row by row.
+/// Hits lying close together: of 4 x 4 pixels of a tile of 16 x 16, whose rays go row by row.
 std::size_t block_of(std::uint32_t ray) {
   return ray / 64 % 4 * 4 + ray / 4 % 4;
 }

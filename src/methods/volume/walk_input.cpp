@@ -37,7 +37,7 @@ HomogeneousMedium walked_medium(const ReducedMedium& reduced, double g, double l
   return {absorbed / length, (1 - absorbed) / (length * (1 - g)), g, reduced.eta};
 }
 
-/// Minimum length for random walks, so that no flight is shorter than the ray offset from the surface.
+/// Minimum length for random walks, so no flight is shorter than the ray offset from the surface.
 double least_walked(const World& world, std::span<const std::uint32_t> meshes) {
   return kLeastOffsets * 0x1p-18 * diagonal_of(world, meshes);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much light leaves a surface where the camera sees it, and how wrong that may be. A method of the
-// program is a field with a file of its own; make_fields.cpp has the table that tells which body takes which.
+// Exitance of a surface at camera hits, and its error. A method of the
+// program is a field with a file of its own; make_fields.cpp has the table of bodies and fields.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,18 @@ namespace opaline {
 
 class Shader;
 
-/// One of several independent estimates of the same picture; only `direct` makes more than one.
+/// One of several independent estimates of the same image; only `direct` makes more than one.
 struct Pass {
   std::uint64_t index = 0;
   int entry_samples = 0;  ///< entry samples of each camera ray
-  bool is_seen = true;    ///< false: by rays that spread light; no near fields are looked into for them
-  /// `direct`: what surfaces send to places where light enters is found by a ray from each; null: lights alone.
+  bool is_seen = true;    ///< false: for rays that gather light; without a near field
+  /// `direct`: gathering of light from other surfaces at points of entry, by one ray each; null: direct light only.
   const Shader* gathers = nullptr;
-  /// That of what is seen in mirrors; null: the same.
+  /// The same for surfaces seen in specular reflections; null: the same.
   const Pass* in_mirrors = nullptr;
 };
 
-/// The hits of a batch of camera rays that one field answers for, one entry a hit in each array.
+/// Hits of a batch of camera rays in one field, one entry per hit in each array.
 struct SurfaceHits {
   std::vector<SurfacePoint> points;
   std::vector<Hit> hits;              ///< mesh, triangle, barycentrics
@@ -36,24 +36,24 @@ struct SurfaceHits {
   std::vector<HitTextures> textures;  ///< empty: the scene has none
 };
 
-/// Light that leaves, one entry a hit, W/mm^2; an array that the field does not know is empty.
+/// Outgoing light, one entry per hit, W/mm^2; an array is empty if the field does not compute it.
 struct LeavingLight {
-  std::vector<RgbF> exitance;    ///< radiant exitance M_o, but for the factor SurfaceTint::leaving
+  std::vector<RgbF> exitance;    ///< radiant exitance M_o, without the factor SurfaceTint::leaving
   std::vector<RgbF> irradiance;  ///< E at the hit
-  std::vector<RgbF> error;       ///< standard error of the exitance that neighbouring hits share
-  std::vector<Rgb> noise;        ///< variance of the exitance of each hit by itself
-  std::vector<RgbF> bias;        ///< that the noise gives the exitance
-  bool is_tinted = false;        ///< the factor is in all of them
+  std::vector<RgbF> error;       ///< standard error of the exitance, shared by neighbouring hits
+  std::vector<Rgb> noise;        ///< variance of the exitance of each hit
+  std::vector<RgbF> bias;        ///< bias of the exitance from noise
+  bool is_tinted = false;        ///< the factor is included in all of them
 };
 
 class Field {
  public:
   virtual ~Field() = default;
   /// in    lighting: of the hits' points, with the boundary of eta()
-  ///       held: what was found at the same hits before, added to; or null
+  ///       held: cached results for the same hits, extended; or null
   virtual LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                           HeldView::Surface* held) const = 0;
-  /// Index of refraction of the boundary that light enters through; 0: none, an opaque surface.
+  /// Index of refraction of the transmitting boundary; 0: none, an opaque surface.
   virtual float eta() const = 0;
   /// True if the exitance depends on the irradiance at the hits themselves.
   virtual bool asks_irradiance() const { return false; }
@@ -61,7 +61,7 @@ class Field {
   virtual bool asks_samples() const { return false; }
 };
 
-/// Irradiance at the hits, from lights by shadow rays unless it is held, and from other surfaces; without tints. The
+/// Irradiance at the hits, from lights by shadow rays unless cached, and from other surfaces; without tints. The
 /// camera rays of a pixel, numbered by their keys, share one set of light samples.
 std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, int samples_per_pixel,
                                      HeldView::Surface* held);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light that leaves where it entered: opaque surfaces, and `lambert`, the limit of a vanishing mean free
+// Light leaving where it entered: opaque surfaces, and `lambert`, the limit of a vanishing mean free
 // path.
 #pragma once
 

@@ -24,7 +24,7 @@ Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
 /// Shadow rays from a hit to each light with an area: the camera rays of a pixel share the setting's.
 int light_samples_of_ray(const Scene& scene);
 
-/// True if any light is seen directly or has more than one direction, so that shadow rays are noisy.
+/// True if any light is seen directly or has more than one direction, so shadow rays are noisy.
 bool has_area_lights(const Scene& scene);
 
 }  // namespace opaline

@@ -87,7 +87,7 @@ export class Connection {
 
 export const newStroke = () => 1 + Math.floor(Math.random() * 2 ** 52);
 
-// One stroke for turns of a wheel or presses of a key that follow each other.
+// One stroke for turns of a wheel or presses of a key following each other.
 export function pausedStroke() {
   let stroke = 0, end = 0;
   return () => {

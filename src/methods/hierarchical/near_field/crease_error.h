@@ -28,7 +28,7 @@ class NearRings {
   /// radius: of the near field, units of the world.
   NearRings(const DiffuseProfile& profile, double radius);
 
-  /// The share of a plane's near field that lies beyond a straight border at this distance, per channel.
+  /// The fraction of a plane's near field lying beyond a straight border at this distance, per channel.
   std::array<double, 3> beyond_border(double distance) const;
 
   /// The share that a half plane at right angles gives, from its edge on the foot of the point's

@@ -42,7 +42,7 @@ void NearFieldMeans::find_densities(const SurfacePoint& place) {
     const float dx = x_[m] - px, dy = y_[m] - py, dz = z_[m] - pz;
     const float square = dx * dx + dy * dy + dz * dz, height = dx * nx_[m] + dy * ny_[m] + dz * nz_[m];
     const float flat = square - height * height, cosine = nx_[m] * gx + ny_[m] * gy + nz_[m] * gz;
-    // Without a branch, so that compilers take several points at once.
+    // Without a branch, so compilers take several points at once.
     const float r = std::sqrt(square) * rings, within = r < kOutside ? r : kOutside;
     const float drawn = std::sqrt(flat > 0 ? flat : 0) * rings,
                 drawn_within = drawn < kOutside ? drawn : kOutside;

@@ -15,7 +15,7 @@
 namespace opaline {
 namespace {
 
-// The share of the exitance that is usually at stake where shadow rays are worth their time; and the least
+// The fraction of the exitance that is usually at stake where shadow rays are worth their time; and the least
 // there: of points far apart, close together, and so close that they share their rays with many others.
 constexpr float kUsual = 0.06f, kWorthApart = kRefinedStake, kWorthClose = 0.015f, kWorthShared = 0.005f;
 constexpr float kFinestAt = 0.1f;  // stake from which on the lattice is as fine as the points allow
@@ -40,7 +40,7 @@ constexpr std::size_t kDense = 32;  // points of a batch that must be marked to 
 // crosses adds 1/6 of the square of its weight.
 constexpr float kLatticeVariance = 0.063f;
 
-// Between points that follow each other: the median, mm.
+// Between points following each other: the median, mm.
 double typical_distance(std::span<const SurfacePoint> points) {
   if (points.size() < 2) return std::numeric_limits<double>::infinity();
   std::vector<float> distances;
@@ -170,7 +170,7 @@ void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_
   }
 }
 
-// variance: of the share of the places that an edge leaves in the light, over share x (1 - share)
+// variance: of the fraction of the places that an edge leaves in the light, over share x (1 - share)
 void NearFieldSampler::replace_all(const Found& found, std::span<const std::uint32_t> points,
                                    const NearFieldMeans& means, const RgbF& variance) const {
   for (std::size_t m = 0; m < points.size(); ++m) {
@@ -239,7 +239,7 @@ std::vector<std::size_t> NearFieldSampler::split(std::span<const SurfacePoint> p
   return ends;
 }
 
-// Sorts a set so that every NearFieldMeans::kGroup points that follow each other lie together.
+// Sorts a set so that every NearFieldMeans::kGroup points following each other lie together.
 void NearFieldSampler::sort_into_groups(std::span<const SurfacePoint> points, std::span<std::uint32_t> set) {
   for (std::size_t size = NearFieldMeans::kMostPoints / 2; size >= NearFieldMeans::kGroup; size /= 2)
     for (std::size_t first = 0; first + size < set.size(); first += 2 * size)
@@ -292,7 +292,7 @@ void NearFieldSampler::draw(const PointIrradianceInput& lighting, std::uint32_t 
   }
 }
 
-// Keeps the places that lie on the group's surface and show their outside.
+// Keeps the places lying on the group's surface and show their outside.
 void NearFieldSampler::find(const RayScene& rays, Places& places) const {
   rays.intersect(places.rays);
   places.points.reserve(places.rays.size());

@@ -15,7 +15,7 @@
 namespace opaline {
 namespace {
 
-// Above this share of the irradiance at the point itself (SplitKernel::own_irradiance) the near field's rms
+// Above this fraction of the irradiance at the point itself (SplitKernel::own_irradiance) the near field's rms
 // radius is under a fifth of h, less than two segments of the finest lattice.
 constexpr float kSharp = 0.8f;
 // Error, over the tolerance, that lattices need not resolve: bumps of the mesh, resolved by its own
