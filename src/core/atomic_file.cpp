@@ -87,7 +87,7 @@ int flush_to_disk(const fs::path& path, int flags) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::string path) : path_(resolve_link(path)) {
+AtomicFile::AtomicFile(const std::string& path) : path_(resolve_link(path)) {
   require_replaceable(path_);
   temporary_ = create_beside(path_);
 }

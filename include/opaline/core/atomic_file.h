@@ -12,7 +12,7 @@ namespace opaline {
 class AtomicFile {
  public:
   /// error Error{run_failed} if the folder cannot be written
-  explicit AtomicFile(std::string path);
+  explicit AtomicFile(const std::string& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
