@@ -130,8 +130,8 @@ TEST(CliProgress, OneLineForAllFrames) {
   Terminal terminal(
       {"render", folder.scene, "-o", folder.file("a.##.exr"), "--frames", "1-4", "--resolution", "256x256"},
       80);
-  const std::string text = terminal.read_until("4 of 4 frames made");
-  ASSERT_TRUE(contains(text, "4 of 4 frames made")) << text;
+  const std::string text = terminal.read_until("4 of 4 frames rendered");
+  ASSERT_TRUE(contains(text, "4 of 4 frames rendered")) << text;
   EXPECT_TRUE(contains(text, "frame 1 of 4  [........................] 0 %  ("));
   EXPECT_TRUE(contains(text, "frame 3 of 4  [############............] 50 %, "));
 }
