@@ -118,7 +118,7 @@ TEST(CliProgress, IsQuietInALog) {
   const Outcome outcome = run_program(line);
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err, "");
-  EXPECT_TRUE(contains(outcome.out, "\n3 of 3 frames made in ")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "\n3 of 3 frames rendered in ")) << outcome.out;
   EXPECT_TRUE(contains(run_program(line).out, "\n0 of 3 frames rendered, 3 skipped in "));
 }
 
