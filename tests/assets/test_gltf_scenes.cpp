@@ -70,7 +70,7 @@ TEST(GltfScenes, TheDefaultSceneIsShown) {
   EXPECT_EQ(scene_of(asset.glb(), "a.glb").shapes.at(0).name, "first");
   asset.json["scene"] = 1;
   EXPECT_EQ(scene_of(asset.glb(), "a.glb").shapes.at(0).name, "second");
-  EXPECT_TRUE(has(imported(asset).not_carried, "1 of its 2 scenes: scenes[1] is taken"));
+  EXPECT_TRUE(has(imported(asset).not_carried, "1 of its 2 scenes: uses scenes[1]"));
 }
 
 // Claim: a perspective camera looks along its node's -z, with its angle and the shape of its picture; further ones and

@@ -118,7 +118,7 @@ TEST(CliProgress, IsQuietInALog) {
   const Outcome outcome = run_program(line);
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err, "");
-  EXPECT_TRUE(contains(outcome.out, "\n3 of 3 frames made in ")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "\n3 of 3 frames rendered in ")) << outcome.out;
   EXPECT_TRUE(contains(run_program(line).out, "\n0 of 3 frames rendered, 3 skipped in "));
 }
 
@@ -130,8 +130,8 @@ TEST(CliProgress, OneLineForAllFrames) {
   Terminal terminal(
       {"render", folder.scene, "-o", folder.file("a.##.exr"), "--frames", "1-4", "--resolution", "256x256"},
       80);
-  const std::string text = terminal.read_until("4 of 4 frames made");
-  ASSERT_TRUE(contains(text, "4 of 4 frames made")) << text;
+  const std::string text = terminal.read_until("4 of 4 frames rendered");
+  ASSERT_TRUE(contains(text, "4 of 4 frames rendered")) << text;
   EXPECT_TRUE(contains(text, "frame 1 of 4  [........................] 0 %  ("));
   EXPECT_TRUE(contains(text, "frame 3 of 4  [############............] 50 %, "));
 }

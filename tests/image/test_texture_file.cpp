@@ -171,7 +171,8 @@ TEST(TextureFile, TakesChannelsByTheirNames) {
   EXPECT_NE(refused({"U", "V"})
                 .find("has no colours (expected the channels R, G and B, or Y, or one alone, got U, V)"),
             std::string::npos);
-  EXPECT_NE(refused({"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}).find("several layers"), std::string::npos);
+  EXPECT_NE(refused({"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}).find("several colour layers"),
+            std::string::npos);
   EXPECT_NE(refused({"Y", "BY", "RY"}).find("luminance and chroma"), std::string::npos);
 }
 

@@ -198,8 +198,8 @@ TEST(Extremes, BodiesThinnerThanTheirSamplesAreSaid) {
   const auto thin = [&] {
     const Plan plan = make_plan(scene, make_world(scene));
     return std::ranges::count_if(plan.warnings, [](const std::string& warning) {
-      return warning.find("it is 0.001 mm thick") != std::string::npos &&
-             warning.find("take 3.9e+06 samples") != std::string::npos;
+      return warning.find("the mean thickness of 0.001 mm") != std::string::npos &&
+             warning.find("use 3.9e+06 samples") != std::string::npos;
     });
   };
   EXPECT_EQ(thin(), 0);
