@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/scratch_folder.h"
-#include "methods/volume_diffusion/volume_diffusion_state.h"
 #include "opaline/geometry/nearest_surface.h"
 #include "opaline/volume/nearest_sample.h"
+#include "support/cell_exitance.h"
 #include "support/pictures.h"
 #include "support/scene_picture.h"
 #include "support/surfaces.h"
@@ -114,8 +114,7 @@ CellExitance exitance_of(const ScratchFolder& folder, const std::string& text) {
   session.prepare();
   const Body& body = session.bodies()[0];
   EXPECT_EQ(session.world().unit, 1);
-  return {body.surface.samples, volume_diffusion_state(body).direct.value.exitance,
-          volume_diffusion_state(body).direct.value.error};
+  return {body.surface.samples, cell_exitance(body), cell_error(body)};
 }
 
 // Claim: a ball whose texture has two colours, and one whose texture has two radii, send out, cell for cell, what random walks

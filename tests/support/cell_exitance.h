@@ -20,4 +20,10 @@ inline std::vector<RgbF> cell_exitance(const Body& body) {
   return exitance;
 }
 
+/// Standard error of that under the lights alone.
+inline std::vector<RgbF> cell_error(const Body& body) {
+  return body.plan.method == Method::volume ? volume_state(body).exitance.value.error
+                                            : volume_diffusion_state(body).direct.value.error;
+}
+
 }  // namespace opaline::test
