@@ -68,7 +68,7 @@ void check_budget(const RenderArguments& render) {
     throw bad_usage("--time-budget chooses settings for one image, so frames would flicker",
                     "a single image first, then --frames with the settings of its closing lines");
   if (!render.cache.empty())
-    throw bad_usage("--time-budget plans with the cost of stages, and cached stages have none",
+    throw bad_usage("--time-budget plans with the cost of stages, and those from --cache have none",
                     "one of the two");
   const std::pair<bool, const char*> unplanned[] = {
       {!render.samples_ply.empty(), "--samples-ply"},

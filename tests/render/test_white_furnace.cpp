@@ -66,7 +66,7 @@ TEST(WhiteFurnace, VolumeSphere) {
       ASSERT_GT(lit, 200);
       EXPECT_NEAR(sum / lit, 1, 0.015) << eta;
       EXPECT_EQ(session.decisions().back(),
-                distance == 20 ? "shape: random walks traced" : "shape: random walks kept");
+                distance == 20 ? "shape: random walks traced" : "shape: random walks reused");
     }
   }
 }
