@@ -37,7 +37,7 @@ RgbF radiance_towards(const EnvironmentLight& light, const Vec3f& direction) {
     Vec3f direction;
     RgbF radiance;
   };
-  thread_local Asked last;  // of channels, lights of their own that are asked one after the other
+  thread_local Asked last;  // channels are separate lights, evaluated one after the other
   if (last.picture != light.picture->hash() || last.rotation != light.rotation || last.direction != direction)
     last = {light.picture->hash(), light.rotation, direction,
             light.picture->radiance(in_picture(light, direction))};

@@ -46,7 +46,7 @@ inline LightSample sample_light(const ManyLights& light, const Vec3f& point, con
 
 inline float sampling_density(const ManyLights& light, const Vec3f& point, const Vec3f& normal,
                               const Vec3f& direction) {
-  // Of a direction in which a light without an area lies: above that of any other way of drawing directions.
+  // Density of the direction of a delta light: above all other densities.
   if (!light.tree->has_area()) return 1e30f;
   const auto met = light.tree->first_met(point, direction, std::numeric_limits<float>::infinity());
   if (!met) return 0;

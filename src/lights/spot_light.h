@@ -12,7 +12,7 @@ namespace opaline {
 /// From 1 within the inner cone to 0 at the rim: the square of a ramp in the cosine (KHR_lights_punctual).
 inline double fade(const SpotLight& light, double cosine) {
   constexpr double kRadians = std::numbers::pi / 180;
-  constexpr double kLeastFade = 1e-3;  // of the cosine, as glTF's recommended implementation has it
+  constexpr double kLeastFade = 1e-3;  // minimum falloff range of the cosine, as in glTF
   const double rim = std::cos(light.outer_angle * kRadians), bright = std::cos(light.inner_angle * kRadians);
   const double ramp = std::clamp((cosine - rim) / std::max(kLeastFade, bright - rim), 0., 1.);
   return ramp * ramp;

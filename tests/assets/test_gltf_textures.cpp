@@ -181,7 +181,7 @@ TEST(GltfTextures, ThatCannotBeHadAreSaid) {
   };
   expect(textured_triangle(colored({{"index", 7}}), good), "textures[7] is not there");
   expect(textured_triangle(colored({{"index", 0}, {"texCoord", 1}}), good), "another set of UVs");
-  expect(textured_triangle(colored(), {{"uri", "absent.png"}}), "no such file");
+  expect(textured_triangle(colored(), {{"uri", "absent.png"}}), "refers to a missing file");
   expect(textured_triangle(colored(), {{"uri", "data:image/png;base64," + base64("no picture")}}),
          "images[0]");
   expect(textured_triangle(colored(), {{"bufferView", 99}}), "images[0].bufferView");

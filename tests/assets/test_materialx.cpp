@@ -218,7 +218,7 @@ TEST(MaterialX, MistakesAreNamed) {
   };
   EXPECT_EQ(MaterialFolder().error("#blood"),
             "a.mtlx: has no such surface (expected one of 'SR_skin', 'SR_wax', 'SR_paint', got 'blood')");
-  EXPECT_EQ(MaterialFolder("<materialx>\n<a>").error().substr(0, 19), "a.mtlx:2: is not XML");
+  EXPECT_EQ(MaterialFolder("<materialx>\n<a>").error().substr(0, 20), "a.mtlx:2: is not XML");
   EXPECT_EQ(MaterialFolder("<usd/>").error(),
             "a.mtlx: is not a MaterialX file (expected the element materialx)");
   EXPECT_EQ(MaterialFolder("<materialx/>").error(),

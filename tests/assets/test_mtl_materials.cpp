@@ -96,7 +96,7 @@ TEST(MtlMaterials, StatementsWithoutAnalogueAreReportedTogether) {
       "0.5\n");
   const ImportedAsset import = folder.import();
   ASSERT_EQ(import.not_carried.size(), 1u);
-  EXPECT_EQ(import.not_carried[0], "material 'red': Ks, Pr, Pm, Ps, Tf, aniso, map_Pr and d are not used");
+  EXPECT_EQ(import.not_carried[0], "material 'red': Ks, Pr, Pm, Ps, Tf, aniso, map_Pr and d are ignored");
   EXPECT_TRUE(MtlFolder("newmtl red\nKd 0.2\nPr 1\nPm 0.0\nTf 1 1 1\nd 1.0\nKs 0\naniso 0\n")
                   .import()
                   .not_carried.empty());

@@ -115,7 +115,7 @@ TEST(CacheEntries, FlippedBits) {
     std::string bytes = spoiled.whole;
     bytes[at] = char(bytes[at] ^ (1 << (at % 8)));
     const std::string said = spoiled.said_of(bytes);
-    ASSERT_NE(said.find(kName + " is "), std::string::npos) << "byte " << at << ": " << said;
+    ASSERT_NE(said.find(kName + ' '), std::string::npos) << "byte " << at << ": " << said;
     ++checked;
   };
   for (std::size_t at = 0; at < 1024; ++at) expect_noticed(at);

@@ -118,7 +118,7 @@ TEST(CliAssets, HowToMakeMarbleOfIt) {
   const Outcome marble = run_program({"info", "a.obj", "--set", "media.marble.preset=marble", "--set",
                                       "shapes.wood.medium=marble", "--set", "mm_per_unit=29"},
                                      folder.path.string());
-  EXPECT_TRUE(contains(marble.out, "translucent wood in marble")) << marble.out << marble.err;
+  EXPECT_TRUE(contains(marble.out, "translucent wood of marble")) << marble.out << marble.err;
 }
 
 // Claim: `--environment` lights a scene by a picture in place of all its lights, wherever the program is started: what is
@@ -256,7 +256,7 @@ TEST(CliAssets, SuggestedCommandsWork) {
                                       out.substr(from, out.find(' ', from) - from)},
                                      folder.path);
   EXPECT_EQ(marble.exit_code, 0) << marble.err;
-  EXPECT_TRUE(contains(marble.out, "in marble: ")) << marble.out;
+  EXPECT_TRUE(contains(marble.out, "of marble: ")) << marble.out;
 }
 
 // Claim: an asset that is broken, or is none, ends with code 2, its name, and without a scene file. Fails if the file

@@ -15,7 +15,7 @@ TEST(CliInfo, PlanAsTextAndJson) {
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_TRUE(text.err.empty()) << text.err;
   for (const char* part :
-       {"32 x 32", "key (point)", "ball in marble", "500 samples", "settings.samples", "memory"})
+       {"32 x 32", "key (point)", "ball of marble", "500 samples", "settings.samples", "memory"})
     EXPECT_TRUE(contains(text.out, part)) << "no \"" << part << "\" in:\n" << text.out;
 
   const Outcome json = run_program({"info", folder.scene, "--log", "json"}, folder.path.string());

@@ -136,7 +136,7 @@ TEST(SceneErrors, Shapes) {
       {with_shapes(moved + R"([@{"scale": 0}]})"), {"'shapes.0.transform.0' is singular"}},
       {with_shapes(moved + R"([{"scale": @1e300}]})"), {"out of range"}},
       {with_shapes(moved + R"([{"scale": 1, @"translate": [0, 0, 0]}]})"), {"exactly one of"}},
-      {with_shapes(moved + R"([{"rotate": {"axis": @[0, 0, 0], "degrees": 1}}]})"), {"no view direction"}},
+      {with_shapes(moved + R"([{"rotate": {"axis": @[0, 0, 0], "degrees": 1}}]})"), {"has no direction"}},
       {with_shapes(moved + R"([{"matrix": [[1, 0, 0, 0], [0, 1, 0, 0], @[0, 0, 1]]}]})"),
        {"3 rows of 4 numbers", "a list of 3"}},
   });
@@ -162,7 +162,7 @@ TEST(SceneErrors, Lights) {
       {with_light(R"({"type": "point", "position": [0, 0, @1e19], "intensity": 1})"),
        {"'lights.0.position.2'"}},
       {with_light(R"({"type": "directional", "direction": @[0, 0, 0], "irradiance": 1})"),
-       {"no view direction"}},
+       {"has no direction"}},
       {with_light(
            R"({"type": "quad", "corner": [0, 0, 0], "radiance": 1, "u": [1, 1, 0], "v": @[-1, -1, 0]})"),
        {"spans no area"}},

@@ -30,7 +30,7 @@ struct PixelSample {
 
 /// Layers that depend on the method.
 struct MethodLayers {
-  bool variance = false;  ///< of the mean, in place of the irradiance
+  bool variance = false;  ///< variance of the mean, in place of the irradiance
   bool error = false;     ///< estimated standard error
 };
 
