@@ -301,8 +301,9 @@ void add_commands(CLI::App& app, Parsed& parsed) {
       command("info", "print the plan of a scene: stages, samples, memory, expected errors; renders nothing");
   add_common_options(info, parsed.info.scene, options);
   add_picture_options(info, options);
-  add_import_options(command("import", "convert an asset (.glb, .gltf, .obj) to a scene file for editing"),
-                     parsed.import);
+  add_import_options(
+      command("import", "convert an asset (.glb, .gltf, .obj, .ply, .stl, .off) to a scene file for editing"),
+      parsed.import);
   add_compare_options(command("compare", "compare an image with a reference"), parsed.compare, options);
   add_bench_options(command("bench", "measure cost and error of scenes at many settings"), parsed.bench,
                     options);

@@ -71,7 +71,8 @@ std::string_view key_of_option(std::string_view option) {
 }
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {
-  app.add_option("SCENE", scene, "scene file (JSON with comments) or asset (.glb, .gltf, .obj)")
+  app.add_option("SCENE", scene,
+                 "scene file (JSON with comments) or asset (.glb, .gltf, .obj, .ply, .stl, .off)")
       ->required()
       ->type_name("FILE");
   add_repeatable(app, "--set", options.sets,

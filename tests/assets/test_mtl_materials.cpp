@@ -60,7 +60,7 @@ TEST(MtlMaterials, ColorsOutOfRangeAreReported) {
   check("spectral a.rfl", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is ignored");
 }
 
-// Claim: of materials with one name the last is taken, as in Blender, and the warning names both. Source: by hand. Tolerance:
+// Claim: of materials with one name the last is taken, and the warning names both. Source: by hand. Tolerance:
 // none. Fails if: statements of both are mixed, or nothing is reported.
 TEST(MtlMaterials, LastDefinitionReplacesEarlierOnes) {
   const std::string library =
