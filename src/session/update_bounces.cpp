@@ -106,9 +106,9 @@ void Session::State::update_bounced_places(const RenderInput& input) {
   // The keys of bodies say nothing where none are prepared.
   const StageKey key = is_needed() ? builder.key() : StageKey{};
   if (bounced_ != nullptr && key != StageKey{} && key == bounced_key_) return;
-  std::optional<DirectlyLitBodies> directly_lit;
   const std::vector<Light> lights = recentred_lights(scene_, *world_);
   std::vector<BodyStages> stages = body_stages(precompute, lights);
+  std::optional<DirectlyLitBodies> directly_lit;  // refers to the stages
   if (is_needed()) directly_lit.emplace(stages);
   bounced_ = opaline::bounced_places(input);
   bounced_key_ = key;
