@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 #include "assets/asset_scene.h"
+#include "core/lower_case.h"
 #include "opaline/core/error.h"
 
 namespace opaline {
@@ -16,8 +16,7 @@ namespace {
 enum class AssetKind { none, gltf, obj, mesh };
 
 AssetKind kind_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
   if (extension == ".glb" || extension == ".gltf") return AssetKind::gltf;
   if (extension == ".obj") return AssetKind::obj;
   const bool is_mesh = extension == ".ply" || extension == ".stl" || extension == ".off";

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "assets/asset_scene.h"
 #include "assets/text_lines.h"
+#include "core/lower_case.h"
 #include "opaline/assets/obj_material.h"
 #include "opaline/scene/nearest_name.h"
 
@@ -23,12 +23,6 @@ constexpr std::array<std::string_view, 45> kKeywords{
     "anisor", "norm",    "bump",     "disp",    "decal",    "refl",     "map_Ka",   "map_Kd",    "map_Ks",
     "map_Ke", "map_Ns",  "map_Ni",   "map_Tf",  "map_Tr",   "map_d",    "map_Pr",   "map_Pm",    "map_Ps",
     "map_Pc", "map_Pcr", "map_bump", "map_aat", "map_disp", "map_refl", "map_norm", "map_decal", "sharpness"};
-
-std::string in_lower_case(std::string_view word) {
-  std::string text(word);
-  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 bool is_known(const std::string& keyword) {
   return std::ranges::any_of(kKeywords,
@@ -45,7 +39,7 @@ bool is_everywhere(std::string_view text, double number) {
   return color.value && color.complaint.empty() && *color.value == Vec3d(number);
 }
 
-/// True for values leaving a matte surface as it is: black highlights, full opacity.
+/// True for values that leave a diffuse surface unchanged: black highlights, full opacity.
 bool has_no_effect(const std::string& keyword, std::string_view text) {
   for (const char* other : {"ka", "ns", "ni", "illum", "sharpness", "pcr", "anisor", "map_ka", "map_aat"})
     if (keyword == other) return true;

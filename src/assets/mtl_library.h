@@ -33,7 +33,7 @@ struct MtlLibrary {
 /// in    text: with line feeds
 MtlLibrary read_mtl_library(const std::string& file, std::string_view text);
 
-/// Use of a statement for a matte surface.
+/// Use of a statement for a diffuse surface.
 enum class MtlUse {
   color,             ///< Kd
   color_map,         ///< map_Kd

@@ -60,7 +60,7 @@ const guide = (data, label = "") =>
   ({label, data, borderColor: colour("soft"), borderWidth: 1, borderDash: [2, 4], pointStyle: "line", pointRadius: 0,
     pointHitRadius: 0, order: 9});
 
-// Round values: 1, 2, 5 where that is a handful, else whole decades or all digits.
+// Round tick values: steps of 1, 2, 5; whole decades on long axes, all digits on short ones.
 const roundTicks = (low, high) => {
   const ticks = (...digits) => {
     const all = [];

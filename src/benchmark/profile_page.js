@@ -13,7 +13,7 @@ const totalError = (channel, model, face) => {
   return walked > 0 ? totalOf(channel, model, face).share / walked - 1 : 0;
 };
 
-// As many digits as the standard error leaves.
+// Formats a value with the digits that its standard error justifies.
 const withError = ({share, share_error: error}) => {
   const digits = error > 0 ? Math.min(7, Math.max(3, 1 - Math.floor(Math.log10(error)))) : 4;
   return `${share.toFixed(digits)} ± ${error.toFixed(digits)}`;
@@ -36,7 +36,7 @@ const answerOf = () => {
       .sort(([a], [b]) => a - b);
     return [wordsOf(model), " (within ", bold(error), ")"];
   };
-  return el("p", {class: "answer"}, `Random walks return these fractions of the diffuse light that enters a ${report.shape} of ${report.medium}: `,
+  return el("p", {class: "answer"}, `Reflected fractions of transmitted diffuse light by random walks, in a ${report.shape} of ${report.medium}: `,
     ...report.channels.flatMap((channel, i) => [i ? ", " : "", bold(walkedTotal(channel, "diffuse", "back").share)]),
     ". Nearest total: ", ...nearest((channel, model) => Math.abs(totalError(channel, model, "back"))),
     "; nearest shape: ", ...nearest((channel, model) => totalOf(channel, model, "back").shape_difference), ".");
@@ -131,7 +131,7 @@ if (report.command === "profile") {
       "difference, over all distances, of the fractions (each of its own total) that leave within that distance."),
     ...faceTable("Reflected", "back"), ...(report.is_slab ? faceTable("Transmitted", "through") : []));
   const title = `${report.medium}, ${report.shape}, eta ${Number(report.eta.toPrecision(4))}`;
-  show(title, title, "Error of the diffusion models against random walks, which follow light through the medium and use no model: a beam enters a flat " +
-    "face, and the light that leaves is counted by distance and angle. Bars are one standard error. No figure includes what the face reflects before light enters.",
+  show(title, title, "Error of the diffusion models against random walks, which use no model: a beam enters a flat face, and the outgoing light is " +
+    "counted by distance and angle. Bars are one standard error. No figure includes the specular reflection of the face.",
     answerOf(), totals, ...report.channels.map(channelSection), notes("totals.csv", "profile.csv", "angles.csv"));
 }

@@ -302,7 +302,7 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
                          short_percent(chosen.predicted)));
 }
 
-void print_again_by(const Log& log, const std::string& command) {
+void print_repeat_command(const Log& log, const std::string& command) {
   if (log.quiet) return;
   print_event(log, "again_by", {{"command", command}});
   if (log.format == LogFormat::text) print_row("repeat with", command);

@@ -50,8 +50,8 @@ struct Shading {
 constexpr const char* kNothingKept = "no sums are stored; --resume FILE stores the sums of direct and volume";
 
 /// Message about the stored sums after Ctrl-C.
-std::string how_to_go_on(const RenderArguments& arguments, const Session& session,
-                         const ResumableState& resumable) {
+std::string resume_hint(const RenderArguments& arguments, const Session& session,
+                        const ResumableState& resumable) {
   if (arguments.resume.empty()) return kNothingKept;
   if (resumable.state.passes == 0)
     return "no sums are stored, because the first pass over the image is incomplete";
@@ -75,7 +75,7 @@ DirectResult shade_direct(const RenderArguments& arguments, const Session& sessi
     if (stopped.kind != ErrorKind::interrupted) throw;
     resumable.keep();
     throw Error(ErrorKind::interrupted, {}, 0, 0,
-                "interrupted; " + how_to_go_on(arguments, session, resumable));
+                "interrupted; " + resume_hint(arguments, session, resumable));
   }
 }
 
@@ -260,7 +260,7 @@ void finish(StageRunner& stages, const RenderArguments& arguments, const RenderA
     summary.budget = {*arguments.time_budget, spent};
     warn_of_little_time(arguments, session.scene().film, spent, shading.direct);
   }
-  if (chooses_settings(arguments)) summary.again_by = command_again(repeated);
+  if (chooses_settings(arguments)) summary.repeat_command = command_again(repeated);
   summary.costs = stages.costs();
   summary.errors = errors;
   summary.outputs = std::move(outputs);
@@ -328,7 +328,8 @@ void render_command(const RenderArguments& arguments) {
   RenderArguments settled =
       arguments.target_error ? settled_for_frames(arguments, cache ? &*cache : nullptr) : arguments;
   if (arguments.target_error)
-    print_again_by(arguments.log, command_again(settled) + " --frames " + frames_text(arguments.frames));
+    print_repeat_command(arguments.log,
+                         command_again(settled) + " --frames " + frames_text(arguments.frames));
   anchor_session(session, settled.scene, settled.overrides);
   FramesSoFar so_far;
   settled.log.frames = &so_far;

@@ -42,7 +42,7 @@ void print_target(const Log& log, double target, const TargetError& chosen, cons
 void print_volume_target(const Log& log, double target, const TargetError& chosen, const Settings& settings);
 
 /// The command that makes the same frames without choosing.
-void print_again_by(const Log& log, const std::string& command);
+void print_repeat_command(const Log& log, const std::string& command);
 
 /// Prints the choice for --time-budget, and a warning if the budget is too small; `before`: CPU time before the
 /// choice, s.
@@ -83,7 +83,7 @@ struct Summary {
   KnownErrors errors;
   std::optional<SpentBudget> budget;
   std::string
-      again_by;  ///< the command that makes the same picture without choosing; empty: nothing was chosen
+      repeat_command;  ///< the command that makes the same picture without choosing; empty: nothing was chosen
   std::size_t walks = 0;  ///< walks of `volume` per sample: VolumeExitance::walks, the largest of all bodies
   double walk_noise = 0;  ///< their relative_error, the largest
   std::size_t entry_samples = 0;  ///< entry samples of `direct`, a pixel

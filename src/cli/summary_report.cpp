@@ -110,7 +110,7 @@ void print_text(const Summary& summary) {
     row("budget", fmt::format("{:.3g} s of CPU, {:.3g} % of {:.4g} s", budget.spent,
                               100 * budget.spent / budget.seconds, budget.seconds));
   }
-  if (!summary.again_by.empty()) row("repeat with", summary.again_by);
+  if (!summary.repeat_command.empty()) row("repeat with", summary.repeat_command);
   for (const std::string& output : summary.outputs) row("wrote", output);
 }
 
@@ -143,7 +143,7 @@ Json done_json(const Summary& summary) {
             {"outputs", summary.outputs}};
   if (summary.model_error) json["model_error"] = *summary.model_error;
   if (summary.budget) json["budget"] = budget_json(*summary.budget);
-  if (!summary.again_by.empty()) json["again_by"] = summary.again_by;
+  if (!summary.repeat_command.empty()) json["again_by"] = summary.repeat_command;
   return json;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <map>
 
 #include "geometry/nearest_on_triangle.h"
@@ -12,17 +11,17 @@
 namespace opaline {
 namespace {
 
-constexpr double kRounding = 1e-6;  // rounding of a shape's diagonal
+constexpr double kRounding = 1e-6;  // fraction of a shape's diagonal
 constexpr std::size_t kPoints = 16;
 
-/// Bounds in steps of the rounding.
-using BoundsKey = std::array<std::int64_t, 6>;
+/// Bounds in whole steps of the rounding.
+using BoundsKey = std::array<double, 6>;
 
 BoundsKey key_of(const Bounds& box, double step) {
   BoundsKey key;
   for (std::size_t i = 0; i < 3; ++i) {
-    key[i] = std::int64_t(std::floor(box.low[i] / step));
-    key[i + 3] = std::int64_t(std::floor(box.high[i] / step));
+    key[i] = std::floor(box.low[i] / step);
+    key[i + 3] = std::floor(box.high[i] / step);
   }
   return key;
 }
@@ -54,8 +53,9 @@ std::vector<std::string> warnings_of_coincident_shapes(const Scene& scene, const
   std::size_t more = 0;
   for (std::size_t i = 0; i < world.meshes.size(); ++i) {
     const Bounds& box = world.boxes[i];
-    const double step = kRounding * std::exp2(std::ilogb(length(box.high - box.low))),
-                 reach = step / world.unit;
+    const double diagonal = length(box.high - box.low);
+    if (!(diagonal > 0)) continue;
+    const double step = kRounding * std::exp2(std::ilogb(diagonal)), reach = step / world.unit;
     std::vector<std::size_t>& others = by_bounds[key_of(box, step)];
     const auto same = std::ranges::find_if(others, [&](std::size_t other) {
       return coincide(world.meshes[i], world.meshes[other], reach) &&

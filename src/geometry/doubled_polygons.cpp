@@ -7,14 +7,10 @@
 #include <utility>
 
 #include "geometry/topology.h"
+#include "opaline/core/random.h"
 
 namespace opaline {
 namespace {
-
-std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
-  hash = (hash ^ value) * 0x9e3779b97f4a7c15u;
-  return hash ^ (hash >> 32);
-}
 
 /// The corners of a polygon from its lowest vertex towards the lower of that one's neighbours: the same for all polygons
 /// with the same edges.
@@ -42,7 +38,7 @@ class Circuit {
 
   std::uint64_t hash() const {
     std::uint64_t hash = size();
-    for (std::size_t i = 0; i < size(); ++i) hash = mix(hash, corners_[corner(i)]);
+    for (std::size_t i = 0; i < size(); ++i) hash = hash_bits(hash, corners_[corner(i)]);
     return hash;
   }
 

@@ -395,7 +395,7 @@ class ShadowBatch {
   };
   std::vector<Control> controls_;   // empty: none
   std::vector<RgbF> means_;         // means of points lit by an environment
-  std::vector<Vec3d> normals_;      // normals of these, in the room's picture
+  std::vector<Vec3d> normals_;      // normals of these, in the space of the environment map
   std::vector<std::size_t> pools_;  // the first point of each
   std::uint64_t pooled_ = 0;        // the last point's sequence
   std::vector<Vec3f> directions_;

@@ -22,7 +22,7 @@ struct BodyStages {
   StageStore& store;
   const WalkStore& walks;
   bool expects_edits;
-  std::size_t most_cache_places;  ///< most cache places of the body's surface cache; known at `finish`
+  std::size_t most_cache_places;  ///< limit of the body's surface cache; known at `finish`
 
   /// Key of the light transmitted at the samples from all lights.
   StageKey transmitted_key() const {

@@ -63,7 +63,7 @@ void keep_mirrored_outside(SurfacePoint& point, const Vec3f& direction) {
   point.normal = normalized(normalized(mirrored + point.geometric * (kLeastCosine - cosine)) - d);
 }
 
-/// AngularExit for the fraction of what leaves coming from inside.
+/// AngularExit, applied to the subsurface fraction of the exitance.
 RgbF scattered_exit(const AngularExit& exit, float cosine, const SurfaceHits& hits, const LeavingLight& light,
                     std::size_t i) {
   RgbF factor = exit.at(cosine);

@@ -73,8 +73,8 @@ std::vector<KeyInfo> medium_rows() {
           kTextureMixNames),
       row("medium", "thickness", length, "", kFiniteNumber,
           "`\"auto\"`: thickness of flat bodies; otherwise that of the built-in plates, else infinite",
-          "thickness of the shapes, for `\"multipole\"`, which then replaces `\"auto\"`; light that enters "
-          "on the far side leaves on the near side"),
+          "thickness of the shapes, for `\"multipole\"`, which then replaces `\"auto\"`; transmits light "
+          "between the two sides"),
       row("medium", "profile", choice, "", kFiniteNumber, "`\"auto\"`", profile_meaning(), kProfileChoices),
       row("medium", "fit", choice, "", kFiniteNumber, "`\"refit\"`",
           "length scale of `\"normalized_diffusion\"`, which then replaces `\"auto\"`: `\"refit\"`: fitted "

@@ -246,8 +246,8 @@ std::span<const Member<Settings>> settings_members() {
           "that is shorter; smaller cells are slower and more accurate"),
       member<&Settings::reenter>(
           "reenter", flag, "", kFiniteNumber, "",
-          "`volume`: light that leaves a body, or reflects off it, may enter the same body again, as in "
-          "concavities; `false`: it is lost. Other methods: `bounces`"),
+          "`volume`: re-entry of outgoing and reflected light into the same body, as in concavities; "
+          "`false`: such light is lost. Other methods: `bounces`"),
       member<&Settings::bounces>(
           "bounces", whole_number, "", {0, 1}, "1 if one surface can light another",
           "all methods but `volume`: 1: one bounce of light between surfaces, such as from a floor to the "

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <string_view>
+
+#include "core/lower_case.h"
 
 namespace opaline {
 namespace {
@@ -33,8 +34,7 @@ constexpr std::array<Format, 15> kFormats{{{".fbx", "FBX"},
 }  // namespace
 
 std::string unread_format(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
   const auto found = std::ranges::find(kFormats, std::string_view(extension), &Format::extension);
   return found == kFormats.end() ? "" : std::string(found->name) + " is not supported; export GLB";
 }

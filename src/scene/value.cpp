@@ -2,13 +2,13 @@
 #include "opaline/scene/value.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
 
+#include "core/lower_case.h"
 #include "opaline/core/srgb.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/nearest_name.h"
@@ -45,8 +45,7 @@ int hex_digit(char c) {
 /// True for words of other languages for infinity and what is not a number.
 bool names_no_finite_number(std::string_view text) {
   if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
-  std::string word(text);
-  for (char& c : word) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::string word = in_lower_case(text);
   return word == "inf" || word == "infinity" || word == "nan";
 }
 

@@ -201,7 +201,8 @@ void Session::State::prepare(Monitor* monitor) {
     return is_needed;
   });
   std::vector<BodyStages> bodies = body_stages(input, lights);
-  for (std::size_t m = kMethodNames.size(); m-- > 0;) {
+  for (std::size_t m = kMethodNames.size();
+       m-- > 0;) {  // volume_diffusion before the bodies it leaves to profiles
     const auto is_of = [&](const BodyStages& stages) { return stages.body.plan.method == Method(m); };
     if (std::ranges::none_of(bodies, is_of)) continue;
     const SubsurfaceMethod& method = method_of(Method(m));

@@ -39,11 +39,11 @@ struct Session::State {
   void update_rays();
   void arrange_bodies();
   void update_samples(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group);
-  void keep_samples(Body& body, BodyKeys& known);
-  void cut_anew(Body& body, BodyKeys& known, const PrecomputeInput& input);
-  void place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
-                  const StageKey& key);
-  void carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input, const StageKey& key);
+  void reuse_samples(Body& body, BodyKeys& known);
+  void cut_new_samples(Body& body, BodyKeys& known, const PrecomputeInput& input);
+  void place_new_samples(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
+                         const StageKey& key);
+  void carry_samples(Body& body, BodyKeys& known, const PrecomputeInput& input, const StageKey& key);
   void update_lights(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
                      const std::vector<Light>& lights);
   void update_tint(Body& body, BodyKeys& known);

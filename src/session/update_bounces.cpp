@@ -92,12 +92,12 @@ std::vector<std::vector<RgbF>> Session::State::cached_bounces(std::span<const St
   return all;
 }
 
-/// Kept while the camera sees the same in the same light, and for drafts after that.
+/// Reuses the positions while the camera sees the same surfaces in the same light.
 void Session::State::update_bounced_places(const RenderInput& input) {
   const PrecomputeInput precompute{scene_, *world_, *rays_, plan_, input.monitor};
+  const std::vector<Light> lights = recentred_lights(scene_, *world_);
   KeyBuilder builder("bounced places", 2);
-  builder.add(view_key(precompute, mesh_keys_));
-  builder.add(surfaces_key(precompute, mesh_keys_, recentred_lights(scene_, *world_)));
+  builder.add(view_key(precompute, mesh_keys_)).add(surfaces_key(precompute, mesh_keys_, lights));
   for (const Light& light : scene_.lights) builder.add(light.is_seen);  // else surfaces behind it are seen
   for (const Body& body : bodies()) {
     const SubsurfaceMethod& method = method_of(body.plan.method);
@@ -106,7 +106,6 @@ void Session::State::update_bounced_places(const RenderInput& input) {
   // The keys of bodies say nothing where none are prepared.
   const StageKey key = is_needed() ? builder.key() : StageKey{};
   if (bounced_ != nullptr && key != StageKey{} && key == bounced_key_) return;
-  const std::vector<Light> lights = recentred_lights(scene_, *world_);
   std::vector<BodyStages> stages = body_stages(precompute, lights);
   std::optional<DirectlyLitBodies> directly_lit;  // refers to the stages
   if (is_needed()) directly_lit.emplace(stages);

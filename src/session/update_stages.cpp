@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each stage's result: kept, from the cache, or computed; under its key only once it is whole.
+// Stages that all methods share: samples and the light transmitted there. A result gets its key once it is complete.
 #include <fmt/format.h>
 
 #include "opaline/lights/light.h"
@@ -42,26 +42,26 @@ bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Setti
 
 void Session::State::update_samples(Body& body, BodyKeys& known, const PrecomputeInput& input,
                                     std::size_t group) {
-  if (body.plan.cell > 0) return cut_anew(body, known, input);
-  const StageKey anew = samples_key(input, mesh_keys_, group);
-  if (anew == known.samples_key) return keep_samples(body, known);
-  if (anew == known.origin.key) {  // back where they were placed
+  if (body.plan.cell > 0) return cut_new_samples(body, known, input);
+  const StageKey placed = samples_key(input, mesh_keys_, group);
+  if (placed == known.samples_key) return reuse_samples(body, known);
+  if (placed == known.origin.key) {  // back where they were placed
     body.surface = std::move(known.origin.surface);
     known.meshes = known.origin.meshes;
-    known.samples_key = anew;
-    return keep_samples(body, known);
+    known.samples_key = placed;
+    return reuse_samples(body, known);
   }
   if (matches_new_ || !is_from_this_plan(known.origin, input, group) ||
       has_outgrown(known.origin, body.plan, input.scene.settings) ||
       !can_carry(*known.origin.world, known.origin.meshes, *world_, body.plan.meshes))
-    return place_anew(body, known, input, group, anew);
+    return place_new_samples(body, known, input, group, placed);
   const StageKey carried =
       carried_samples_key(known.origin.key, body.plan, mesh_keys_, known.origin.world->unit / world_->unit);
-  if (carried == known.samples_key) return keep_samples(body, known);
-  carry_along(body, known, input, carried);
+  if (carried == known.samples_key) return reuse_samples(body, known);
+  carry_samples(body, known, input, carried);
 }
 
-void Session::State::keep_samples(Body& body, BodyKeys& known) {
+void Session::State::reuse_samples(Body& body, BodyKeys& known) {
   renumber(body.surface.samples, known.meshes, body.plan.meshes);
   known.meshes = body.plan.meshes;
   if (!known.is_carried()) {
@@ -72,9 +72,9 @@ void Session::State::keep_samples(Body& body, BodyKeys& known) {
 }
 
 // Next to nothing beside what follows, so they are not kept in a cache.
-void Session::State::cut_anew(Body& body, BodyKeys& known, const PrecomputeInput& input) {
+void Session::State::cut_new_samples(Body& body, BodyKeys& known, const PrecomputeInput& input) {
   const StageKey key = cut_surface_key(body.plan, mesh_keys_, world_->unit);
-  if (key == known.samples_key) return keep_samples(body, known);
+  if (key == known.samples_key) return reuse_samples(body, known);
   if (anchored_ && !known.is_carried()) known.origin.surface = std::move(body.surface);
   if (!anchored_) known.origin = {};
   known.samples_key = {};
@@ -87,8 +87,8 @@ void Session::State::cut_anew(Body& body, BodyKeys& known, const PrecomputeInput
   note_decision(body, fmt::format("{} samples placed", body.surface.samples.size()));
 }
 
-void Session::State::place_anew(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group,
-                                const StageKey& key) {
+void Session::State::place_new_samples(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                                       std::size_t group, const StageKey& key) {
   const Settings& settings = input.scene.settings;
   if (anchored_ && !known.is_carried()) known.origin.surface = std::move(body.surface);
   known.samples_key = {};
@@ -121,8 +121,8 @@ void Session::State::place_anew(Body& body, BodyKeys& known, const PrecomputeInp
       body, fmt::format("{} samples {}", body.surface.samples.size(), found ? "from the cache" : "placed"));
 }
 
-void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeInput& input,
-                                 const StageKey& key) {
+void Session::State::carry_samples(Body& body, BodyKeys& known, const PrecomputeInput& input,
+                                   const StageKey& key) {
   if (!known.is_carried()) known.origin.surface = std::move(body.surface);
   known.samples_key = {};
   const SamplesCodec codec{{*world_, body.plan.meshes, carried_count(known.origin, body.plan)}};
@@ -131,8 +131,8 @@ void Session::State::carry_along(Body& body, BodyKeys& known, const PrecomputeIn
     note_decision(body, fmt::format("{} samples from the cache", body.surface.samples.size()));
   } else {
     CarriedSamples carried =
-        carry_samples({*known.origin.world, known.origin.meshes, *world_, body.plan.meshes,
-                       known.origin.surface, known.origin.cells, input.monitor});
+        opaline::carry_samples({*known.origin.world, known.origin.meshes, *world_, body.plan.meshes,
+                                known.origin.surface, known.origin.cells, input.monitor});
     body.surface = std::move(carried.surface);
     work_.samples_carried += body.surface.samples.size() - carried.added;
     work_.samples_placed += carried.added;

@@ -29,7 +29,7 @@ double golden_point(std::size_t i) {
 constexpr std::size_t kDirections = 8;  // towards what is no point
 constexpr std::size_t kAllAround = 3;   // directions of uniform light; neighbours use others
 
-/// Directions that light comes from, each with its fraction of what enters there.
+/// Incident directions with their fractions of the transmitted flux.
 struct Directions {
   struct One {
     Vec3f outward;

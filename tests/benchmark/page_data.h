@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a report's page draws.
+// Data of a report's page.
 #pragma once
 
 #include <string>

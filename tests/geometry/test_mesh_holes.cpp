@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Open and non-manifold meshes are reported; holes are filled where that is asked for.
+// Open and non-manifold meshes are reported; fill_holes fills holes.
 #include <algorithm>
 #include <cmath>
 

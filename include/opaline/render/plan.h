@@ -22,9 +22,9 @@ struct GroupPlan {
   double thickness = 0;               ///< mean, mm: twice the volume over the area; 0 if a mesh is open
   double alignment = 0;               ///< BodyShape::alignment
   BodyModel model = {};
-  /// That of the settings, or another one if that does not suit the body.
+  /// Method of the settings, or a replacement if the body lacks its requirements.
   Method method = Method::hierarchical;
-  std::string reason_against_method = {};  ///< why not that of the settings; empty: it is that
+  std::string reason_against_method = {};  ///< reason for a replacement; empty: none
   double smallest_mean_free_path = 0;      ///< over the scattering channels, mm
   double spacing = 0;                      ///< sqrt(area / samples), mm
   std::size_t samples = 0;

@@ -8,9 +8,9 @@
 
 namespace opaline {
 
-/// Radiance of what leaves a half space in even light from all around, over that of as much light behind the boundary
-/// that comes to it evenly from all sides: 1 where nothing is absorbed, else more towards the horizon, whence light comes
-/// that did not go deep. By reciprocity it goes as the share coming back of what enters at that angle.
+/// Outgoing radiance of a half space in uniform light, relative to isotropic light of the same flux behind the boundary: 1
+/// without absorption; otherwise larger near the horizon, where light has shallow paths. By reciprocity it is proportional
+/// to the reflected fraction of light incident at that angle.
 /// from  HalfSpace; measured against random walks in src/volume/README.md
 class AngularExit {
  public:

@@ -126,10 +126,10 @@ struct WalkEnd {
   double unfinished = 0;  ///< weight inside at the end of an unfinished walk
 };
 
-/// Follows one walk to its end; `walk` is left as it was last.
+/// Follows one walk to its end; `walk` then has its last state.
 /// in    body.ahead(position, direction): BoundaryAhead of a ray starting inside
-///       watcher.visit(walk, ahead, crossing): told before every flight
-///       watcher.leave(LeavingLight): told of all light leaving
+///       watcher.visit(walk, ahead, crossing): called before every flight
+///       watcher.leave(LeavingLight): called at every exit
 ///       most_collisions: a walk with as many is given up
 /// out   mean over walks: weight that left + absorbed + unfinished = weight at the start
 template <class Body, class Watcher>

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <utility>
 
+#include "core/lower_case.h"
 #include "geometry/formats/file_checks.h"
 #include "geometry/formats/mesh_format.h"
 #include "geometry/formats/text_cursor.h"
@@ -86,12 +86,6 @@ std::vector<Vec3f> read_binary(const std::string& path, const std::string& bytes
   return corners;
 }
 
-std::string lower(std::string_view word) {
-  std::string text(word);
-  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 /// Other statements than the loops around the corners; what follows them on their line is not read.
 constexpr std::array<std::string_view, 5> line_keywords{"solid", "endsolid", "facet", "endloop", "endfacet"};
 
@@ -111,7 +105,7 @@ class TextStlReader {
   void statement() {
     const std::string_view word = at_.word();
     if (word.empty()) return;
-    const std::string keyword = lower(word);
+    const std::string keyword = in_lower_case(word);
     if (keyword == "outer") return loop();
     if (keyword == "solid") ended_ = false;
     if (keyword == "endsolid") ended_ = true;
@@ -125,7 +119,7 @@ class TextStlReader {
       at_.next_line();
       Vec3d position;
       const std::string_view keyword = at_.word();
-      bool good = lower(keyword) == "vertex";
+      bool good = in_lower_case(keyword) == "vertex";
       for (std::size_t i = 0; i < 3 && good; ++i) good = parse_number(at_.word(), position[i]);
       if (!good)
         throw bad_line(path_, at_.line(), "bad corner of a triangle", "vertex and three numbers",
@@ -145,7 +139,8 @@ class TextStlReader {
 SourceMesh read_stl(const std::string& path, std::string& bytes, MeshUvs) {
   const bool exact = bytes.size() >= binary_header && bytes.size() == binary_size(bytes);
   if (!exact) drop_byte_order_mark(path, bytes);
-  const bool text = lower(TextCursor(bytes).word_across_lines()) == "solid" && bytes.find('\0') == bytes.npos;
+  const bool text =
+      in_lower_case(TextCursor(bytes).word_across_lines()) == "solid" && bytes.find('\0') == bytes.npos;
   const bool binary = exact || !text;
   const std::vector<Vec3f> corners = binary ? read_binary(path, bytes) : TextStlReader(path, bytes).run();
   const std::size_t surplus = binary ? bytes.size() - binary_size(bytes) : 0;

@@ -157,7 +157,7 @@ void HierarchicalMethod::add_bounced(BodyStages& stages, std::span<const RgbF> b
 std::unique_ptr<MethodState> HierarchicalMethod::direct_state(const BodyStages& stages) const {
   const HierarchicalState& state = hierarchical_state(stages.body);
   auto direct = std::make_unique<HierarchicalState>();
-  direct->kernels = state.kernels;
+  direct->kernels.value.kernel = state.kernel();
   direct->cloud = state.cloud;
   direct->tree.value =
       gather_flux(stages.body.surface.samples, entered_irradiance(stages.body, stages.lights));

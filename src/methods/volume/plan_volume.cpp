@@ -29,8 +29,7 @@ double VolumeMethod::seconds(const Scene& scene, const GroupPlan& body, const Li
 
 std::string VolumeMethod::light_stage(const Scene& scene, std::span<const Light>) const {
   const Settings& settings = scene.settings;
-  const std::string reentry = settings.reenter ? "; light that leaves may re-enter"
-                                               : "; light that leaves does not re-enter (settings.reenter)";
+  const std::string reentry = settings.reenter ? "; with re-entry" : "; without re-entry (settings.reenter)";
   if (settings.until_error)
     return fmt::format("random walks, until the noise of the cells is {:.3g} %",
                        100 * *settings.until_error) +

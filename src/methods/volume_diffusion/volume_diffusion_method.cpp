@@ -58,9 +58,10 @@ const VolumeDiffusionState& volume_diffusion_state(const Body& body) {
 void VolumeDiffusionMethod::prepare(BodyStages& stages) const {
   auto& state = state_of<VolumeDiffusionState>(stages.body);
   const Body& body = stages.body;
+  const StageKey cells = cells_key(stages);
   const StageKey key =
-      KeyBuilder("diffusion", kDiffusionVersion).add(cells_key(stages)).add(stages.transmitted_key()).key();
-  const bool has_cells = state.cells.value != nullptr && state.cells.key == cells_key(stages);
+      KeyBuilder("diffusion", kDiffusionVersion).add(cells).add(stages.transmitted_key()).key();
+  const bool has_cells = state.cells.value != nullptr && state.cells.key == cells;
   const ResultSource source =
       stages.store.get(state.direct, key, VolumeCodec{body.surface.samples.size()}, [&] {
         return update_cells(stages).exitance(stages.lights, body.transfers, body.entering,

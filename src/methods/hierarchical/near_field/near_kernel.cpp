@@ -19,9 +19,10 @@ constexpr double kBeyondReach = 0.02;  // fraction of a kernel beyond its reach
 
 NearKernel::NearKernel(const Body& group) : radius(hierarchical_state(group).kernel().radius) {
   const double h = double(radius);
+  const auto& own_irradiance = hierarchical_state(group).kernel().own_irradiance;
   std::array<double, kRings> mean_rings{};
   for (std::size_t c = 0; c < 3; ++c) {
-    if (!(hierarchical_state(group).kernel().own_irradiance[c] > 0)) continue;
+    if (!(own_irradiance[c] > 0)) continue;
     std::array<double, kRings> rings;
     for (std::size_t i = 0; i < kRings; ++i)
       rings[i] = near_ring(group.profile.channels[c], h, (double(i) + 0.5) / kRings);

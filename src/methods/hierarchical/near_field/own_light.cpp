@@ -35,8 +35,9 @@ std::uint64_t key_of(const Vec3f& p) {
 }  // namespace
 
 bool can_hold_own_light(const Scene& scene, const World& world, const Body& group) {
-  const auto& own = hierarchical_state(group).kernel().own_irradiance;
-  return bounces_of(scene) == 0 && hierarchical_state(group).kernel().needs_irradiance() &&
+  const SplitKernel& kernel = hierarchical_state(group).kernel();
+  const auto& own = kernel.own_irradiance;
+  return bounces_of(scene) == 0 && kernel.needs_irradiance() &&
          std::ranges::all_of(own, [](float s) { return s <= kSharp; }) &&
          std::ranges::none_of(group.plan.meshes,
                               [&](std::uint32_t m) { return world.meshes[m].normals.empty(); });
