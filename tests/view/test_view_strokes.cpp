@@ -200,12 +200,12 @@ void strike_in_turns(StrokedView& view, int at_once, int one_by_one) {
 // between page, server and renderer, or a stage that is kept lacks in its key what it depends on.
 TEST(ViewStrokes, LeadToTheirPicture) {
   StrokedView view(kStill, 1);
-  for (int i = 0; i < 4; ++i) strike_in_turns(view, 7, 8);
+  for (int i = 0; i < 2; ++i) strike_in_turns(view, 7, 8);
 }
 
 TEST(ViewStrokes, LeadToTheirPictureInFrames) {
   StrokedView view(kRising, 2);
-  for (int i = 0; i < 4; ++i) strike_in_turns(view, 11, 4);
+  for (int i = 0; i < 2; ++i) strike_in_turns(view, 11, 4);
 }
 
 /// Whether readings that are taken after equal numbers of strokes stay: the least of the last quarter is not above the most
