@@ -123,7 +123,10 @@ TEST(SessionCache, SpoiledEntry) {
 TEST(SessionCache, WalkedProfilesAreKept) {
   const ScratchFolder folder;
   Scene scene = two_balls();
-  for (Medium& medium : scene.media) medium.profile = ProfileKind::tabulated;
+  for (Medium& medium : scene.media) {
+    medium.profile = ProfileKind::tabulated;
+    medium.eta = 1.37;  // no other test of this process tabulates it: a shape in memory would not be written
+  }
   std::vector<Image> pictures;
   for (int run = 0; run < 2; ++run) {
     StageCache cache(folder.path.string());
