@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <utility>
 
 #include "cli/commands.h"
 #include "cli/compare_report.h"

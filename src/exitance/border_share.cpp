@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exitance/border_share.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>

@@ -13,7 +13,6 @@
 #include "lights/all_lights.h"
 #include "opaline/scene/json_tree.h"
 #include "opaline/scene/mesh_formats.h"
-#include "opaline/scene/names.h"
 #include "scene/key_rows.h"
 #include "scene/settings_table.h"
 

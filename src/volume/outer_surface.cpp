@@ -2,10 +2,7 @@
 #include "volume/outer_surface.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "opaline/core/random.h"
 
 namespace opaline {
 namespace {

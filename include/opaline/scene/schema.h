@@ -4,11 +4,9 @@
 // their JSON Schema.
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "opaline/scene/scene.h"
 

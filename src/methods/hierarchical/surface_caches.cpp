@@ -2,7 +2,6 @@
 #include "methods/hierarchical/surface_caches.h"
 
 #include <algorithm>
-#include <functional>
 
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/near_field/own_light.h"
