@@ -68,11 +68,6 @@ struct SlabWalks {
   std::vector<WalkedCosine> albedo_by_entry;
 };
 
-/// The fraction of the incident flux for a fraction of what entered.
-inline WalkedValue per_incident(const SlabWalks& walks, const WalkedValue& share) {
-  return {share.value * walks.entered, share.error * walks.entered};
-}
-
 inline constexpr std::size_t kWalkBatches = 512;
 
 struct LaboratorySettings {
