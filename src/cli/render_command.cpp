@@ -14,7 +14,6 @@
 #include "cli/render_outputs.h"
 #include "cli/report.h"
 #include "cli/resumable_state.h"
-#include "cli/resumable_walks.h"
 #include "cli/stages.h"
 #include "methods/method.h"
 #include "methods/volume/volume_state.h"
