@@ -15,10 +15,7 @@ constexpr float kCoarseSize = 4;        // and how many of them the size of a pa
 
 Sphere bounds_of(std::span<const Query> queries, std::span<const std::uint32_t> order) {
   Vec3f low = queries[order[0]].position, high = low;
-  for (const std::uint32_t q : order) {
-    low = component_min(low, queries[q].position);
-    high = component_max(high, queries[q].position);
-  }
+  for (const std::uint32_t q : order) widen(low, high, queries[q].position);
   return around(low, high);
 }
 

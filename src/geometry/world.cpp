@@ -103,6 +103,13 @@ double unit_of(const Scene& scene, std::span<const Bounds> boxes, double diagona
 
 }  // namespace
 
+Bounds bounds(const World& world, std::span<const std::uint32_t> meshes) {
+  Bounds box;
+  for (const std::uint32_t m : meshes)
+    for (const Vec3d& p : world.meshes[m].positions) widen(box.low, box.high, p);
+  return box;
+}
+
 World make_world(const Scene& scene) {
   std::size_t loaded = 0;
   return update_world(scene, {}, std::vector<std::optional<std::size_t>>(scene.shapes.size()), loaded);

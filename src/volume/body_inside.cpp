@@ -33,13 +33,8 @@ bool leaves(const TracedRay& traced) {
 }  // namespace
 
 BodyInside::BodyInside(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes)
-    : rays_(rays), is_body_(world.meshes.size()) {
-  for (const std::uint32_t m : meshes) {
-    is_body_[m] = true;
-    const Bounds box = bounds(world.meshes[m]);
-    box_.low = component_min(box_.low, box.low);
-    box_.high = component_max(box_.high, box.high);
-  }
+    : rays_(rays), is_body_(world.meshes.size()), box_(bounds(world, meshes)) {
+  for (const std::uint32_t m : meshes) is_body_[m] = true;
   overlaps_ = find_overlaps(world, meshes);
 }
 

@@ -205,12 +205,7 @@ BodyWalks::BodyWalks(const VolumeInput& input, std::size_t starts)
 
 double BodyWalks::expected_bytes(const World& world, std::span<const std::uint32_t> meshes,
                                  double mean_free_path) {
-  Bounds box;
-  for (const std::uint32_t m : meshes) {
-    const Bounds other = bounds(world.meshes[m]);
-    box = {component_min(box.low, other.low), component_max(box.high, other.high)};
-  }
-  return FreeDistance::expected_bytes(world, box, kVoxel * mean_free_path);
+  return FreeDistance::expected_bytes(world, bounds(world, meshes), kVoxel * mean_free_path);
 }
 
 SphereExits BodyWalks::exits_of(std::size_t pass) const {

@@ -81,12 +81,7 @@ DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshe
 
 Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell) {
   constexpr int kMultiple = 2 * DiffusionGrid::kLargest;  // multiple that allows cells of twice the size
-  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  for (const std::uint32_t m : meshes)
-    for (const Vec3d& p : world.meshes[m].positions) {
-      low = component_min(low, p);
-      high = component_max(high, p);
-    }
+  const auto [low, high] = bounds(world, meshes);
   // No plane of the lattice in a face of a box.
   const Vec3d margin = Vec3d(1.3713, 1.4289, 1.3317) * cell;
   const auto cells = [&](double extent) {
