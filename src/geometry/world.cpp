@@ -103,6 +103,12 @@ double unit_of(const Scene& scene, std::span<const Bounds> boxes, double diagona
 
 }  // namespace
 
+double area_of(const World& world, std::span<const std::uint32_t> meshes) {
+  double area = 0;
+  for (const std::uint32_t m : meshes) area += world.measures[m].area;
+  return area;
+}
+
 Bounds bounds(const World& world, std::span<const std::uint32_t> meshes) {
   Bounds box;
   for (const std::uint32_t m : meshes)
