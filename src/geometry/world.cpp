@@ -116,6 +116,19 @@ Bounds bounds(const World& world, std::span<const std::uint32_t> meshes) {
   return box;
 }
 
+bool boxes_meet(const World& world, std::span<const std::uint32_t> meshes) {
+  std::vector<Bounds> boxes;
+  for (const std::uint32_t m : meshes) {
+    const Bounds box = bounds(world.meshes[m]);
+    for (const Bounds& other : boxes) {
+      const Vec3d gap = component_max(box.low, other.low) - component_min(box.high, other.high);
+      if (gap.x <= 0 && gap.y <= 0 && gap.z <= 0) return true;
+    }
+    boxes.push_back(box);
+  }
+  return false;
+}
+
 World make_world(const Scene& scene) {
   std::size_t loaded = 0;
   return update_world(scene, {}, std::vector<std::optional<std::size_t>>(scene.shapes.size()), loaded);

@@ -29,19 +29,6 @@ bool leaves(const Hit& hit, const Vec3d& direction) {
   return dot(Vec3d(hit.edges_cross), direction) > 0;
 }
 
-bool boxes_meet(const World& world, std::span<const std::uint32_t> meshes) {
-  std::vector<Bounds> boxes;
-  for (const std::uint32_t m : meshes) {
-    const Bounds box = bounds(world.meshes[m]);
-    for (const Bounds& other : boxes) {
-      const Vec3d gap = component_max(box.low, other.low) - component_min(box.high, other.high);
-      if (gap.x <= 0 && gap.y <= 0 && gap.z <= 0) return true;
-    }
-    boxes.push_back(box);
-  }
-  return false;
-}
-
 }  // namespace
 
 /// Winding numbers of the meshes on both sides of a piece.

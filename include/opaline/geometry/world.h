@@ -40,6 +40,8 @@ inline Vec3d out_of_world(const World& world, const Vec3d& p) {
 
 /// The smallest box around these meshes, units; of none low > high.
 Bounds bounds(const World& world, std::span<const std::uint32_t> meshes);
+/// True if the boxes of two of them meet.
+bool boxes_meet(const World& world, std::span<const std::uint32_t> meshes);
 /// Their area, square units.
 double area_of(const World& world, std::span<const std::uint32_t> meshes);
 
