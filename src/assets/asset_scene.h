@@ -73,10 +73,7 @@ std::string scene_text(const AssetScene& scene, const std::string& asset);
 template <class ForEachPoint>
 void enclose(AssetScene& scene, const ForEachPoint& for_each_point) {
   Vec3d low(1e300), high(-1e300);
-  for_each_point([&](const Vec3d& p) {
-    low = component_min(low, p);
-    high = component_max(high, p);
-  });
+  for_each_point([&](const Vec3d& p) { widen(low, high, p); });
   scene.center = low * .5 + high * .5;
   double square = 0;
   for_each_point([&](const Vec3d& p) { square = std::max(square, dot(p - scene.center, p - scene.center)); });

@@ -151,43 +151,38 @@ class AccessorReader {
   std::size_t size_ = 0;  // size of a component, bytes
 };
 
+/// make(numbers of an element): the element.
+template <std::size_t kNumbers, class Make>
+auto read_elements(const GltfModel& gltf, std::uint32_t index, std::string_view type, const Make& make) {
+  const std::vector<double> numbers = AccessorReader(gltf, index).run(type, kNumbers);
+  std::vector<decltype(make(numbers.data()))> elements;
+  elements.reserve(numbers.size() / kNumbers);
+  for (std::size_t i = 0; i < numbers.size(); i += kNumbers) elements.push_back(make(numbers.data() + i));
+  return elements;
+}
+
 }  // namespace
 
 std::vector<Vec3d> read_vectors(const GltfModel& gltf, std::uint32_t index) {
-  const std::vector<double> numbers = AccessorReader(gltf, index).run("VEC3", 3);
-  std::vector<Vec3d> vectors;
-  vectors.reserve(numbers.size() / 3);
-  for (std::size_t i = 0; i < numbers.size(); i += 3)
-    vectors.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
-  return vectors;
+  return read_elements<3>(gltf, index, "VEC3", [](const double* v) { return Vec3d(v[0], v[1], v[2]); });
 }
 
 std::vector<std::array<double, 4>> read_quadruples(const GltfModel& gltf, std::uint32_t index) {
-  const std::vector<double> numbers = AccessorReader(gltf, index).run("VEC4", 4);
-  std::vector<std::array<double, 4>> quadruples;
-  quadruples.reserve(numbers.size() / 4);
-  for (std::size_t i = 0; i < numbers.size(); i += 4)
-    quadruples.push_back({numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3]});
-  return quadruples;
+  return read_elements<4>(gltf, index, "VEC4", [](const double* v) {
+    return std::array{v[0], v[1], v[2], v[3]};
+  });
 }
 
 std::vector<std::array<float, 2>> read_pairs(const GltfModel& gltf, std::uint32_t index) {
-  const std::vector<double> numbers = AccessorReader(gltf, index).run("VEC2", 2);
-  std::vector<std::array<float, 2>> pairs;
-  pairs.reserve(numbers.size() / 2);
-  for (std::size_t i = 0; i < numbers.size(); i += 2)
-    pairs.push_back({float(numbers[i]), float(numbers[i + 1])});
-  return pairs;
+  return read_elements<2>(gltf, index, "VEC2", [](const double* v) {
+    return std::array{float(v[0]), float(v[1])};
+  });
 }
 
 std::vector<Transform> read_matrices(const GltfModel& gltf, std::uint32_t index) {
-  const std::vector<double> numbers = AccessorReader(gltf, index).run("MAT4", 16);
-  std::vector<Transform> matrices;
-  for (std::size_t i = 0; i < numbers.size(); i += 16) {
-    const double* const m = numbers.data() + i;
-    matrices.push_back({{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}});
-  }
-  return matrices;
+  return read_elements<16>(gltf, index, "MAT4", [](const double* m) {
+    return Transform{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+  });
 }
 
 void check_unsigned(const GltfModel& gltf, std::uint32_t index) {
@@ -199,11 +194,7 @@ void check_unsigned(const GltfModel& gltf, std::uint32_t index) {
 
 std::vector<std::uint32_t> read_indices(const GltfModel& gltf, std::uint32_t index) {
   check_unsigned(gltf, index);
-  const std::vector<double> numbers = AccessorReader(gltf, index).run("SCALAR", 1);
-  std::vector<std::uint32_t> indices;
-  indices.reserve(numbers.size());
-  for (const double value : numbers) indices.push_back(std::uint32_t(value));
-  return indices;
+  return read_elements<1>(gltf, index, "SCALAR", [](const double* v) { return std::uint32_t(*v); });
 }
 
 }  // namespace opaline

@@ -51,10 +51,14 @@ const Json* GltfRecord::find(const char* key) const {
   return found == json_->end() ? nullptr : &*found;
 }
 
-const Json* GltfRecord::find_list(const char* key) const {
-  const Json* const value = find(key);
-  if (value != nullptr && !value->is_array()) fail(key, "is of the wrong type", "a list", shown(*value));
-  return value;
+template <class Read>
+auto GltfRecord::list_of(const char* key, const Read& read) const {
+  std::vector<decltype(read(Json(), std::string()))> values;
+  const Json* const list = find(key);
+  if (list == nullptr) return values;
+  if (!list->is_array()) fail(key, "is of the wrong type", "a list", shown(*list));
+  for (std::size_t i = 0; i < list->size(); ++i) values.push_back(read((*list)[i], key_at(key, i)));
+  return values;
 }
 
 double GltfRecord::number_of(const Json& value, const std::string& key) const {
@@ -82,10 +86,7 @@ std::uint32_t GltfRecord::index(const char* key) const {
 }
 
 std::vector<std::uint32_t> GltfRecord::indices(const char* key) const {
-  std::vector<std::uint32_t> indices;
-  if (const Json* const list = find_list(key))
-    for (std::size_t i = 0; i < list->size(); ++i) indices.push_back(index_of((*list)[i], key_at(key, i)));
-  return indices;
+  return list_of(key, [&](const Json& value, const std::string& place) { return index_of(value, place); });
 }
 
 std::size_t GltfRecord::size(const char* key, std::size_t otherwise) const {
@@ -99,10 +100,7 @@ double GltfRecord::number(const char* key, double otherwise) const {
 }
 
 std::vector<double> GltfRecord::numbers(const char* key) const {
-  std::vector<double> numbers;
-  if (const Json* const list = find_list(key))
-    for (std::size_t i = 0; i < list->size(); ++i) numbers.push_back(number_of((*list)[i], key_at(key, i)));
-  return numbers;
+  return list_of(key, [&](const Json& value, const std::string& place) { return number_of(value, place); });
 }
 
 std::vector<double> GltfRecord::numbers(const char* key, std::size_t count) const {
@@ -127,13 +125,10 @@ std::string GltfRecord::text(const char* key, const char* otherwise) const {
 }
 
 std::vector<std::string> GltfRecord::texts(const char* key) const {
-  std::vector<std::string> texts;
-  if (const Json* const list = find_list(key))
-    for (std::size_t i = 0; i < list->size(); ++i) {
-      if (!(*list)[i].is_string()) fail(key_at(key, i), "is of the wrong type", "a text", shown((*list)[i]));
-      texts.push_back((*list)[i].get<std::string>());
-    }
-  return texts;
+  return list_of(key, [&](const Json& value, const std::string& place) {
+    if (!value.is_string()) fail(place, "is of the wrong type", "a text", shown(value));
+    return value.get<std::string>();
+  });
 }
 
 GltfRecord GltfRecord::record(const char* key) const {
@@ -142,13 +137,9 @@ GltfRecord GltfRecord::record(const char* key) const {
 }
 
 std::vector<GltfRecord> GltfRecord::records(const char* key) const {
-  std::vector<GltfRecord> records;
-  if (const Json* const list = find_list(key))
-    for (std::size_t i = 0; i < list->size(); ++i) {
-      const std::string name = key_at(key, i);
-      records.emplace_back(*path_, place_.empty() ? name : place_ + '.' + name, (*list)[i]);
-    }
-  return records;
+  return list_of(key, [&](const Json& value, const std::string& place) {
+    return GltfRecord(*path_, place_.empty() ? place : place_ + '.' + place, value);
+  });
 }
 
 std::vector<std::string> GltfRecord::keys() const {

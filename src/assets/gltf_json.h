@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,7 +54,9 @@ class GltfRecord {
 
  private:
   const Json* find(const char* key) const;
-  const Json* find_list(const char* key) const;
+  /// read(value, its place): a value of the list.
+  template <class Read>
+  auto list_of(const char* key, const Read& read) const;
   double number_of(const Json& value, const std::string& key) const;
   std::size_t size_of(const Json& value, const std::string& key) const;
   std::uint32_t index_of(const Json& value, const std::string& key) const;

@@ -242,11 +242,6 @@ Transform rotation(const std::array<double, 4>& quaternion) {
           {}};
 }
 
-Transform compose(const Transform& second, const Transform& first) {
-  const auto linear = [&](const Vec3d& v) { return second.x * v.x + second.y * v.y + second.z * v.z; };
-  return {linear(first.x), linear(first.y), linear(first.z), transform_point(second, first.translation)};
-}
-
 Transform node_to_world(const GltfModel& gltf, std::size_t node) {
   Transform to_world = gltf.nodes[node].to_parent();
   std::size_t steps = 0;

@@ -110,7 +110,4 @@ Transform node_to_world(const GltfModel& gltf, std::size_t node);
 /// Turns as a quaternion x, y, z, w says, of any length but 0.
 Transform rotation(const std::array<double, 4>& quaternion);
 
-/// First `first`, then `second`.
-Transform compose(const Transform& second, const Transform& first);
-
 }  // namespace opaline

@@ -34,23 +34,10 @@ struct SurfaceModel {
 
 // OpenPBR 1.1; Autodesk Standard Surface 1.0.1.
 constexpr std::array<SurfaceModel, 2> models{
-    {{"open_pbr_surface",
-      "base_weight",
-      "base_color",
-      "subsurface_weight",
-      "subsurface_color",
-      "subsurface_radius",
-      "subsurface_radius_scale",
-      "subsurface_scatter_anisotropy",
-      "specular_ior",
-      "base_metalness",
-      "specular_weight",
-      "specular_roughness_anisotropy",
-      "geometry_normal",
-      Vec3d(.8),
-      {1, .5, .25},
-      .3,
-      false},
+    {{"open_pbr_surface", "base_weight", "base_color", "subsurface_weight", "subsurface_color",
+      "subsurface_radius", "subsurface_radius_scale", "subsurface_scatter_anisotropy", "specular_ior",
+      "base_metalness", "specular_weight", "specular_roughness_anisotropy", "geometry_normal", Vec3d(.8),
+      Vec3d(1, .5, .25), .3, false},
      {"standard_surface", "base", "base_color", "subsurface", "subsurface_color", "subsurface_radius",
       "subsurface_scale", "subsurface_anisotropy", "specular_IOR", "metalness", "specular",
       "specular_anisotropy", "normal", Vec3d(1), Vec3d(1), .2, true}}};

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "assets/asset_scene.h"
 #include "assets/text_lines.h"
 #include "core/lower_case.h"
 #include "opaline/assets/obj_material.h"

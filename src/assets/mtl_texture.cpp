@@ -37,11 +37,10 @@ class StatementReader {
 
   MtlTexture run() {
     for (const Option* option = next_option(); option != nullptr; option = next_option()) {
-      take_word();
+      next_word(rest_);
       read(*option);
     }
-    skip_blanks();
-    rest_ = rest_.substr(0, rest_.find_last_not_of(kLineBlanks) + 1);
+    rest_ = trimmed(rest_);
     if (rest_.size() > 1 && rest_.front() == '"' && rest_.back() == '"')
       rest_ = rest_.substr(1, rest_.size() - 2);
     texture_.name = rest_;
@@ -49,21 +48,9 @@ class StatementReader {
   }
 
  private:
-  void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(kLineBlanks), rest_.size())); }
-
-  std::string_view next_word() {
-    skip_blanks();
-    return rest_.substr(0, rest_.find_first_of(kLineBlanks));
-  }
-
-  std::string_view take_word() {
-    const std::string_view word = next_word();
-    rest_.remove_prefix(word.size());
-    return word;
-  }
-
   const Option* next_option() {
-    const auto found = std::ranges::find(kOptions, next_word(), &Option::name);
+    std::string_view ahead = rest_;
+    const auto found = std::ranges::find(kOptions, next_word(ahead), &Option::name);
     return found == kOptions.end() ? nullptr : &*found;
   }
 
@@ -73,9 +60,11 @@ class StatementReader {
     std::vector<double> numbers;
     std::string word;
     for (std::size_t i = 0; i < option.words; ++i) {
-      const std::optional<double> number = number_of(next_word());
+      std::string_view behind = rest_;
+      word = next_word(behind);
+      const std::optional<double> number = number_of(word);
       if (option.are_numbers && !number) break;
-      word = take_word();
+      rest_ = behind;
       text += ' ' + word;
       if (number) numbers.push_back(*number);
     }

@@ -4,13 +4,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
-#include "benchmark/figures.h"
 #include "core/log.h"
 #include "opaline/core/units.h"
 
 namespace opaline {
 namespace {
+
+/// Three digits, and no more zeros than it takes: 0.0012, 0.0123, 1.23, 123, 12345.
+std::string figure(double value) {
+  if (value == 0 || !std::isfinite(value)) return fmt::format("{}", value);
+  const int places = 2 - int(std::floor(std::log10(std::abs(value))));
+  return fmt::format("{:.{}f}", value, std::clamp(places, 0, 4));
+}
 
 std::string median(const Spread& spread, double scale = 1) {
   return spread.runs > 0 ? figure(scale * spread.median) : "-";
@@ -116,5 +124,4 @@ void print_regression(const Regression& regression, const std::string& before) {
   }
   for (const std::string& name : regression.unmatched) write_line(stdout, "not in both: " + name);
 }
-
 }  // namespace opaline

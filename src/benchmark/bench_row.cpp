@@ -51,6 +51,14 @@ Spread ratios(std::span<const BenchRun> runs, std::span<const BenchRun> lambert,
 
 }  // namespace
 
+Spread spread_of(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (values.empty()) return {};
+  std::ranges::sort(values);
+  const std::size_t n = values.size();
+  return {n, (values[(n - 1) / 2] + values[n / 2]) / 2, values.front(), values.back()};
+}
+
 BenchRow summarize(const std::string& scene, const Rung& rung, std::span<const BenchRun> runs,
                    std::span<const BenchRun> lambert) {
   BenchRow row;

@@ -14,9 +14,18 @@
 #include "benchmark/error_budget.h"
 #include "benchmark/ladder.h"
 #include "benchmark/picture_error.h"
-#include "benchmark/spread.h"
 
 namespace opaline {
+
+/// Statistics of repeated measurements.
+struct Spread {
+  std::size_t runs = 0;  ///< 0: nothing was measured, and the rest says nothing
+  double median = 0;     ///< median of an even number: the mean of the two in the middle
+  double low = 0, high = 0;
+};
+
+/// Over the values that are finite: the others were not measured (a rate without time).
+Spread spread_of(std::vector<double> values);
 
 /// The stages of a rendering that are told apart.
 inline constexpr std::array<std::string_view, 11> kBenchStages{

@@ -35,7 +35,7 @@ class Columns {
   void add_spread(const std::string& name, const std::string& unit, double scale, const Find& find) {
     const auto part = [&](const char* suffix, double Spread::*value) {
       add(name + suffix, unit, [=](const BenchRow& row) {
-        const Spread& spread = find(row);
+        const Spread& spread = std::invoke(find, row);
         return spread.runs > 0 ? number(scale * spread.*value) : std::string();
       });
     };
@@ -48,7 +48,7 @@ class Columns {
   void add_cost(const std::string& name, const Find& find) {
     const auto part = [&](const char* suffix, const char* unit, double scale, Spread CostSpread::*value) {
       add_spread(name + suffix, unit, scale,
-                 [=](const BenchRow& row) -> const Spread& { return find(row).*value; });
+                 [=](const BenchRow& row) -> const Spread& { return std::invoke(find, row).*value; });
     };
     part("_user", "s", 1, &CostSpread::user);
     part("_system", "s", 1, &CostSpread::system);
@@ -76,44 +76,37 @@ class Columns {
 };
 
 void add_names(Columns& columns) {
-  columns.add("scene", "", [](const BenchRow& row) { return row.scene; });
+  columns.add("scene", "", &BenchRow::scene);
   columns.add("rung", "", [](const BenchRow& row) { return name_of(row.rung); });
   columns.add("method", "", [](const BenchRow& row) { return row.rung.method; });
   columns.add("evaluator", "", [](const BenchRow& row) { return row.rung.evaluator; });
   columns.add("knob", "", [](const BenchRow& row) { return row.rung.knob; });
   columns.add("value", "", [](const BenchRow& row) { return row.rung.value; });
-  columns.add("failure", "", [](const BenchRow& row) { return row.failure; });
+  columns.add("failure", "", &BenchRow::failure);
   columns.add("runs", "1", [](const BenchRow& row) { return std::to_string(row.job.wall.runs); });
   columns.add("samples", "1", [](const BenchRow& row) { return count(row.samples); });
   columns.add("queries", "1", [](const BenchRow& row) { return count(row.queries); });
   columns.add("entry_samples", "1/pixel", [](const BenchRow& row) { return count(row.entry_samples); });
   columns.add("rays", "1", [](const BenchRow& row) { return count(row.rays); });
-  columns.add("picture", "", [](const BenchRow& row) { return row.picture; });
+  columns.add("picture", "", &BenchRow::picture);
 }
 
 Columns all_columns() {
   Columns columns;
   add_names(columns);
-  columns.add_spread(
-      "job_ratio", "lambert", 1, [](const BenchRow& r) -> auto& { return r.job_ratio; });
-  columns.add_spread(
-      "shading_ratio", "lambert", 1, [](const BenchRow& r) -> auto& { return r.shading_ratio; });
-  columns.add_spread(
-      "shading_rate", "Mray/s", 1e-6, [](const BenchRow& r) -> auto& { return r.shading_rate; });
-  columns.add_spread(
-      "embree_rate", "Mray/s", 1e-6, [](const BenchRow& r) -> auto& { return r.embree_rate; });
-  columns.add_spread(
-      "once_cpu", "s", 1, [](const BenchRow& r) -> auto& { return r.once_cpu; });
-  columns.add_spread(
-      "frame_cpu", "s", 1, [](const BenchRow& r) -> auto& { return r.frame_cpu; });
+  columns.add_spread("job_ratio", "lambert", 1, &BenchRow::job_ratio);
+  columns.add_spread("shading_ratio", "lambert", 1, &BenchRow::shading_ratio);
+  columns.add_spread("shading_rate", "Mray/s", 1e-6, &BenchRow::shading_rate);
+  columns.add_spread("embree_rate", "Mray/s", 1e-6, &BenchRow::embree_rate);
+  columns.add_spread("once_cpu", "s", 1, &BenchRow::once_cpu);
+  columns.add_spread("frame_cpu", "s", 1, &BenchRow::frame_cpu);
   columns.add_error("error", &ErrorFigures::error);
   columns.add_error("error_floor", &ErrorFigures::error_floor);
   columns.add_error("signed", &ErrorFigures::signed_mean);
   columns.add_error("p99", &ErrorFigures::p99);
   columns.add_error("p99_noise", &ErrorFigures::p99_noise);
   columns.add_error("half_noise", &ErrorFigures::half_noise);
-  columns.add_cost(
-      "job", [](const BenchRow& row) -> auto& { return row.job; });
+  columns.add_cost("job", &BenchRow::job);
   for (std::size_t s = 0; s < kBenchStages.size(); ++s)
     columns.add_cost(
         std::string(kBenchStages[s]), [s](const BenchRow& row) -> auto& { return row.stages[s]; });

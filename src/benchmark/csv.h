@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,9 +19,6 @@ struct CsvTable {
 };
 
 std::string to_csv(const CsvTable& table);
-
-/// error Error{bad_input} naming `file` and the line: an open quote, a row of another length than the names
-CsvTable parse_csv(std::string_view text, const std::string& file);
 
 /// Raised whenever a column changes its name, unit or meaning, or goes.
 inline constexpr int kBenchSchema = 2;

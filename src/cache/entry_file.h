@@ -9,9 +9,7 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include "opaline/cache/blobs.h"
 #include "opaline/cache/stage_key.h"

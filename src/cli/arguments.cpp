@@ -20,6 +20,7 @@
 #include "cli/metadata.h"
 #include "cli/option_values.h"
 #include "cli/quality.h"
+#include "core/lower_case.h"
 #include "opaline/assets/import_asset.h"
 #include "opaline/core/error.h"
 #include "opaline/scene/json_tree.h"
@@ -358,9 +359,7 @@ Command command_of(const std::string& name, Parsed parsed) {
 }  // namespace
 
 OutputFormat output_format(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+  const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
   return extension == ".exr"   ? OutputFormat::exr
          : extension == ".png" ? OutputFormat::png
                                : OutputFormat::unknown;

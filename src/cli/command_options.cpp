@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
 
 #include "cli/help_texts.h"
 #include "cli/option_helpers.h"

@@ -1,11 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The only place where exceptions are caught and become exit codes.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <string_view>
 
 #include "cli/commands.h"
-#include "cli/process_start.h"
+#include "core/out_of_memory.h"
 #include "opaline/core/error.h"
+
+namespace opaline {
+namespace {
+
+/// Allocates nothing.
+[[noreturn]] void end_by_exception() {
+  try {
+    if (const std::exception_ptr failure = std::current_exception()) std::rethrow_exception(failure);
+  } catch (const std::exception& failure) {
+    if (is_out_of_memory(failure)) {
+      constexpr std::string_view text = "opaline: error: out of memory\n";
+      if (::write(STDERR_FILENO, text.data(), text.size()) >= 0) std::_Exit(3);
+    }
+  } catch (...) {
+  }
+  std::abort();
+}
+
+void catch_from_the_start() {
+  std::set_terminate(end_by_exception);
+}
+
+// Runs before the libraries' constructors, which allocate, too.
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = catch_from_the_start;
+
+/// Call first in main. Gives descriptors 0 to 2 that came closed to /dev/null, so no output file is
+/// opened as one of them and written to by messages; writing to them still fails, as it does to a closed one.
+/// A write beyond the file size limit then fails, too, in place of ending the process with its temporary file
+/// left behind. (An exception that a library lets escape because memory ran out ends the process as it would from main,
+/// with one line and exit code 3, even before main.)
+void prepare_process() {
+  // The lowest number that is free is the one that was found closed. For reading only: a result that nobody
+  // can receive is then told from one that was delivered.
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor)
+    if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDONLY) != descriptor)
+      std::_Exit(3);  // no descriptor to say it on
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+/// True if standard output came closed.
+bool was_started_without_output() {
+  return (::fcntl(STDOUT_FILENO, F_GETFL) & O_ACCMODE) == O_RDONLY;
+}
+
+}  // namespace
+}  // namespace opaline
 
 namespace {
 

@@ -2,28 +2,31 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <csignal>
 #include <map>
 #include <optional>
 
 #include "cli/commands.h"
 #include "cli/frames.h"
-#include "cli/memory_check.h"
 #include "cli/metadata.h"
 #include "cli/quality.h"
 #include "cli/render_outputs.h"
 #include "cli/report.h"
 #include "cli/resumable_state.h"
-#include "cli/resumable_walks.h"
 #include "cli/stages.h"
 #include "methods/method.h"
 #include "methods/volume/volume_state.h"
 #include "opaline/core/error.h"
+#include "opaline/core/machine_memory.h"
 #include "opaline/core/units.h"
 #include "opaline/render/direct.h"
 #include "opaline/render/expected_error.h"
 #include "opaline/render/expected_seconds.h"
+#include "opaline/render/layers.h"
 #include "opaline/render/picture_warnings.h"
+#include "opaline/render/plan.h"
+#include "opaline/render/render.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
 #include "opaline/session/scene_hash.h"
@@ -32,6 +35,24 @@
 
 namespace opaline {
 namespace {
+
+/// in    more_bytes: beside what the plan tells
+/// error Error{run_failed}: the plan needs more memory than this process can still have; says what takes less
+void check_memory(const Scene& scene, const Plan& plan, std::size_t more_bytes) {
+  // The whole picture has to have an address, empty parts of it as well.
+  const Rectangle part = rendered_part(scene.film);
+  const std::size_t picture = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0) *
+                              layer_names(method_of(scene.settings.method).layers()).size() * sizeof(float);
+  const std::size_t bytes = std::max(plan.bytes + more_bytes, picture), taken = resident_memory(),
+                    left = available_memory();
+  if (bytes <= taken || bytes - taken <= left) return;
+  std::string advice = "a lower film.resolution, or rendering in parts with --crop,";
+  if (method_of(scene.settings.method).needs_samples() && !plan.groups.empty())
+    advice += " or a lower settings.max_samples";
+  throw run_failed({},
+                   fmt::format("out of memory: the image needs about {}, and {} are available; {} needs less",
+                               short_bytes(bytes), short_bytes(left + taken), advice));
+}
 
 void check_precompute(const RenderArguments& arguments, const Scene& scene, const Plan& plan) {
   if (arguments.samples_ply.empty()) return;
@@ -337,5 +358,4 @@ void render_command(const RenderArguments& arguments) {
     return render_scene(arguments_of_frame(settled, frame), session, shared, frame);
   });
 }
-
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sums of a direct rendering, from one run to the next.
+// The sums of a direct rendering and of random walks, from one run to the next.
 #pragma once
 
 #include <chrono>
@@ -9,8 +9,68 @@
 #include "opaline/core/error.h"
 #include "opaline/render/direct.h"
 #include "opaline/session/scene_hash.h"
+#include "opaline/session/session.h"
+#include "opaline/session/walk_file.h"
 
 namespace opaline {
+
+/// Sums kept in the --resume file, if there is one: those of all bodies and lights. Nothing of the camera
+/// or of colours is in them.
+class ResumableWalks {
+ public:
+  /// The session walks from the file's sums and to them while this lives.
+  ResumableWalks(const std::string& path, Session& session) : path_(path), session_(session) {
+    if (path_.empty()) return;
+    walks_ = read_walks(path_);
+    was_empty_ = walks_.empty();
+    session_.store_walks(
+        {[this](const StageKey& key) { return find(key); },
+         [this](std::span<const StageKey> keys, const VolumeSums& sums) { keep(keys, sums); }});
+  }
+  ~ResumableWalks() { session_.store_walks({}); }
+  ResumableWalks(const ResumableWalks&) = delete;
+  ResumableWalks& operator=(const ResumableWalks&) = delete;
+
+  void write() {
+    if (path_.empty() || !changed_) return;
+    write_walks(path_, walks_);
+    changed_ = false;
+    last_ = std::chrono::steady_clock::now();
+  }
+
+  /// Passes over the samples, of all channels and lights.
+  std::size_t passes() const {
+    std::size_t sum = 0;
+    for (const auto& [key, source] : walks_)
+      for (const WalkSums& channel : source.channels) sum += channel.passes;
+    return sum;
+  }
+
+ private:
+  std::optional<SourceSums> find(const StageKey& key) {
+    const auto found = walks_.find(key);
+    if (found == walks_.end()) return {};
+    has_found_ = true;
+    return found->second;
+  }
+
+  // Another lamp or body may be new in the scene, not all of them.
+  void keep(std::span<const StageKey> keys, const VolumeSums& sums) {
+    if (!was_empty_ && !has_found_)
+      throw bad_file(path_, "the sums belong to another scene or other settings",
+                     "the sums of this scene and settings, or a new file name");
+    const std::size_t before = passes();
+    for (std::size_t s = 0; s < keys.size(); ++s) walks_[keys[s]] = sums.sources[s];
+    changed_ = changed_ || passes() != before;
+    if (std::chrono::steady_clock::now() - last_ > std::chrono::minutes(1)) write();
+  }
+
+  std::string path_;
+  Session& session_;
+  WalkFile walks_;
+  bool was_empty_ = true, has_found_ = false, changed_ = false;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
 
 /// Sums kept in the --resume file, if there is one.
 class ResumableState {

@@ -11,15 +11,9 @@ namespace opaline {
 namespace {
 
 const char* name_of(ErrorKind kind) {
-  switch (kind) {
-    case ErrorKind::bad_input:
-      return "bad_input";
-    case ErrorKind::interrupted:
-      return "interrupted";
-    case ErrorKind::run_failed:
-      break;
-  }
-  return "run_failed";
+  return kind == ErrorKind::bad_input     ? "bad_input"
+         : kind == ErrorKind::interrupted ? "interrupted"
+                                          : "run_failed";
 }
 
 /// Reason that ended the run, also for exceptions of libraries.

@@ -10,7 +10,6 @@
 #include <limits>
 #include <optional>
 #include <sstream>
-#include <vector>
 
 namespace opaline {
 namespace {

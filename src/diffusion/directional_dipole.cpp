@@ -2,7 +2,6 @@
 #include "opaline/diffusion/directional_dipole.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <memory>

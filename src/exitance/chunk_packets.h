@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A chunk of neighbouring queries as packets of lanes.
+// A chunk of neighbouring queries as packets of lanes, and the sums over single samples at a packet.
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "exitance/query_order.h"
 #include "exitance/simd/lane_kernels.h"
+#include "opaline/exitance/evaluate.h"
 
 namespace opaline {
 
@@ -34,5 +37,14 @@ struct ChunkPackets {
 /// the far one, as if the irradiance were even.
 void guess_exitance(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
                     const ChunkPackets& packets, std::span<RgbF> guesses);
+
+/// Adds the samples of leaves, those of another sheet with their whole kernel. room: scratch
+void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
+                 const std::vector<std::uint32_t>& leaves, const Packet& packet, PacketSums& sums,
+                 std::vector<std::uint32_t>& room);
+
+/// Sets the exitance of the queries in a packet's lanes.
+void set_exitance(const EvaluateInput& input, const PacketSums& sums, std::span<const std::uint32_t> queries,
+                  std::span<Exitance> result);
 
 }  // namespace opaline

@@ -78,8 +78,7 @@ Neighbours neighbours_of(const Octree& tree, std::uint32_t sample, float spacing
     const RgbF e = irradiance_of(other);
     const float weight = 1 / (r2 + 0.1f * spacing * spacing), across = dot(apart, tree.normals[sample]);
     found.stacked = found.stacked || across * across > kStacked * kStacked * r2;
-    found.low = component_min(found.low, e);
-    found.high = component_max(found.high, e);
+    widen(found.low, found.high, e);
     found.mean += e * weight;
     found.weights += weight;
   });

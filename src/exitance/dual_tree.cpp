@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "exitance/chunk_packets.h"
-#include "exitance/packet_samples.h"
 #include "opaline/core/parallel.h"
 
 namespace opaline {

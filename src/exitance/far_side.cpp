@@ -49,8 +49,7 @@ struct QueryBounds {
   explicit QueryBounds(std::span<const Query> queries) : low(queries[0].position), high(low) {
     Vec3f sum;
     for (const Query& q : queries) {
-      low = component_min(low, q.position);
-      high = component_max(high, q.position);
+      widen(low, high, q.position);
       sum += q.normal;
     }
     axis = normalized(sum);

@@ -31,10 +31,7 @@ auto content(const FluxSample& s) {
 // Samples along the Morton curve; equal keys in the order of their content, so input order has no say.
 std::vector<Keyed> morton_order(std::span<const FluxSample> samples) {
   Vec3f low = samples[0].position, high = low;
-  for (const FluxSample& s : samples) {
-    low = component_min(low, s.position);
-    high = component_max(high, s.position);
-  }
+  for (const FluxSample& s : samples) widen(low, high, s.position);
   const double side = double(max_component(high - low));
   const double scale = side > 0 ? double(1 << kLevels) / side : 0;
   const auto integer = [&](float p, float origin) {

@@ -20,10 +20,7 @@ struct Box {
             std::numeric_limits<float>::max()},
       high = -low;
 
-  void add(const Vec3f& p) {
-    low = component_min(low, p);
-    high = component_max(high, p);
-  }
+  void add(const Vec3f& p) { widen(low, high, p); }
   double side2() const {
     const Vec3d side = Vec3d(high) - Vec3d(low);
     return dot(side, side);

@@ -4,7 +4,6 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace opaline {

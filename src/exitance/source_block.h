@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "exitance/simd/lanes.h"
 #include "opaline/exitance/octree.h"

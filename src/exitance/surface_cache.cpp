@@ -2,8 +2,6 @@
 // Interpolation between the nodes of a surface cache.
 #include "opaline/exitance/surface_cache.h"
 
-#include <algorithm>
-
 #include "opaline/exitance/surface_patch.h"
 
 namespace opaline {

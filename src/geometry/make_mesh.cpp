@@ -30,10 +30,7 @@ struct SourceReader {
 Bounds used_bounds(const SourceMesh& mesh) {
   Bounds box;
   for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) {
-      box.low = component_min(box.low, mesh.positions[v]);
-      box.high = component_max(box.high, mesh.positions[v]);
-    }
+    for (const std::uint32_t v : triangle) widen(box.low, box.high, mesh.positions[v]);
   }
   return box;
 }

@@ -41,10 +41,7 @@ MeshMeasures measures_of(const Mesh& mesh) {
 
 Bounds bounds(const Mesh& mesh) {
   Bounds box;
-  for (const Vec3d& p : mesh.positions) {
-    box.low = component_min(box.low, p);
-    box.high = component_max(box.high, p);
-  }
+  for (const Vec3d& p : mesh.positions) widen(box.low, box.high, p);
   return box;
 }
 

@@ -127,10 +127,7 @@ void MeasuredParts::measure_volume(std::size_t part) {
   PartMeasures& measures = measures_[part];
   for (const std::uint32_t t : triangles(part)) {
     const auto [a, b, c] = corners(t);
-    for (const Vec3d* p : {&a, &b, &c}) {
-      measures.box.low = component_min(measures.box.low, *p);
-      measures.box.high = component_max(measures.box.high, *p);
-    }
+    for (const Vec3d* p : {&a, &b, &c}) widen(measures.box.low, measures.box.high, *p);
   }
   const Vec3d origin = parts_.kinds[part] == Kind::open ? .5 * (measures.box.low + measures.box.high)
                                                         : corners(triangles(part)[0]).a;

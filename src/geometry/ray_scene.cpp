@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <ctime>
-#include <string>
 
 #include "geometry/embree_handles.h"
 #include "geometry/oriented_point.h"

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/read_mesh.h"
 
-#include <algorithm>
 #include <filesystem>
-#include <vector>
 
 #include "geometry/formats/mesh_format.h"
 #include "geometry/topology.h"

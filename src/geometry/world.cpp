@@ -1,15 +1,62 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "opaline/geometry/world.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
 
-#include "geometry/check_world.h"
 #include "geometry/shape_label.h"
+#include "opaline/core/error.h"
+#include "opaline/geometry/mesh.h"
 
 namespace opaline {
-
 namespace {
+
+constexpr double kSmallestForItsPlace = 0x1p-16, kSmallestForTheWorld = 0x1p-30, kMostAreaLost = 0.1;
+
+double twice_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  return length(cross(b - a, c - a));
+}
+
+/// Area that rounding adds to or removes from all triangles, over their sum.
+double area_lost(const Mesh& mesh) {
+  double sum = 0, lost = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3d &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
+    const double exact = twice_area(p, q, r);
+    sum += exact;
+    lost += std::abs(twice_area(Vec3d(Vec3f(p)), Vec3d(Vec3f(q)), Vec3d(Vec3f(r))) - exact);
+  }
+  return lost / sum;
+}
+
+/// in    mesh: of a world, in its space; diagonal: World::diagonal; unit: World::unit
+/// error Error{bad_input} with the name and the bound: the mesh is less than 2^-16 as large as it is far from
+///       the middle of the world, less than 2^-30 as large as the world, or so thin that its area changes by
+///       more than a tenth where its vertices are rounded to floats
+void check_precision(const Mesh& mesh, const std::string& name, double diagonal, double unit) {
+  const Bounds box = bounds(mesh);
+  const double side = max_component(box.high - box.low);
+  const double far = max_component(component_max(box.high, -box.low));
+  if (side < kSmallestForItsPlace * far)
+    throw bad_file(name, "is too small for its distance from the centre of the scene",
+                   fmt::format("at least {:.4g} mm (distance / 65536), the limit of single precision",
+                               kSmallestForItsPlace * far * unit),
+                   fmt::format("{:.4g} mm", side * unit));
+  if (side < kSmallestForTheWorld * diagonal)
+    throw bad_file(name, "is too small for the scene",
+                   fmt::format("at least {:.4g} mm (diagonal of the scene / 2^30)",
+                               kSmallestForTheWorld * diagonal * unit),
+                   fmt::format("{:.4g} mm", side * unit));
+  const double lost = area_lost(mesh);
+  if (lost > kMostAreaLost)
+    throw bad_file(name, "is too thin or too fine for its extent",
+                   "vertices for which rounding to single precision (2^-24 times the distance from the "
+                   "centre of the scene) changes the area by at most 10 %",
+                   fmt::format("{:.3g} %", 100 * lost));
+}
 
 Vec3d stable_middle(const Bounds& all, double diagonal) {
   if (!(diagonal > 0)) return all.low;
@@ -55,6 +102,32 @@ double unit_of(const Scene& scene, std::span<const Bounds> boxes, double diagona
 }
 
 }  // namespace
+
+double area_of(const World& world, std::span<const std::uint32_t> meshes) {
+  double area = 0;
+  for (const std::uint32_t m : meshes) area += world.measures[m].area;
+  return area;
+}
+
+Bounds bounds(const World& world, std::span<const std::uint32_t> meshes) {
+  Bounds box;
+  for (const std::uint32_t m : meshes)
+    for (const Vec3d& p : world.meshes[m].positions) widen(box.low, box.high, p);
+  return box;
+}
+
+bool boxes_meet(const World& world, std::span<const std::uint32_t> meshes) {
+  std::vector<Bounds> boxes;
+  for (const std::uint32_t m : meshes) {
+    const Bounds box = bounds(world.meshes[m]);
+    for (const Bounds& other : boxes) {
+      const Vec3d gap = component_max(box.low, other.low) - component_min(box.high, other.high);
+      if (gap.x <= 0 && gap.y <= 0 && gap.z <= 0) return true;
+    }
+    boxes.push_back(box);
+  }
+  return false;
+}
 
 World make_world(const Scene& scene) {
   std::size_t loaded = 0;
@@ -108,5 +181,4 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
   }
   return world;
 }
-
 }  // namespace opaline

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/lower_case.h"
 #include "opaline/core/error.h"
 
 namespace opaline {
@@ -14,10 +15,7 @@ constexpr std::array<std::string_view, 4> kColorWords{"red", "green", "blue", "a
 
 /// The part of a channel's name behind its layer, in lower case.
 std::string component_of(std::string_view channel) {
-  std::string component(channel.substr(channel.rfind('.') + 1));
-  for (char& c : component)
-    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-  return component;
+  return in_lower_case(channel.substr(channel.rfind('.') + 1));
 }
 
 /// With its point; empty: none.

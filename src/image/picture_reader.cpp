@@ -6,7 +6,6 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 #include "image/color_channels.h"

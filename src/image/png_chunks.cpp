@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/png_chunks.h"
 
-#include <array>
+#include <zlib.h>
+
 #include <cstdint>
 #include <string_view>
 
@@ -10,20 +11,8 @@
 namespace opaline {
 namespace {
 
-constexpr std::array<std::uint32_t, 256> make_crc_table() {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t byte = 0; byte < 256; ++byte) {
-    table[byte] = byte;
-    for (int bit = 0; bit < 8; ++bit) table[byte] = (table[byte] & 1 ? 0xedb88320u : 0u) ^ (table[byte] >> 1);
-  }
-  return table;
-}
-
 std::uint32_t crc_of(std::string_view bytes) {
-  static constexpr std::array<std::uint32_t, 256> table = make_crc_table();
-  std::uint32_t crc = 0xffffffffu;
-  for (const char byte : bytes) crc = table[(crc ^ static_cast<unsigned char>(byte)) & 0xff] ^ (crc >> 8);
-  return ~crc;
+  return std::uint32_t(::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 std::uint32_t big_endian(std::string_view bytes) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
 #include "irradiance/shadow_batch.h"
 #include "irradiance/shadow_edges.h"

@@ -24,10 +24,7 @@ NeighbourGrid::NeighbourGrid(std::span<const SurfaceSample> samples, float reach
   shift_ = 64 - int(bits);
   if (samples.empty()) return;
   Vec3f low = samples[0].position, high = low;
-  for (const SurfaceSample& s : samples) {
-    low = component_min(low, s.position);
-    high = component_max(high, s.position);
-  }
+  for (const SurfaceSample& s : samples) widen(low, high, s.position);
   const float size = std::max(reach, max_component(high - low) / kWidest);
   std::vector<std::uint32_t> cell_of(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -357,10 +357,7 @@ class ShadowBatch {
   void trace_sorted() {
     constexpr float kCells = 1023;
     Vec3f low = shadow_[0].origin, high = low;
-    for (const Ray& ray : shadow_) {
-      low = component_min(low, ray.origin);
-      high = component_max(high, ray.origin);
-    }
+    for (const Ray& ray : shadow_) widen(low, high, ray.origin);
     const float side = max_component(high - low), scale = side > 0 ? kCells / side : 0;
     order_.resize(shadow_.size());
     for (std::size_t i = 0; i < order_.size(); ++i) {

@@ -46,10 +46,7 @@ class Builder {
 
   void halve(std::span<std::uint32_t> members) {
     Vec3d low = lamps_[members[0]].center, high = low;
-    for (const std::uint32_t m : members) {
-      low = component_min(low, lamps_[m].center);
-      high = component_max(high, lamps_[m].center);
-    }
+    for (const std::uint32_t m : members) widen(low, high, lamps_[m].center);
     const Vec3d side = high - low;
     const std::size_t axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
     const auto along = [&](std::uint32_t m) { return std::pair(lamps_[m].center[axis], m); };

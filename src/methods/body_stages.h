@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "methods/stage_store.h"
 #include "opaline/render/precompute.h"

@@ -4,7 +4,6 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
 #include "opaline/lights/light.h"
 #include "opaline/render/plan.h"

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "opaline/core/error.h"
 #include "opaline/diffusion/diffuse_profile.h"

@@ -2,7 +2,6 @@
 #include "render/bounced_light.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <numeric>
 

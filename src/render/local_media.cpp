@@ -61,8 +61,8 @@ namespace {
 /// Calls visit(mesh, triangle, u, v) at places spread over the area of a body, in order of its triangles.
 template <class Visit>
 void for_places(const World& world, const GroupPlan& group, std::size_t places, const Visit& visit) {
-  double area = 0, before = 0;
-  for (const std::uint32_t m : group.meshes) area += world.measures[m].area;
+  const double area = area_of(world, group.meshes);
+  double before = 0;
   std::size_t next = 0;
   for (const std::uint32_t m : group.meshes) {
     const Mesh& mesh = world.meshes[m];

@@ -12,6 +12,8 @@
 #include "geometry/ray_offset.h"
 #include "image/picture_module.h"
 #include "methods/method.h"
+#include "opaline/core/error.h"
+#include "opaline/geometry/world.h"
 #include "opaline/image/texture_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/lights/light.h"
@@ -19,13 +21,48 @@
 #include "opaline/render/precompute.h"
 #include "opaline/render/surface_textures.h"
 #include "opaline/scene/names.h"
+#include "opaline/scene/scene.h"
 #include "render/body_groups.h"
-#include "render/check_reach.h"
 #include "render/plan_samples.h"
 #include "render/seen_pixels.h"
 
 namespace opaline {
 namespace {
+
+constexpr double kFarthest = 0x1p50, kBrightest = 1e30;
+
+/// The largest distance of a light's points from zero, at most some times too large.
+double reach_of(const Light& light) {
+  const LightExtent place = extent(light);
+  return place.center ? length(*place.center) + place.radius : 0;
+}
+
+void check_distance(const Scene& scene, const std::string& what, double distance, double mm) {
+  if (distance <= kFarthest) return;
+  throw bad_file(
+      scene.file, what + " is too far from the shapes",
+      fmt::format(
+          "at most {:.3g} mm from their centre (2^50 times the internal unit), the limit of single precision",
+          kFarthest * mm),
+      fmt::format("{:.3g} mm", distance * mm));
+}
+
+/// error Error{bad_input} naming the camera or the light, and the bound: further than 2^50 units of the world
+/// from its middle, or a point light of more than 1e30 W/sr per squared unit
+void check_reach(const Scene& scene, const World& world) {
+  if (world.meshes.empty()) return;
+  check_distance(scene, "camera.position", length(into_world(world, scene.camera.position)), world.unit);
+  for (const Light& light : scene.lights) {
+    const Light moved = recentred(light, world.origin, world.unit);
+    const std::string name = "the light '" + light.name + "'";
+    check_distance(scene, name, reach_of(moved), world.unit);
+    const double brightest = max_component(emission(moved));
+    if (brightest > kBrightest)
+      throw bad_file(scene.file, name + " is too bright for shapes of this size",
+                     fmt::format("at most {:.3g} W/sr", kBrightest * world.unit * world.unit),
+                     fmt::format("{:.3g} W/sr", max_component(emission(light))));
+  }
+}
 
 /// error where a method knows no light between things
 void check_bounces(const Scene& scene) {
@@ -226,5 +263,4 @@ Plan make_plan(const Scene& scene, const World& world) {
   list_stages(scene, lights, plan);
   return plan;
 }
-
 }  // namespace opaline

@@ -3,7 +3,6 @@
 // boundary is one ray. A rough one draws directions from its lobe and from the lights, weighted by the power
 // heuristic (Veach & Guibas 1995).
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "lights/environment_sample.h"

@@ -8,7 +8,6 @@
 #include "core/cancel_check.h"
 #include "methods/method.h"
 #include "opaline/core/error.h"
-#include "opaline/core/random.h"
 #include "opaline/image/texture_file.h"
 
 namespace opaline {

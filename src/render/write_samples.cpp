@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <cstring>
 
 #include "methods/method.h"
 #include "opaline/core/atomic_file.h"

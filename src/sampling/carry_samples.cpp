@@ -6,7 +6,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 #include "opaline/geometry/surface_point.h"
 #include "sampling/cell_parts.h"

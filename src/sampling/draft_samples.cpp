@@ -39,10 +39,7 @@ std::vector<Piece> pieces_of(const World& world, std::span<const std::uint32_t> 
 /// Indices of the pieces by cell along the Morton curve, in the order of the file within each.
 std::vector<std::uint32_t> morton_order(const std::vector<Piece>& pieces) {
   Vec3d low = pieces[0].centre, high = low;
-  for (const Piece& piece : pieces) {
-    low = component_min(low, piece.centre);
-    high = component_max(high, piece.centre);
-  }
+  for (const Piece& piece : pieces) widen(low, high, piece.centre);
   const Vec3d size = high - low;
   const double largest = std::max({size.x, size.y, size.z}), scale = largest > 0 ? (kCells - 1) / largest : 0;
   std::vector<std::uint32_t> cells, first(kCells * kCells * kCells + 1), order(pieces.size());

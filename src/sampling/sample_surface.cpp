@@ -23,16 +23,6 @@ constexpr double kRadiusPerSpacing = 0.7195;
 // 3 % of what is asked for.
 constexpr double kEnough = 1.1;
 
-Bounds bounds_of(const World& world, std::span<const std::uint32_t> meshes) {
-  Bounds box;
-  for (const std::uint32_t m : meshes) {
-    const Bounds other = bounds(world.meshes[m]);
-    box.low = component_min(box.low, other.low);
-    box.high = component_max(box.high, other.high);
-  }
-  return box;
-}
-
 // The samples before they are put in order.
 struct PlacedSamples {
   std::vector<SampleGrid::Place> places;
@@ -42,7 +32,7 @@ struct PlacedSamples {
 
 PlacedSamples place_samples(const SamplingInput& input, const TriangleList& triangles, float radius,
                             bool want_pieces) {
-  PoissonDisk poisson(triangles, bounds_of(input.world, input.meshes), radius);
+  PoissonDisk poisson(triangles, bounds(input.world, input.meshes), radius);
   // Where the surface is thinner than the radius no dart meets another one, and each round adds as many.
   const auto enough = std::size_t(kEnough * double(input.count));
   for (int round = 0; round < input.candidate_rounds && poisson.grid().size() <= enough; ++round)

@@ -2,10 +2,8 @@
 #include "sampling/surface_shares.h"
 
 #include <algorithm>
-#include <optional>
 #include <span>
 
-#include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 #include "opaline/sampling/sample_surface.h"
 #include "sampling/share_tasks.h"

@@ -17,16 +17,6 @@ namespace {
 
 constexpr std::size_t kChunk = 4096;
 
-Bounds bounds_of(const World& world, std::span<const std::uint32_t> meshes) {
-  Bounds box = bounds(world.meshes[meshes[0]]);
-  for (const std::uint32_t m : meshes.subspan(1)) {
-    const Bounds other = bounds(world.meshes[m]);
-    box.low = component_min(box.low, other.low);
-    box.high = component_max(box.high, other.high);
-  }
-  return box;
-}
-
 struct Keyed {
   std::uint64_t key;
   TriangleId id;
@@ -64,7 +54,7 @@ TriangleList::TriangleList(const World& world, std::span<const std::uint32_t> me
   for (const std::uint32_t m : meshes)
     for (std::uint32_t t = 0; t < world.meshes[m].triangles.size(); ++t) ids_.push_back({m, t});
   if (ids_.empty()) return;
-  const Bounds box = bounds_of(world, meshes);
+  const Bounds box = bounds(world, meshes);
   const Vec3d size = box.high - box.low;
   const double largest = std::max({size.x, size.y, size.z}),
                scale = largest > 0 ? double((1 << 20) - 1) / largest : 0;

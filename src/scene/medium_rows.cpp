@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/scene/names.h"
 #include "scene/key_rows.h"
 #include "scene/presets.h"
 

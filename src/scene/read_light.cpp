@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lights/all_lights.h"
-#include "opaline/scene/names.h"
 #include "scene/readers.h"
 
 namespace opaline {

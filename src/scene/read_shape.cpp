@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <filesystem>
 #include <utility>
 
-#include "opaline/scene/load_scene.h"
 #include "opaline/scene/nearest_name.h"
 #include "scene/presets.h"
 #include "scene/readers.h"

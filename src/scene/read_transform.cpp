@@ -10,12 +10,6 @@ namespace {
 
 constexpr std::array<std::string_view, 4> step_names{"translate", "scale", "rotate", "matrix"};
 
-/// First `first`, then `second`.
-Transform compose(const Transform& second, const Transform& first) {
-  const auto linear = [&](const Vec3d& v) { return second.x * v.x + second.y * v.y + second.z * v.z; };
-  return {linear(first.x), linear(first.y), linear(first.z), transform_point(second, first.translation)};
-}
-
 /// Rodrigues' rotation, counter-clockwise seen against the axis.
 Transform rotation(const Vec3d& axis, double degrees) {
   const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -13,7 +12,6 @@
 #include "lights/all_lights.h"
 #include "opaline/scene/json_tree.h"
 #include "opaline/scene/mesh_formats.h"
-#include "opaline/scene/names.h"
 #include "scene/key_rows.h"
 #include "scene/settings_table.h"
 
@@ -228,53 +226,6 @@ std::vector<KeyInfo> all_rows() {
   return rows;
 }
 
-// ---- documentation ----------------------------------------------------------------------------------------
-
-std::string number_text(double value) {
-  if (value == kMostWholeNumber.high) return "2^64 - 1";
-  const bool is_power = value >= 1e7 || (value > 0 && value < 1e-3);
-  return is_power ? fmt::format("1e{}", std::lround(std::log10(value))) : fmt::format("{}", value);
-}
-
-std::string range_text(const KeyInfo& info) {
-  const Range& range = info.range;
-  if (range.low == kFiniteNumber.low && range.high == kFiniteNumber.high) return "";
-  const std::string low = number_text(range.low), high = number_text(range.high);
-  if (range.without_low && range.without_high) return fmt::format("between {} and {}", low, high);
-  return fmt::format("{}{} to {}", range.without_low ? "> " : "", low, high);
-}
-
-std::string plain_values_text(const KeyInfo& info) {
-  switch (info.type) {
-    case ValueType::length:
-      return "scene units, > 0";
-    case ValueType::point:
-      return "scene units";
-    case ValueType::flag:
-      return "true, false";
-    case ValueType::color:
-      return "colour, " + range_text(info);
-    case ValueType::number:
-    case ValueType::whole_number:
-    case ValueType::number_or_triple:
-      return range_text(info);
-    case ValueType::triple:
-    case ValueType::choice:
-    case ValueType::text:
-    case ValueType::file:
-    case ValueType::list:
-    case ValueType::object:
-      return "";
-  }
-  return "";
-}
-
-std::string values_text(const KeyInfo& info) {
-  const std::string plain = plain_values_text(info);
-  if (!info.may_be_texture) return plain;
-  return plain.empty() ? "texture" : plain + ", or a texture";
-}
-
 }  // namespace
 
 std::span<const KeyInfo> schema() {
@@ -312,14 +263,6 @@ std::span<const std::string_view> section_keys(std::string_view section) {
 std::string settings_path(std::string_view key) {
   const bool is_laboratory = std::ranges::count(section_keys("settings.laboratory"), key) > 0;
   return fmt::format("settings.{}{}", is_laboratory ? "laboratory." : "", key);
-}
-
-std::string documentation(const KeyInfo& info) {
-  const std::string values = values_text(info);
-  const std::string_view comma = info.unit.empty() || values.empty() ? "" : ", ";
-  const auto cell = [](const std::string& text) { return text.empty() ? " |" : " " + text + " |"; };
-  return fmt::format("| `{}` |", info.key) + cell(std::string(info.meaning)) +
-         cell(fmt::format("{}{}{}", info.unit, comma, values)) + cell(info.default_value);
 }
 
 std::string settings_json(const Scene& scene) {

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "opaline/scene/names.h"
+#include "scene/key_rows.h"
 
 namespace opaline {
 namespace {
@@ -148,37 +149,21 @@ std::string pixel_type_json(const Film& film) {
 
 std::span<const Member<Film>> film_members() {
   using enum ValueType;
-  static const KeyInfo resolution{"film",
-                                  "resolution",
-                                  list,
-                                  "pixels, each 1 to 65536, at most 2^28 in total",
-                                  {1, kLargestSide},
-                                  "[512, 512]",
-                                  "image size, [width, height]"},
-      crop{"film",
-           "crop",
-           list,
-           "pixels",
-           {0, kLargestSide},
-           "everything",
-           "renders only the pixels [x0, y0, x1, y1], counted from the top left, without x1 and y1"},
-      pixel_type{"film",
-                 "pixel_type",
-                 choice,
-                 "",
-                 kFiniteNumber,
-                 "`\"half\"`",
-                 "bits per value of the EXR: `\"half\"`: 16; `\"float\"`: 32",
-                 kPixelTypes};
   static const std::vector<Member<Film>> table{
-      {resolution, read_resolution, resolution_json},
-      {crop, read_crop, crop_json},  // after the resolution, which it lies within
+      {row("film", "resolution", list, "pixels, each 1 to 65536, at most 2^28 in total", {1, kLargestSide},
+           "[512, 512]", "image size, [width, height]"),
+       read_resolution, resolution_json},
+      {row("film", "crop", list, "pixels", {0, kLargestSide}, "everything",
+           "renders only the pixels [x0, y0, x1, y1], counted from the top left, without x1 and y1"),
+       read_crop, crop_json},  // after the resolution, which it lies within
       member<&Film::samples_per_pixel>("samples_per_pixel", whole_number, "", {1, 65536}, "",
                                        "camera rays per pixel"),
       member<&Film::filter>("filter", choice, "", kFiniteNumber, "",
                             "pixel filter: `\"box\"`: one pixel wide; `\"gaussian\"`: softer, standard "
                             "deviation 0.5, radius 1.5 pixels"),
-      {pixel_type, read_pixel_type, pixel_type_json},
+      {row("film", "pixel_type", choice, "", kFiniteNumber, "`\"half\"`",
+           "bits per value of the EXR: `\"half\"`: 16; `\"float\"`: 32", kPixelTypes),
+       read_pixel_type, pixel_type_json},
       member<&Film::exposure>("exposure", number, "stops", {-100, 100}, "",
                               "exposure of the PNG; one stop is a factor of 2"),
       member<&Film::view>(
@@ -195,13 +180,6 @@ std::span<const Member<Film>> film_members() {
 
 std::span<const Member<Settings>> settings_members() {
   using enum ValueType;
-  static const KeyInfo laboratory{"settings",
-                                  "laboratory",
-                                  object,
-                                  "",
-                                  kFiniteNumber,
-                                  "none",
-                                  "switches for experiments, see `docs/laboratory.md`"};
   static const std::vector<Member<Settings>> table{
       member<&Settings::method>(
           "method", choice, "", kFiniteNumber, "",
@@ -257,7 +235,9 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::reference_frame>(
           "reference_frame", whole_number, "", {0, 1e9}, "",
           "frame ranges: samples are placed on the surfaces of this frame and move with them in all others"),
-      {laboratory, read_laboratory, laboratory_json},
+      {row("settings", "laboratory", object, "", kFiniteNumber, "none",
+           "switches for experiments, see `docs/laboratory.md`"),
+       read_laboratory, laboratory_json},
   };
   return table;
 }

@@ -35,12 +35,6 @@ bool all_of(std::size_t size, const Condition& condition) {
   return holds;
 }
 
-double area_of(const SampledSurface& surface) {
-  double area = 0;
-  for (const std::uint32_t m : surface.meshes) area += surface.world.measures[m].area;
-  return area;
-}
-
 bool stands_on_its_triangle(const SurfaceSample& s, const World& world) {
   constexpr float kRounding = 1e-5f;
   if (s.triangle >= world.meshes[s.mesh].triangles.size()) return false;
@@ -107,7 +101,8 @@ std::size_t most_samples(const SampledSurface& surface) {
 bool are_samples_of(const SurfaceSamples& samples, const SampledSurface& surface) {
   const std::vector<SurfaceSample>& all = samples.samples;
   if (all.empty() || all.size() > most_samples(surface)) return false;
-  if (!(is_amount(samples.radius) && samples.radius > 0) || !is_close(samples.area, area_of(surface), 1e-5))
+  if (!(is_amount(samples.radius) && samples.radius > 0) ||
+      !is_close(samples.area, area_of(surface.world, surface.meshes), 1e-5))
     return false;
   if (!all_of(all.size(), [&](std::size_t i) { return stands_on_its_triangle(all[i], surface.world); }))
     return false;

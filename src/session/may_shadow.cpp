@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cmath>
 
 #include "opaline/lights/light.h"
 #include "opaline/session/stage_keys.h"

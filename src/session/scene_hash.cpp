@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <set>
-#include <string_view>
 
 #include "opaline/assets/import_asset.h"
 #include "opaline/core/error.h"

@@ -2,7 +2,6 @@
 // The light that goes from one surface to another: at the samples of bodies and at places of the picture.
 #include <memory>
 
-#include "opaline/lights/light.h"
 #include "session/session_state.h"
 #include "session/stage_codecs.h"
 

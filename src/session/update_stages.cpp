@@ -2,7 +2,6 @@
 // Stages that all methods share: samples and the light transmitted there. A result gets its key once it is complete.
 #include <fmt/format.h>
 
-#include "opaline/lights/light.h"
 #include "opaline/render/surface_textures.h"
 #include "opaline/sampling/carry_samples.h"
 #include "session/session_state.h"

@@ -2,7 +2,6 @@
 #include "transport/slab_tally.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <utility>
 

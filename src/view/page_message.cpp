@@ -2,7 +2,6 @@
 #include "view/page_message.h"
 
 #include <algorithm>
-#include <optional>
 #include <span>
 
 #include "opaline/core/error.h"

@@ -18,36 +18,10 @@
 namespace opaline {
 namespace {
 
-std::string_view name_of(ValueType type) {
-  switch (type) {
-    case ValueType::number:
-      return "number";
-    case ValueType::whole_number:
-      return "whole_number";
-    case ValueType::length:
-      return "length";
-    case ValueType::point:
-      return "point";
-    case ValueType::triple:
-      return "triple";
-    case ValueType::number_or_triple:
-      return "number_or_triple";
-    case ValueType::color:
-      return "color";
-    case ValueType::flag:
-      return "flag";
-    case ValueType::choice:
-      return "choice";
-    case ValueType::text:
-    case ValueType::file:
-      return "text";
-    case ValueType::list:
-      return "list";
-    case ValueType::object:
-      break;
-  }
-  return "object";
-}
+/// As the page calls the types, in the order of ValueType; a file is a text.
+constexpr std::array<const char*, 13> kTypeNames{
+    "number", "whole_number", "length", "point", "triple", "number_or_triple", "color", "flag",
+    "choice", "text",         "text",   "list",  "object"};
 
 /// Ends of a slider: those of the range, or a thousandth inside where the range is without them.
 Json slider_json(const Range& range) {
@@ -61,7 +35,7 @@ Json row_json(const KeyInfo& info) {
   for (const std::string_view choice : info.choices) choices.push_back(choice);
   return {{"section", info.section},
           {"key", info.key},
-          {"type", name_of(info.type)},
+          {"type", kTypeNames[std::size_t(info.type)]},
           {"unit", info.unit},
           {"range", {info.range.low, info.range.high}},
           {"slider", slider_json(info.range)},
@@ -156,7 +130,7 @@ std::string trade_text(const TradeState& trade) {
     if (point.sample_spacing) values["settings.sample_spacing"] = *point.sample_spacing / trade.mm_per_unit;
     if (point.samples) values["settings.samples"] = *point.samples;
     if (point.tolerance > 0) values["settings.tolerance"] = point.tolerance;
-    points.push_back({{"method", opaline::name_of(point.method)},
+    points.push_back({{"method", name_of(point.method)},
                       {"samples", point.all_samples},
                       {"values", values},
                       {"seconds", point.seconds},
@@ -173,7 +147,7 @@ std::string trade_text(const TradeState& trade) {
 std::string reference_text(const ReferenceState& state) {
   return compact({{"is", "reference"},
                   {"revision", state.revision},
-                  {"method", opaline::name_of(state.method)},
+                  {"method", name_of(state.method)},
                   {"samples", state.samples},
                   {"noise", std::isfinite(state.noise) ? state.noise : 0},
                   {"difference", state.difference}});

@@ -21,11 +21,6 @@ void go_on(TracedRay& traced, double far) {
   traced.hit = {};
 }
 
-bool meet(const Bounds& a, const Bounds& b) {
-  const Vec3d gap = component_max(a.low, b.low) - component_min(a.high, b.high);
-  return gap.x <= 0 && gap.y <= 0 && gap.z <= 0;
-}
-
 bool leaves(const TracedRay& traced) {
   return dot(traced.hit.edges_cross, traced.ray.direction) > 0;
 }
@@ -33,13 +28,8 @@ bool leaves(const TracedRay& traced) {
 }  // namespace
 
 BodyInside::BodyInside(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes)
-    : rays_(rays), is_body_(world.meshes.size()) {
-  for (const std::uint32_t m : meshes) {
-    is_body_[m] = true;
-    const Bounds box = bounds(world.meshes[m]);
-    box_.low = component_min(box_.low, box.low);
-    box_.high = component_max(box_.high, box.high);
-  }
+    : rays_(rays), is_body_(world.meshes.size()), box_(bounds(world, meshes)) {
+  for (const std::uint32_t m : meshes) is_body_[m] = true;
   overlaps_ = find_overlaps(world, meshes);
 }
 
@@ -47,12 +37,7 @@ BodyInside::BodyInside(const RayScene& rays, const World& world, std::span<const
 // met from outside lies within.
 bool BodyInside::find_overlaps(const World& world, std::span<const std::uint32_t> meshes) const {
   constexpr std::size_t kTriangles = 4096;  // maximum triangles of a mesh
-  std::vector<Bounds> boxes;
-  for (const std::uint32_t m : meshes) {
-    const Bounds box = bounds(world.meshes[m]);
-    if (std::ranges::any_of(boxes, [&](const Bounds& other) { return meet(box, other); })) return true;
-    boxes.push_back(box);
-  }
+  if (boxes_meet(world, meshes)) return true;
   for (const std::uint32_t m : meshes) {
     const std::size_t count = world.meshes[m].triangles.size();
     for (std::size_t t = 0; t < count; t += std::max<std::size_t>(1, count / kTriangles)) {

@@ -16,12 +16,6 @@ constexpr double kOutside = .5;      // the same for a walk leaving
 constexpr std::uint64_t kMostFlights = 1'000'000;
 constexpr int kMostBounces = 16;  // outside, from one place of the body to another
 
-double area_of(const VolumeInput& input) {
-  double area = 0;
-  for (const std::uint32_t m : input.meshes) area += input.world.measures[m].area;
-  return area;
-}
-
 double least_mean_free_path(const std::array<HomogeneousMedium, 3>& media) {
   double least = std::numeric_limits<double>::infinity();
   for (const HomogeneousMedium& medium : media)
@@ -195,7 +189,8 @@ class BodyWalks::Walker {
 
 BodyWalks::BodyWalks(const VolumeInput& input, std::size_t starts)
     : input_(input),
-      points_(input.rays, input.world, input.meshes, .5 * area_of(input) / double(input.samples.size())),
+      points_(input.rays, input.world, input.meshes,
+              .5 * area_of(input.world, input.meshes) / double(input.samples.size())),
       inside_(input.rays, input.world, input.meshes),
       voxels_(voxels_of(input, inside_.box())),
       free_(input.world, inside_.box(), kVoxel * least_mean_free_path({medium(0), medium(1), medium(2)}),
@@ -205,12 +200,7 @@ BodyWalks::BodyWalks(const VolumeInput& input, std::size_t starts)
 
 double BodyWalks::expected_bytes(const World& world, std::span<const std::uint32_t> meshes,
                                  double mean_free_path) {
-  Bounds box;
-  for (const std::uint32_t m : meshes) {
-    const Bounds other = bounds(world.meshes[m]);
-    box = {component_min(box.low, other.low), component_max(box.high, other.high)};
-  }
-  return FreeDistance::expected_bytes(world, box, kVoxel * mean_free_path);
+  return FreeDistance::expected_bytes(world, bounds(world, meshes), kVoxel * mean_free_path);
 }
 
 SphereExits BodyWalks::exits_of(std::size_t pass) const {

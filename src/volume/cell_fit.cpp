@@ -250,8 +250,7 @@ CellFit::Reader::Reader(const CellFit& fit) : fit_(fit), taken_(std::numeric_lim
 
 void CellFit::Reader::expect(std::span<const Vec3f> positions) {
   Vec3f low(std::numeric_limits<float>::infinity()), high = -low;
-  for (const Vec3f& position : positions)
-    low = component_min(low, position), high = component_max(high, position);
+  for (const Vec3f& position : positions) widen(low, high, position);
   const float beyond = length(high - low) * .5f / fit_.places_->spacing + kRounding;
   if (beyond <= kFarthestTaken) take_around((low + high) * .5f, beyond);
 }

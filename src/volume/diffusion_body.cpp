@@ -2,13 +2,68 @@
 #include "volume/diffusion_body.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "opaline/core/parallel.h"
-#include "volume/fluence_gradient.h"
+#include "volume/diffusion_solver.h"
 
 namespace opaline {
 namespace {
+
+/// The fluence around a cell: least squares over its neighbours.
+/// fluence: one a cell
+/// out   a channel: per lattice cell
+std::array<Vec3f, 3> gradient_at(const DiffusionGrid& grid, std::span<const Channels> fluence,
+                                 std::uint32_t i) {
+  constexpr float kLeastSquare = .05f;  // along an axis without neighbours there is no slope
+  const DiffusionGrid::Cell& cell = grid.cells()[i];
+  Vec3f diagonal(kLeastSquare), off;  // off: of yz, zx, xy
+  std::array<Vec3f, 3> sums{};
+  for (const DiffusionGrid::Link& link : grid.links(i)) {
+    if (!(link.conductance > 0)) continue;
+    const Vec3f apart = grid.cells()[link.to].centre - cell.centre;
+    diagonal += apart * apart * link.conductance;
+    off += Vec3f(apart.y * apart.z, apart.z * apart.x, apart.x * apart.y) * link.conductance;
+    for (std::size_t c = 0; c < 3; ++c)
+      sums[c] += apart * (link.conductance * (fluence[link.to].c[c] - fluence[i].c[c]));
+  }
+  const Vec3f row0(diagonal.x, off.z, off.y), row1(off.z, diagonal.y, off.x), row2(off.y, off.x, diagonal.z);
+  const Vec3f minors0 = cross(row1, row2), minors1 = cross(row2, row0), minors2 = cross(row0, row1);
+  const float inverse = 1 / dot(row0, minors0);  // symmetric and positive
+  for (Vec3f& sum : sums) sum = (minors0 * sum.x + minors1 * sum.y + minors2 * sum.z) * inverse;
+  return sums;
+}
+
+/// Adds to the problem's sources what the differences of fluence between cells misstate: across an oblique link the
+/// fluence changes from one centre to the other also along the face, and nothing flows through the face for that.
+/// fluence: one a cell, of the problem as it is
+void add_oblique_flow(DiffusionProblem& problem, std::span<const Channels> fluence) {
+  const DiffusionGrid& grid = problem.grid;
+  std::vector<std::uint32_t> place(fluence.size(), DiffusionGrid::kNone), cells;
+  for (const DiffusionGrid::ObliqueLink& link : grid.oblique())
+    for (const std::uint32_t cell : {link.a, link.b})
+      if (place[cell] == DiffusionGrid::kNone) {
+        place[cell] = std::uint32_t(cells.size());
+        cells.push_back(cell);
+      }
+  std::vector<std::array<Vec3f, 3>> gradients(cells.size());
+  parallel_chunks(cells.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) gradients[i] = gradient_at(grid, fluence, cells[i]);
+  });
+  for (const DiffusionGrid::ObliqueLink& link : grid.oblique()) {
+    const Channels diffusivity = problem.between(link.a, link.b);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3f gradient = (gradients[place[link.a]][c] + gradients[place[link.b]][c]) * .5f;
+      const float flow = diffusivity.c[c] * link.conductance * dot(gradient, link.across);
+      problem.source[link.a].c[c] -= flow;
+      problem.source[link.b].c[c] += flow;
+    }
+  }
+}
 
 constexpr double kTolerance = 1e-3;  // tolerance of the solver; moves the bunny's picture by .03 %
 constexpr double kRough = 1e-2;      // tolerance of the fluence for the oblique flow
@@ -26,12 +81,7 @@ DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshe
 
 Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell) {
   constexpr int kMultiple = 2 * DiffusionGrid::kLargest;  // multiple that allows cells of twice the size
-  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  for (const std::uint32_t m : meshes)
-    for (const Vec3d& p : world.meshes[m].positions) {
-      low = component_min(low, p);
-      high = component_max(high, p);
-    }
+  const auto [low, high] = bounds(world, meshes);
   // No plane of the lattice in a face of a box.
   const Vec3d margin = Vec3d(1.3713, 1.4289, 1.3317) * cell;
   const auto cells = [&](double extent) {
@@ -172,5 +222,4 @@ std::vector<Channels> DiffusionBody::losses() const {
         loss[cell].c[c] += boundary_.elements[i].area * float(space().media_of(cell)[c].conductance(depth));
   return loss;
 }
-
 }  // namespace opaline

@@ -2,7 +2,6 @@
 #include "volume/diffusion_solver.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "opaline/core/parallel.h"
 

@@ -2,7 +2,6 @@
 // Where parallel lines run inside a body.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>

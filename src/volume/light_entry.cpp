@@ -52,11 +52,7 @@ EvenPoints::EvenPoints(const RayScene& rays, const World& world, std::span<const
     Piece piece;
     double area;
   };
-  Bounds box;
-  for (const std::uint32_t m : meshes) {
-    const Bounds other = bounds(world.meshes[m]);
-    box = {component_min(box.low, other.low), component_max(box.high, other.high)};
-  }
+  const Bounds box = bounds(world, meshes);
   const double scale = 1 / std::max(1e-300, max_component(box.high - box.low));
   std::vector<Placed> placed;
   for (const std::uint32_t m : meshes) {

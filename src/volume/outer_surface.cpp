@@ -2,10 +2,7 @@
 #include "volume/outer_surface.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "opaline/core/random.h"
 
 namespace opaline {
 namespace {
@@ -30,19 +27,6 @@ void follow(const RayScene& rays, const Vec3d& from, const Vec3d& direction, dou
 
 bool leaves(const Hit& hit, const Vec3d& direction) {
   return dot(Vec3d(hit.edges_cross), direction) > 0;
-}
-
-bool boxes_meet(const World& world, std::span<const std::uint32_t> meshes) {
-  std::vector<Bounds> boxes;
-  for (const std::uint32_t m : meshes) {
-    const Bounds box = bounds(world.meshes[m]);
-    for (const Bounds& other : boxes) {
-      const Vec3d gap = component_max(box.low, other.low) - component_min(box.high, other.high);
-      if (gap.x <= 0 && gap.y <= 0 && gap.z <= 0) return true;
-    }
-    boxes.push_back(box);
-  }
-  return false;
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "opaline/core/parallel.h"
-#include "opaline/core/random.h"
 #include "opaline/transport/random_walk.h"
 
 namespace opaline {

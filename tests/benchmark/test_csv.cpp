@@ -6,9 +6,8 @@
 #include <map>
 #include <set>
 
-#include "benchmark/csv.h"
 #include "opaline/core/error.h"
-
+#include "support/read_csv.h"
 namespace opaline {
 namespace {
 

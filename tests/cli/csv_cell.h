@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "benchmark/csv.h"
+#include "support/read_csv.h"
 
 namespace opaline {
 

@@ -101,7 +101,7 @@ TEST(CliFailures, OutOfMemory) {
 }
 
 // Claim: whatever address space there is, the program makes the picture or ends with exit 3 and the old file as it was; where
-// not even its libraries can be loaded the system says so (127). Source: process_start.h. Fails if: an exception leaves a
+// not even its libraries can be loaded the system says so (127). Source: main.cpp. Fails if: an exception leaves a
 // library's constructor before main, as at 100 MB, and aborts.
 TEST(CliFailures, NoMemoryAbortsNothing) {
   const SceneFolder folder;

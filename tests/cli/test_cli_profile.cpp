@@ -8,10 +8,10 @@
 #include <cstdio>
 
 #include "../benchmark/page_data.h"
-#include "benchmark/csv.h"
 #include "opaline/scene/enumerations.h"
 #include "opaline/transport/fresnel.h"
 #include "run_program.h"
+#include "support/read_csv.h"
 
 namespace opaline {
 namespace {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 
@@ -15,6 +18,60 @@ const std::string scenes = OPALINE_SCENES_DIR;
 std::string between_backticks(const std::string& line) {
   const std::size_t begin = line.find('`'), end = line.find('`', begin + 1);
   return end == std::string::npos ? "" : line.substr(begin + 1, end - begin - 1);
+}
+
+std::string number_text(double value) {
+  if (value == kMostWholeNumber.high) return "2^64 - 1";
+  const bool is_power = value >= 1e7 || (value > 0 && value < 1e-3);
+  return is_power ? fmt::format("1e{}", std::lround(std::log10(value))) : fmt::format("{}", value);
+}
+
+std::string range_text(const KeyInfo& info) {
+  const Range& range = info.range;
+  if (range.low == kFiniteNumber.low && range.high == kFiniteNumber.high) return "";
+  const std::string low = number_text(range.low), high = number_text(range.high);
+  if (range.without_low && range.without_high) return fmt::format("between {} and {}", low, high);
+  return fmt::format("{}{} to {}", range.without_low ? "> " : "", low, high);
+}
+
+std::string plain_values_text(const KeyInfo& info) {
+  switch (info.type) {
+    case ValueType::length:
+      return "scene units, > 0";
+    case ValueType::point:
+      return "scene units";
+    case ValueType::flag:
+      return "true, false";
+    case ValueType::color:
+      return "colour, " + range_text(info);
+    case ValueType::number:
+    case ValueType::whole_number:
+    case ValueType::number_or_triple:
+      return range_text(info);
+    case ValueType::triple:
+    case ValueType::choice:
+    case ValueType::text:
+    case ValueType::file:
+    case ValueType::list:
+    case ValueType::object:
+      return "";
+  }
+  return "";
+}
+
+std::string values_text(const KeyInfo& info) {
+  const std::string plain = plain_values_text(info);
+  if (!info.may_be_texture) return plain;
+  return plain.empty() ? "texture" : plain + ", or a texture";
+}
+
+/// The row as scenes/README.md has it.
+std::string documentation(const KeyInfo& info) {
+  const std::string values = values_text(info);
+  const std::string_view comma = info.unit.empty() || values.empty() ? "" : ", ";
+  const auto cell = [](const std::string& text) { return text.empty() ? " |" : " " + text + " |"; };
+  return fmt::format("| `{}` |", info.key) + cell(std::string(info.meaning)) +
+         cell(fmt::format("{}{}{}", info.unit, comma, values)) + cell(info.default_value);
 }
 
 // Claim: the tables of scenes/README.md and docs/laboratory.md are the rows of the schema, each in the table of its section, with

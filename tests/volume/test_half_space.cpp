@@ -10,6 +10,11 @@ using test::expect_walked;
 using test::medium_of_albedo;
 using test::walks_of_seed;
 
+/// The fraction of the incident flux for a fraction of what entered.
+WalkedValue per_incident(const SlabWalks& walks, const WalkedValue& share) {
+  return {share.value * walks.entered, share.error * walks.entered};
+}
+
 struct HalfSpaceRow {
   double albedo, normal, diffuse;
 };

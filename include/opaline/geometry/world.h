@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,6 +37,13 @@ inline Vec3d into_world(const World& world, const Vec3d& p) {
 inline Vec3d out_of_world(const World& world, const Vec3d& p) {
   return p * world.unit + world.origin;
 }
+
+/// The smallest box around these meshes, units; of none low > high.
+Bounds bounds(const World& world, std::span<const std::uint32_t> meshes);
+/// True if the boxes of two of them meet.
+bool boxes_meet(const World& world, std::span<const std::uint32_t> meshes);
+/// Their area, square units.
+double area_of(const World& world, std::span<const std::uint32_t> meshes);
 
 /// Meshes of all shapes.
 /// error as make_mesh, told at the shape's place in the scene.

@@ -33,6 +33,12 @@ inline Vec3d transform_point(const Transform& t, const Vec3d& p) {
   return t.x * p.x + t.y * p.y + t.z * p.z + t.translation;
 }
 
+/// First `first`, then `second`.
+inline Transform compose(const Transform& second, const Transform& first) {
+  const auto linear = [&](const Vec3d& v) { return second.x * v.x + second.y * v.y + second.z * v.z; };
+  return {linear(first.x), linear(first.y), linear(first.z), transform_point(second, first.translation)};
+}
+
 // ---- textures -------------------------------------------------------------------------------------------
 
 class TextureFile;

@@ -4,11 +4,9 @@
 // their JSON Schema.
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "opaline/scene/scene.h"
 
@@ -63,8 +61,6 @@ std::span<const std::string_view> file_keys();
 std::span<const std::string_view> section_keys(std::string_view section);
 /// Path of a key of `settings` or of `settings.laboratory`: "settings.laboratory.near_field".
 std::string settings_path(std::string_view key);
-/// The row as scenes/README.md has it.
-std::string documentation(const KeyInfo& info);
 
 /// The rows as a JSON Schema of scene files (draft-07).
 std::string json_schema();

@@ -2,7 +2,6 @@
 // A scene that is edited and rendered repeatedly, with reuse of all valid stage results.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>

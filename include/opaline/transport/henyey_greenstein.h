@@ -5,19 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "opaline/core/vec3.h"
 
 namespace opaline {
 
-/// Fraction of scattered light per solid angle, 1/sr, at the cosine of the scattering angle; g in (-1, 1).
-inline double henyey_greenstein(double g, double cosine) {
-  const double denominator = 1 + g * g - 2 * g * cosine;
-  return (1 - g * g) / (4 * std::numbers::pi * denominator * std::sqrt(denominator));
-}
-
-/// Cosine of the scattering angle with that density, from u uniform in [0, 1).
+/// Cosine of the scattering angle, from u uniform in [0, 1).
 /// from  the usual (1 + g^2 - ((1 - g^2) / (1 + g s))^2) / (2 g), s = 2u - 1, multiplied out: no digits are lost at
 ///       g = 0, where it is s
 inline double sample_henyey_greenstein(double g, double u) {

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "opaline/core/monitor.h"
@@ -68,11 +67,6 @@ struct SlabWalks {
   /// entry face. Zero at total reflection.
   std::vector<WalkedCosine> albedo_by_entry;
 };
-
-/// The fraction of the incident flux for a fraction of what entered.
-inline WalkedValue per_incident(const SlabWalks& walks, const WalkedValue& share) {
-  return {share.value * walks.entered, share.error * walks.entered};
-}
 
 inline constexpr std::size_t kWalkBatches = 512;
 

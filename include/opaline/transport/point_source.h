@@ -3,11 +3,6 @@
 // diffusion, and by random walks.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "opaline/transport/laboratory.h"
 #include "opaline/transport/medium.h"
 

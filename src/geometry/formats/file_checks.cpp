@@ -1,14 +1,178 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/formats/file_checks.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
+#include <map>
 #include <utility>
+#include <vector>
 
-#include "geometry/doubled_polygons.h"
+#include "geometry/cut_polygons.h"
+#include "geometry/topology.h"
+#include "opaline/core/random.h"
 
 namespace opaline {
 namespace {
+
+/// The corners of a polygon from its lowest vertex towards the lower of that one's neighbours: the same for all polygons
+/// with the same edges.
+class Circuit {
+ public:
+  void read(const std::vector<Triangle>& triangles, const Fan& fan, const std::vector<std::uint32_t>& same) {
+    const Triangle& first = triangles[fan.first];
+    corners_ = {same[first[0]], same[first[1]]};
+    for (std::size_t t = 0; t < fan.count; ++t) corners_.push_back(same[triangles[fan.first + t][2]]);
+    start_ = std::size_t(std::ranges::min_element(corners_) - corners_.begin());
+    const std::size_t last = size() - 1;
+    is_forward_ = corners_[(start_ + 1) % size()] <= corners_[(start_ + last) % size()];
+  }
+
+  std::size_t size() const { return corners_.size(); }
+  bool is_forward() const { return is_forward_; }
+
+  /// The polygon's corner at a place of the circuit, and the other way round.
+  std::uint32_t corner(std::size_t place) const {
+    return std::uint32_t((is_forward_ ? start_ + place : start_ + size() - place) % size());
+  }
+  std::size_t place(std::size_t corner) const {
+    return (is_forward_ ? corner + size() - start_ : start_ + size() - corner) % size();
+  }
+
+  std::uint64_t hash() const {
+    std::uint64_t hash = size();
+    for (std::size_t i = 0; i < size(); ++i) hash = hash_bits(hash, corners_[corner(i)]);
+    return hash;
+  }
+
+  bool has_edges_of(const Circuit& other) const {
+    if (size() != other.size()) return false;
+    for (std::size_t i = 0; i < size(); ++i)
+      if (corners_[corner(i)] != other.corners_[other.corner(i)]) return false;
+    return true;
+  }
+
+ private:
+  std::vector<std::uint32_t> corners_;  // by their first vertices of equal position
+  std::size_t start_ = 0;
+  bool is_forward_ = true;
+};
+
+Triangle sorted(Triangle triangle) {
+  std::ranges::sort(triangle);
+  return triangle;
+}
+
+class DoubleCutter {
+ public:
+  DoubleCutter(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
+               const std::vector<Fan>& fans, const std::vector<Recut>& cuts)
+      : triangles_(triangles), fans_(fans), cuts_(cuts), same_(weld(positions)) {}
+
+  std::vector<Recut> run() {
+    find_given_triangles();
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> by_hash;
+    by_hash.reserve(fans_.size());
+    for (std::uint32_t f = 0; f < fans_.size(); ++f) {
+      second_.read(triangles_, fans_[f], same_);
+      by_hash.emplace_back(second_.hash(), f);
+    }
+    std::ranges::sort(by_hash);
+    for (std::size_t begin = 0, end = 0; begin < by_hash.size(); begin = end) {
+      while (end < by_hash.size() && by_hash[end].first == by_hash[begin].first) ++end;
+      cut_as_given(by_hash[begin].second);
+      for (std::size_t i = begin + 1; i < end; ++i) cut_alike(by_hash[begin].second, by_hash[i].second);
+    }
+    return merged();
+  }
+
+ private:
+  /// Triangles that are no part of a polygon.
+  void find_given_triangles() {
+    std::size_t next = 0;
+    for (std::size_t t = 0; t < triangles_.size();) {
+      if (next < fans_.size() && fans_[next].first == t) {
+        t += fans_[next++].count;
+        continue;
+      }
+      const auto [a, b, c] = triangles_[t++];
+      given_.push_back(sorted({same_[a], same_[b], same_[c]}));
+    }
+    std::ranges::sort(given_);
+  }
+
+  bool is_given(std::uint32_t f, const Triangle& corners) const {
+    Triangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) triangle[k] = same_[vertex(f, corners[k])];
+    return std::ranges::binary_search(given_, sorted(triangle));
+  }
+
+  std::uint32_t vertex(std::uint32_t f, std::uint32_t corner) const {
+    return corner == 0   ? triangles_[fans_[f].first][0]
+           : corner == 1 ? triangles_[fans_[f].first][1]
+                         : triangles_[fans_[f].first + corner - 2][2];
+  }
+
+  void cut_as_given(std::uint32_t f) {
+    if (fans_[f].count != 2 || given_.empty()) return;
+    for (const std::vector<Triangle>& cut :
+         {std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}, std::vector<Triangle>{{0, 1, 3}, {1, 2, 3}}})
+      if (is_given(f, cut[0]) && is_given(f, cut[1])) new_cuts_[f] = cut;
+  }
+
+  std::vector<Triangle> cut_of(std::uint32_t f) const {
+    if (const auto found = new_cuts_.find(f); found != new_cuts_.end()) return found->second;
+    const auto cut =
+        std::ranges::lower_bound(cuts_, fans_[f].first, {}, [](const Recut& c) { return c.fan.first; });
+    if (cut != cuts_.end() && cut->fan.first == fans_[f].first) return cut->corners;
+    std::vector<Triangle> fan;
+    for (std::uint32_t i = 2; i < fans_[f].count + 2; ++i) fan.push_back({0, i - 1, i});
+    return fan;
+  }
+
+  void cut_alike(std::uint32_t first, std::uint32_t second) {
+    first_.read(triangles_, fans_[first], same_);
+    second_.read(triangles_, fans_[second], same_);
+    if (!second_.has_edges_of(first_)) return;
+    std::vector<Triangle> cut = cut_of(first);
+    for (Triangle& triangle : cut) {
+      for (std::uint32_t& corner : triangle) corner = second_.corner(first_.place(corner));
+      if (first_.is_forward() != second_.is_forward()) std::swap(triangle[1], triangle[2]);
+    }
+    new_cuts_[second] = std::move(cut);
+  }
+
+  /// The given cuts and the new ones, in the order of the fans.
+  std::vector<Recut> merged() {
+    std::vector<Recut> merged;
+    auto old = cuts_.begin();
+    for (auto& [f, cut] : new_cuts_) {
+      for (; old != cuts_.end() && old->fan.first < fans_[f].first; ++old) merged.push_back(*old);
+      if (old != cuts_.end() && old->fan.first == fans_[f].first) ++old;
+      merged.push_back({fans_[f], std::move(cut)});
+    }
+    merged.insert(merged.end(), old, cuts_.end());
+    return merged;
+  }
+
+  const std::vector<Triangle>& triangles_;
+  const std::vector<Fan>& fans_;
+  const std::vector<Recut>& cuts_;
+  std::vector<std::uint32_t> same_;
+  std::vector<Triangle> given_;                              // sorted
+  std::map<std::uint32_t, std::vector<Triangle>> new_cuts_;  // by the numbers of fans
+  Circuit first_, second_;
+};
+
+/// Cuts of polygons with the same corners become alike, whichever corner they start at and whichever way they run, so
+/// that their triangles are duplicates of each other. A quad that the file also gives as two triangles is cut as they are.
+/// in    cuts: of cut_concave_polygons, in the order of the fans; positions that are equal are one corner
+/// out   cuts with those of the later polygons added or replaced
+void cut_doubles_alike(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
+                       const std::vector<Fan>& fans, std::vector<Recut>& cuts) {
+  if (!fans.empty()) cuts = DoubleCutter(positions, triangles, fans, cuts).run();
+}
 
 bool is_in_range(const Vec3d& v) {
   return std::abs(v.x) < coordinate_limit && std::abs(v.y) < coordinate_limit &&
@@ -68,5 +232,4 @@ void require_faces(const std::string& path, std::size_t vertices, std::size_t fa
   if (vertices == 0) throw bad_file(path, "the mesh has no vertices", "at least three", "none");
   if (faces == 0) throw bad_file(path, "the mesh has no faces", "at least one", "none");
 }
-
 }  // namespace opaline

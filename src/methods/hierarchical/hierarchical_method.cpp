@@ -3,18 +3,69 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
 #include <variant>
 
-#include "methods/hierarchical/body_cloud_error.h"
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/sample_field.h"
 #include "methods/hierarchical/surface_caches.h"
 #include "opaline/diffusion/tabulated.h"
 #include "opaline/exitance/cloud_error.h"
+#include "opaline/exitance/evaluate.h"
+#include "opaline/lights/light.h"
+#include "opaline/render/precompute.h"
 #include "session/stage_codecs.h"
 
 namespace opaline {
 namespace {
+
+// Few rays: more do not differ by half of the light by chance (shadow_edges.cpp).
+constexpr int kFewRays = 8;
+
+/// Light fractions of the light entering, per channel.
+struct LightShares {
+  std::array<float, 3> shifted{};  ///< LightTransfer::edge_shift of all lights, as far as it is due to chance
+  std::array<float, 3> from_points{};  ///< from lights without area
+};
+
+LightShares light_shares(const Body& body, const World& world, const Scene& scene) {
+  const std::vector<Light> lights = recentred_lights(scene, world);  // as the weights are
+  std::array<double, 3> shift{}, points{}, sum{};
+  for (std::size_t l = 0; l < body.transfers.size(); ++l) {
+    const LightTransfer& transfer = body.transfers[l];
+    double light = 0;
+    for (std::size_t i = 0; i < transfer.weights.size(); ++i)
+      light += double(body.surface.samples[i].area) * double(transfer.weights[i]);
+    const bool is_point = is_delta(lights[l]),
+               chance = !is_point && shadow_rays(lights[l], scene.settings.light_samples) < kFewRays;
+    const Rgb colour = emission(lights[l]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum[c] += colour[c] * light;
+      shift[c] += chance ? colour[c] * light * transfer.edge_shift : 0;
+      points[c] += is_point ? colour[c] * light : 0;
+    }
+  }
+  LightShares shares;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (!(sum[c] > 0)) continue;
+    shares.shifted[c] = float(std::abs(shift[c]) / sum[c]);
+    shares.from_points[c] = float(points[c] / sum[c]);
+  }
+  return shares;
+}
+
+/// in    body: with its transfers, tree and kernels
+CloudError body_cloud_error(const Body& body, const World& world, const Scene& scene) {
+  const HierarchicalState& state = hierarchical_state(body);
+  const Settings& settings = scene.settings;
+  const LightShares shares = light_shares(body, world, scene);
+  CloudError error = tell_cloud_error(
+      {state.octree(), state.kernel(), state.kernels.value.wider, settings.evaluator, settings.tolerance,
+       settings.laboratory.max_solid_angle, settings.laboratory.instruction_set, shares.from_points});
+  error.light_shift = shares.shifted;
+  return error;
+}
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
 constexpr std::uint64_t kKernelVersion = 4, kExitanceVersion = 8;
@@ -196,5 +247,4 @@ std::vector<RgbF> HierarchicalMethod::exitance_at(const Body& body, std::span<co
 std::unique_ptr<Field> HierarchicalMethod::field(const RenderInput& input, const Body& body) const {
   return std::make_unique<SampleField>(input, body);
 }
-
 }  // namespace opaline

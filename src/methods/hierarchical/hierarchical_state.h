@@ -2,8 +2,6 @@
 // Octree of transmitted flux, kernel and surface cache of one body.
 #pragma once
 
-#include <optional>
-
 #include "methods/stage_store.h"
 #include "opaline/exitance/evaluate.h"
 #include "opaline/exitance/octree.h"

@@ -2,8 +2,6 @@
 // Samples, memory, time and stages of `hierarchical`.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "methods/hierarchical/hierarchical_method.h"
 #include "methods/hierarchical/surface_caches.h"
 #include "render/light_distance.h"

@@ -20,11 +20,7 @@ double anisotropy_of(const Medium& medium) {
 }
 
 double diagonal_of(const World& world, std::span<const std::uint32_t> meshes) {
-  Bounds box;
-  for (const std::uint32_t m : meshes) {
-    const Bounds other = bounds(world.meshes[m]);
-    box = {component_min(box.low, other.low), component_max(box.high, other.high)};
-  }
+  const Bounds box = bounds(world, meshes);
   return length(box.high - box.low);
 }
 

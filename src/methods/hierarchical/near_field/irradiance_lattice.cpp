@@ -102,10 +102,7 @@ std::vector<IrradianceLattice::Key> IrradianceLattice::keys_near(std::span<const
                      std::int64_t(std::floor((high + reach) / side)));
   };
   Vec3d low(points[chosen.front()].position), high = low;
-  for (const std::uint32_t i : chosen) {
-    low = component_min(low, Vec3d(points[i].position));
-    high = component_max(high, Vec3d(points[i].position));
-  }
+  for (const std::uint32_t i : chosen) widen(low, high, Vec3d(points[i].position));
   const auto is_near = [&](const Vec3d& p, const std::array<std::int64_t, 3>& corner) {
     double square = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -187,10 +184,7 @@ IrradianceLattice::Cell IrradianceLattice::make_cell(const Key& key,
       add_crossings(lighting.rays, triangle, crossings);
   if (cell.points.empty()) return cell;
   cell.low = cell.high = cell.points.front().position;
-  for (const SurfacePoint& point : cell.points) {
-    cell.low = component_min(cell.low, point.position);
-    cell.high = component_max(cell.high, point.position);
-  }
+  for (const SurfacePoint& point : cell.points) widen(cell.low, cell.high, point.position);
   cell.seed = crossings.seed;
   return cell;
 }

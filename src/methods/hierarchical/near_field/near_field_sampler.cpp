@@ -250,10 +250,7 @@ void NearFieldSampler::sort_into_groups(std::span<const SurfacePoint> points, st
 void NearFieldSampler::part(std::span<const SurfacePoint> points, std::span<std::uint32_t> marked,
                             std::size_t count) {
   Vec3f low = points[marked[0]].position, high = low;
-  for (const std::uint32_t m : marked) {
-    low = component_min(low, points[m].position);
-    high = component_max(high, points[m].position);
-  }
+  for (const std::uint32_t m : marked) widen(low, high, points[m].position);
   const Vec3f side = high - low;
   const std::size_t axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
   const auto along = [&](std::uint32_t m) { return std::pair(points[m].position[axis], m); };
