@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which field answers for which mesh.
+// // Field of each mesh.
 #pragma once
 
 #include <memory>
