@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stage results that are reused, read from the disk cache, or computed.
+// Stage results: reused, read from the disk cache, or computed.
 #pragma once
 
 #include <string>

@@ -14,8 +14,8 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kPlaces = 500;
-// // Least cosine between a chord and the normal for the chord to start outside. Slightly concave surfaces
-// stay below it.
+// Least cosine between a chord and the normal for the chord to start outside. Slightly concave surfaces stay
+// below it.
 constexpr double kOutward = .5;
 
 struct Place {

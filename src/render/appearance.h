@@ -31,7 +31,7 @@ struct Appearance {
   /// Angular distribution of light traced inside; none: given by the boundary.
   std::shared_ptr<const AngularExit> exit = {};
 
-  /// /// Appearance at a point with known textures.
+  /// Appearance at a point with known textures.
   Appearance at(const HitTextures& textures) const {
     Appearance here = *this;
     here.albedo = albedo * textures.tint.entering * textures.tint.leaving + textures.reflected;
@@ -41,12 +41,11 @@ struct Appearance {
     return here;
   }
 
-  /// /// Specular reflectance for a direction.
+  /// Specular reflectance for a direction.
   float reflectance(float cosine) const {
     return rough ? rough->reflectance(cosine) : fresnel_reflectance(cosine, eta);
   }
-  /// /// Outgoing radiance over radiant exitance. Adds up to 1 with the specular reflectance in a white
-  /// furnace.
+  /// Outgoing radiance over radiant exitance. Adds up to 1 with the specular reflectance in a white furnace.
   float radiance_of_exitance(float cosine) const {
     constexpr float kInversePi = std::numbers::inv_pi_v<float>;
     if (!has_boundary) return kInversePi;
@@ -54,7 +53,7 @@ struct Appearance {
     return metalness > 0 ? entered * (1 - metalness) : entered;
   }
   bool mirrors() const { return has_boundary && eta != 1; }
-  /// /// Specular reflectance of uniform illumination, by view direction.
+  /// Specular reflectance of uniform illumination, by view direction.
   RgbF mirrored_share(float cosine) const {
     const float dielectric = reflectance(cosine);
     if (!(metalness > 0)) return RgbF(dielectric);
@@ -62,8 +61,8 @@ struct Appearance {
     return RgbF(dielectric * (1 - metalness)) +
            metal(cosine) * (RgbF(once) + albedo * (1 - once)) * metalness;
   }
-  /// /// Specular reflectance over that of a dielectric boundary; above the single-scattering value, as
-  /// facets reflect repeatedly.
+  /// Specular reflectance over that of a dielectric boundary; above the single-scattering value, as facets
+  /// reflect repeatedly.
   /// in    cosine: between the direction and the facet's normal; reflected_once: RoughBoundary's, for the
   ///       view
   /// from  Turquin 2019, Practical multiple scattering compensation for microfacet models
@@ -81,7 +80,7 @@ struct Appearance {
   }
 };
 
-/// /// Cosine of the view direction with the shading normal, at least half of its cosine with the geometric
+/// Cosine of the view direction with the shading normal, at least half of its cosine with the geometric
 /// normal. On coarse meshes
 /// a shading normal may face away from a camera facing the triangle, and the boundary would then transmit
 /// nothing.

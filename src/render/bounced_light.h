@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Indirect light between surfaces.
+// Indirect light between surfaces.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace opaline {
 
-/// /// Irradiance cache for indirect light, in image space: 64 points along the longer side of the image, and
+/// Irradiance cache for indirect light, in image space: 64 points along the longer side of the image, and
 /// closer ones where near
 /// surfaces light each other and the irradiance varies. Includes a second bounce if the bodies' trees contain
 /// indirect light; they do
@@ -23,43 +23,43 @@ namespace opaline {
 /// from  Ward, Rubinstein & Clear 1988
 class BouncedPlaces {
  public:
-  static constexpr std::size_t kBeside = 4;  ///< ///< cache points of a row with a weight at a hit
+  static constexpr std::size_t kBeside = 4;  ///< cache points of a row with a weight at a hit
 
   /// shader: without bounced light
   BouncedPlaces(const RenderInput& input, const Shader& shader);
 
-  /// /// Interpolated indirect irradiance; none without a cache point on the point's tangent plane.
+  /// Interpolated indirect irradiance; none without a cache point on the point's tangent plane.
   std::optional<RgbF> at(const SurfacePoint& point, float eta) const;
 
  private:
-  /// /// Cache points, one array per coordinate for vector instructions.
+  /// Cache points, one array per coordinate for vector instructions.
   struct Places {
     std::vector<float> x, y, z, normal_x, normal_y, normal_z;
-    std::vector<float> reach;  ///< ///< distance from the tangent plane at which the weight is a half
+    std::vector<float> reach;  ///< distance from the tangent plane at which the weight is a half
     std::vector<float> eta;    ///< below 0: no surface there
 
-    /// /// Boundary and position of a query; dx, dy: to the first cache point of a row, in spacings.
+    /// Boundary and position of a query; dx, dy: to the first cache point of a row, in spacings.
     struct Asked {
       Vec3f point, normal;
       float eta, dx, dy;
     };
     void resize(std::size_t count);
     void set(std::size_t i, const SurfacePoint& point, float boundary, float spacing);
-    /// /// Weights of the cache points first, first + 1, ... of a row.
+    /// Weights of the cache points first, first + 1, ... of a row.
     std::array<float, kBeside> weights(const Asked& asked, std::size_t first) const;
   };
-  /// /// Cache points over the whole image and a small margin, so a crop equals the same part of the full
-  /// image; row by row.
+  /// Cache points over the whole image and a small margin, so a crop equals the same part of the full image;
+  /// row by row.
   struct Lattice {
-    int step;  ///< ///< spacing, pixels
+    int step;  ///< spacing, pixels
     int columns, rows;
     Places places;
     std::vector<RgbF> irradiance;
-    std::vector<bool> is_near;  ///< ///< true if the gathered surfaces are close, relative to the spacing
+    std::vector<bool> is_near;  ///< true if the gathered surfaces are close, relative to the spacing
 
     Lattice(const Film& film, int pixels);
     std::array<double, 2> in_places(const CameraRays::FilmPlace& seen) const;
-    /// /// True if a cache point around this position is near a surface and the irradiance varies.
+    /// True if a cache point around this position is near a surface and the irradiance varies.
     bool needs_closer_places(const CameraRays::FilmPlace& seen) const;
     std::optional<RgbF> at(const CameraRays::FilmPlace& seen, const SurfacePoint& point, float eta) const;
   };
@@ -68,11 +68,11 @@ class BouncedPlaces {
   std::vector<std::uint32_t> places_beside_near(const Lattice& coarse, const Lattice& fine) const;
 
   CameraRays camera_;
-  std::vector<Lattice> lattices_;  // // each with half the spacing of the last, where necessary
-  std::size_t chunks_ = 0;         // // chunks of gathered cache points
+  std::vector<Lattice> lattices_;  // each with half the spacing of the last, where necessary
+  std::size_t chunks_ = 0;         // chunks of gathered cache points
 };
 
-/// /// Indirect light at the hits of an image: from RenderInput::bounced, or from a cache of its own. Hits
+/// Indirect light at the hits of an image: from RenderInput::bounced, or from a cache of its own. Hits
 /// without a usable cache point,
 /// as at silhouettes, gather rays themselves, with a second bounce if the bodies' trees contain the first.
 class BouncedLight {
@@ -80,7 +80,7 @@ class BouncedLight {
   /// shader: without bounced light; both must outlive it
   BouncedLight(const RenderInput& input, const Shader& shader);
 
-  /// /// Irradiance per hit, W/mm^2. held: cached results for the same hits, extended; or null
+  /// Irradiance per hit, W/mm^2. held: cached results for the same hits, extended; or null
   std::vector<RgbF> at(const SurfaceHits& hits, float eta, HeldView::Surface* held = nullptr) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Checks the camera and the lights against the range of single precision.
+// Checks the camera and the lights against the range of single precision.
 #pragma once
 
 #include "opaline/geometry/world.h"

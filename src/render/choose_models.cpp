@@ -23,18 +23,18 @@ constexpr ProfileKind kOfBodies = ProfileKind::normalized_diffusion;
 constexpr ProfileKind kOfThickPlates = ProfileKind::dipole;
 // Alignment of a square plate with a thickness of a sixth of its width.
 constexpr double kFlatAlignment = .58;
-// // Plates thicker than this many diffuse mean free paths, in the channel with the longest, transmit less
-// than 2 %.
+// Plates thicker than this many diffuse mean free paths, in the channel with the longest, transmit less than
+// 2 %.
 constexpr double kCrossed = 4;
 
 /// Extremes of a medium over its scattering channels.
 struct MediumExtremes {
   double mean_free_path = 0, diffuse_mean_free_path = 0;  ///< the longest, mm
-  std::string channels;  ///< ///< channels with the longest mean free path: "red", "red, green"
+  std::string channels;  ///< channels with the longest mean free path: "red", "red, green"
   double absorbed = 0;   ///< 1 - reduced albedo, the largest
 };
 
-/// /// Expected error: a base value, plus terms for thin bodies and dark media.
+/// Expected error: a base value, plus terms for thin bodies and dark media.
 struct ErrorPlane {
   double base, thin, dark;
   double at(double mean_free_paths, const MediumExtremes& medium) const {

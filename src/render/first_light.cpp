@@ -21,7 +21,7 @@ int divided_up(int a, int b) {
   return (a + b - 1) / b;
 }
 
-/// /// Maps pixels of an image to pixels of a coarse one with the same centre.
+/// Maps pixels of an image to pixels of a coarse one with the same centre.
 struct CoarseGrid {
   int stride;
   std::array<int, 2> resolution, coarse;
@@ -35,7 +35,7 @@ struct CoarseGrid {
   double place(double pixel, std::size_t axis) const {
     return (pixel + .5 - resolution[axis] / 2.0) / stride + coarse[axis] / 2.0 - .5;
   }
-  /// /// Coarse pixels around all those of a part.
+  /// Coarse pixels around all those of a part.
   std::array<int, 4> around(const Rectangle& part) const {
     const auto low = [&](int pixel, std::size_t axis) {
       return std::clamp(int(std::floor(place(pixel, axis))), 0, coarse[axis] - 1);
@@ -63,7 +63,7 @@ int stride_of(const Film& film) {
   return std::max(kStride, divided_up(std::max(part.x1 - part.x0, part.y1 - part.y0), kWidest));
 }
 
-/// /// Two neighbours of a row or column of pixels, and the second one's weight.
+/// Two neighbours of a row or column of pixels, and the second one's weight.
 struct Between {
   std::size_t first, second;
   float share;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Indirect light gathered at points.
+// Indirect light gathered at points.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace opaline {
 
-/// /// Points traced and shaded together. Hierarchical evaluation of many points over all directions takes
-/// half the time of small sets.
+/// Points traced and shaded together. Hierarchical evaluation of many points over all directions takes half
+/// the time of small sets.
 inline constexpr std::size_t kGatheredAtOnce = 1024;
 
 /// Light gathered at points, by rays over the hemisphere, from surfaces under direct light.
@@ -22,12 +22,12 @@ struct GatherInput {
   const Shader& shader;
   std::span<const SurfacePoint> points;
   std::span<const std::uint64_t> keys;  ///< one a point: chooses its random numbers
-  float eta = 0;                        ///< ///< eta of the boundary transmitting the light; 0: none
+  float eta = 0;                        ///< eta of the boundary transmitting the light; 0: none
   int rays_each = 64;
   std::uint64_t seed = 0;
   /// Cached hits of the same points, keys, number and seed, extended up to gathered_bytes of the view; or null.
   HeldView::Gathering* held = nullptr;
-  HeldView* view = nullptr;  ///< ///< cache containing it
+  HeldView* view = nullptr;  ///< cache containing it
 };
 
 /// Light reaching a point from a surface.

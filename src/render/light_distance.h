@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Distance of lights from the surface, to warn of highlights smaller than the sample spacing.
+// Distance of lights from the surface, to warn of highlights smaller than the sample spacing.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,7 @@
 
 namespace opaline {
 
-/// /// Distance from the middle of a light to the nearest point of these meshes, mm, if it is below the
-/// limit.
+/// Distance from the middle of a light to the nearest point of these meshes, mm, if it is below the limit.
 /// The middle is the point, the sphere's centre (unoccluded, a sphere light is equivalent to a point light
 /// there) or the
 /// quad's middle line along its longer side. None for lights at least twice as wide as the limit, directional

@@ -16,15 +16,15 @@
 namespace opaline {
 namespace {
 
-// // Lower bounds resolving the irradiance itself, however far light travels inside. With many bodies, each
-// is small in the image, and
+// Lower bounds resolving the irradiance itself, however far light travels inside. With many bodies, each is
+// small in the image, and
 // all share kFewestOfAll.
 constexpr double kFewestSamples = 10000, kFewestOfAll = 2e6, kFewestOfMany = 100;
 constexpr double kSuspiciouslyFew = 100;
 constexpr const char* kTheMinimum = "the minimum";
 
-// // Largest sample spacing: 1.5 mean free paths, or the diffuse mean free path if that is shorter, but at
-// least one mean free path.
+// Largest sample spacing: 1.5 mean free paths, or the diffuse mean free path if that is shorter, but at least
+// one mean free path.
 // SplitKernel takes transport below the spacing from the irradiance at the shading point itself. Where
 // diffuse light decays
 // faster, the exitance in shadow depends on the exact sample positions, so the spacing follows the decay.
@@ -46,16 +46,16 @@ void warn_of_few_samples(const GroupPlan& group, double wanted, std::vector<std:
                     group.name, group.smallest_mean_free_path, wanted, group.area));
 }
 
-/// /// Number of samples from the settings, if set.
+/// Number of samples from the settings, if set.
 std::optional<double> set_samples(const Settings& settings, double area) {
   if (settings.samples) return double(*settings.samples);
   if (settings.sample_spacing) return area / (*settings.sample_spacing * *settings.sample_spacing);
   return {};
 }
 
-/// /// Smallest diffuse mean free path of the scattering channels, mm.
+/// Smallest diffuse mean free path of the scattering channels, mm.
 double shortest_fading(Medium medium) {
-  medium.profile = ProfileKind::dipole;  // // classical D, as in the diffusion equation
+  medium.profile = ProfileKind::dipole;  // classical D, as in the diffusion equation
   const DiffuseProfile profile = make_diffuse_profile(medium);
   double shortest = INFINITY;
   for (std::size_t c = 0; c < 3; ++c)
@@ -74,7 +74,7 @@ void choose_samples(const Scene& scene, double fewest, GroupPlan& group, std::ve
   const Settings& settings = scene.settings;
   const double mean_free_path = group.smallest_mean_free_path,
                spacing = widest_spacing(make_diffuse_profile(scene.media[group.medium]));
-  // // Without a mean free path, light leaves where it enters, and no samples are necessary.
+  // Without a mean free path, light leaves where it enters, and no samples are necessary.
   const double wanted = std::isfinite(spacing) ? group.area / (spacing * spacing) : fewest;
   double count = set_samples(settings, group.area).value_or(std::max(wanted, fewest));
   if (settings.samples) {
@@ -121,17 +121,16 @@ bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group) {
 }
 
 bool is_too_thin_for_cells(const GroupPlan& group) {
-  constexpr double kTooThin = .6;  // // mean free paths; src/volume/README.md
+  constexpr double kTooThin = .6;  // mean free paths; src/volume/README.md
   return group.thickness > 0 && group.thickness < kTooThin * group.smallest_mean_free_path;
 }
 
-// // Cell size of volume_diffusion: as set, smaller to resolve the decay of light and thin bodies, and larger
-// to limit memory.
+// Cell size of volume_diffusion: as set, smaller to resolve the decay of light and thin bodies, and larger to
+// limit memory.
 void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
                   std::vector<std::string>& warnings) {
   constexpr double kAcrossThin = 4, kSmallest = .25;
-  constexpr double kOfVarying = .5;    // // a cell has one medium, and light blurs detail below a mean free
-                                       // path
+  constexpr double kOfVarying = .5;    // a cell has one medium, and light blurs detail below a mean free path
   constexpr double kFewestFaces = 60;  // fewest faces of cells, on the surface
   const double length = group.smallest_mean_free_path;
   const Medium& medium = scene.media[group.medium];
@@ -155,16 +154,16 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
                     group.name, group.thickness / length));
 }
 
-// // Divides a cell's edge to come close to the requested samples, with at least one sample per cell cut by
-// the surface.
+// Divides a cell's edge to come close to the requested samples, with at least one sample per cell cut by the
+// surface.
 void choose_cut(const Settings& settings, double fewest, GroupPlan& group,
                 std::vector<std::string>& warnings) {
   const double whole = kCutSamplesPerFace * group.area / (group.cell * group.cell);
   const double wanted = set_samples(settings, group.area).value_or(fewest);
   double parts = std::min(std::round(std::sqrt(wanted / whole)),
                           std::floor(std::sqrt(double(settings.max_samples) / whole)));
-  // // The cells along a wire thinner than a cell depend on its length, not its area: finer ones would be
-  // many and of no use.
+  // The cells along a wire thinner than a cell depend on its length, not its area: finer ones would be many
+  // and of no use.
   constexpr double kPartsOfThickness = 8;
   if (group.thickness > 0) parts = std::min(parts, kPartsOfThickness * group.thickness / group.cell);
   group.cell_parts = int(std::max(1., parts));

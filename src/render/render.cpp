@@ -12,7 +12,7 @@
 namespace opaline {
 namespace {
 
-// // Skips empty pixels: they are zero already, and their memory stays untouched.
+// Skips empty pixels: they are zero already, and their memory stays untouched.
 std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, const Scene& scene,
                   RenderResult& result) {
   Image& image = result.image;
@@ -29,14 +29,14 @@ std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, c
   return non_finite;
 }
 
-// // True if so many bytes may be cached per camera ray.
+// True if so many bytes may be cached per camera ray.
 bool fits(const Film& film, std::size_t bytes) {
   return std::size_t(film.resolution[0]) * std::size_t(film.resolution[1]) *
              std::size_t(film.samples_per_pixel) * bytes <=
          kMostHeldBytes;
 }
 
-// // Cache of earlier images and for this one, if memory allows.
+// Cache of earlier images and for this one, if memory allows.
 HeldView* view_of(const RenderInput& input, std::size_t tiles) {
   const std::size_t least = sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) +
                             2 * sizeof(float) * recentred_lights(input.scene, input.world).size();

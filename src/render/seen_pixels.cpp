@@ -23,8 +23,8 @@ constexpr int kCells = 64;      // along each side, at most
 constexpr int kNarrowest = 16;  // pixels of a cell
 constexpr double kApart = 3;    // pixels around a triangle: the filter's radius, and rounding
 
-/// /// Cells around a position in the image, as x0, -x1, y0, -y1, so the union of two boxes is a minimum.
-/// Outside the part, a coordinate is
+/// Cells around a position in the image, as x0, -x1, y0, -y1, so the union of two boxes is a minimum. Outside
+/// the part, a coordinate is
 /// -1 or the number of cells.
 typedef short CellBox __attribute__((vector_size(8)));
 CellBox around_both(const CellBox& a, const CellBox& b) {
@@ -41,7 +41,7 @@ class SeenCells {
         down_(double(rows_) / (part.y1 - part.y0)) {}
 
   CellBox around(const CameraRays::FilmPlace& place) const {
-    // // Truncates a value >= 0; without SSE 4.1, std::floor is a function call.
+    // Truncates a value >= 0; without SSE 4.1, std::floor is a function call.
     const auto cell = [](double at, int cells) {
       return short(short(std::clamp(at + 1, 0.0, double(cells + 1))) - 1);
     };

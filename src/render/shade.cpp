@@ -39,8 +39,8 @@ Appearance opaque_appearance(const Shape& shape) {
   return appearance;
 }
 
-/// /// follows_light: true if the method traces light inside, and its radiance has the angular distribution
-/// of a half space
+/// follows_light: true if the method traces light inside, and its radiance has the angular distribution of a
+/// half space
 Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool follows_light) {
   if (!shape.medium) return opaque_appearance(shape);
   const Medium& medium = scene.media[*shape.medium];
@@ -54,11 +54,10 @@ Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool follows_
   return appearance;
 }
 
-/// /// Bends the shading normal back until the camera direction reflects to the outside of the surface.
+/// Bends the shading normal back until the camera direction reflects to the outside of the surface.
 /// in    direction: of the camera ray at the point, of any length
 void keep_mirrored_outside(SurfacePoint& point, const Vec3f& direction) {
-  constexpr float kLeastCosine = 0.01f;  // // least cosine of the reflected direction with the geometric
-                                         // normal
+  constexpr float kLeastCosine = 0.01f;  // least cosine of the reflected direction with the geometric normal
   const Vec3f d = normalized(direction), mirrored = d - point.normal * (2 * dot(d, point.normal));
   const float cosine = dot(mirrored, point.geometric);
   if (cosine >= kLeastCosine || !(dot(d, point.geometric) < 0)) return;
@@ -77,7 +76,7 @@ RgbF scattered_exit(const AngularExit& exit, float cosine, const SurfaceHits& hi
   return factor;
 }
 
-// // Spread of the cones around some 64 directions over a hemisphere, for texture filtering.
+// Spread of the cones around some 64 directions over a hemisphere, for texture filtering.
 constexpr float kGatheringSpread = 0.25f;
 
 constexpr std::uint64_t kGatheringSeed = 1;
@@ -91,7 +90,7 @@ SurfacePoint point_of(const Hit& hit, const RayScene& rays) {
   return rays.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
 }
 
-// // Surface points of the rays with a hit.
+// Surface points of the rays with a hit.
 std::vector<SurfacePoint> points_of(std::span<const TracedRay> traced, const RayScene& rays) {
   std::vector<SurfacePoint> points;
   for (const auto& [ray, hit] : traced)
@@ -123,7 +122,7 @@ Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_sam
     for (const Body& body : input.groups)
       for (const std::uint32_t mesh : body.plan.meshes)
         follows_light[mesh] = method_of(body.plan.method).follows_textures_inside();
-  std::map<std::pair<std::size_t, bool>, std::size_t> of_medium;  // // the first shape
+  std::map<std::pair<std::size_t, bool>, std::size_t> of_medium;  // the first shape
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];
     const auto known =

@@ -22,22 +22,21 @@ class Shader {
   /// entry_samplers: of Method::direct, one a group.
   explicit Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers = {});
 
-  /// /// Shades a batch of traced camera rays, one PixelSample per ray; returns the number of exitance
-  /// queries.
+  /// Shades a batch of traced camera rays, one PixelSample per ray; returns the number of exitance queries.
   /// in    keys: random-number keys of the rays' light samples; held: cached light transport of the batch,
   ///       extended; or null
   std::size_t shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                     std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
-  /// /// Outgoing radiance along rays that hit surfaces, W/(mm^2 sr): diffuse, and specular under an
+  /// Outgoing radiance along rays that hit surfaces, W/(mm^2 sr): diffuse, and specular under an
   /// approximately uniform illumination.
   /// Traces one ray per light.
   /// in    held: cached light transport at these surfaces, extended; or null
   std::vector<RgbF> radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                    HeldView::Batch* held = nullptr) const;
 
-  /// /// Hits with exitance depending on the irradiance at the hit itself. eta: of the boundary transmitting
-  /// it; 0: none.
+  /// Hits with exitance depending on the irradiance at the hit itself. eta: of the boundary transmitting it;
+  /// 0: none.
   struct SeenSurfaces {
     std::size_t field;
     SurfaceHits hits;
@@ -46,17 +45,17 @@ class Shader {
   std::vector<SeenSurfaces> surfaces_along(std::span<const TracedRay> rays,
                                            std::span<const std::uint64_t> keys) const;
 
-  /// /// Sets the indirect light to be added at hits; null: none.
+  /// Sets the indirect light to be added at hits; null: none.
   void set_bounced_light(const BouncedLight* bounced) { bounced_ = bounced; }
 
-  /// /// True if rays without a hit may see a light.
+  /// True if rays without a hit may see a light.
   bool has_visible_lights() const { return !seen_.emitters.empty() || !seen_.surroundings.empty(); }
 
  private:
-  /// /// Lights visible to rays.
+  /// Lights visible to rays.
   struct MetLights {
     std::vector<Light> emitters;      ///< those with an area
-    std::vector<Light> surroundings;  ///< ///< environments
+    std::vector<Light> surroundings;  ///< environments
 
     void add(const Light& light);
     EmitterHit nearest(const Vec3f& origin, const Vec3f& direction, float far) const;
@@ -67,16 +66,16 @@ class Shader {
     std::span<const TracedRay> rays;
     std::span<const std::uint64_t> keys;
     std::span<PixelSample> out;
-    /// /// Cone widths of the rays, for texture filtering: at the origins (empty: 0), and per length.
+    /// Cone widths of the rays, for texture filtering: at the origins (empty: 0), and per length.
     float spread = 0;
     std::span<const float> widths = {};
-    int mirrors = 0;  ///< ///< number of specular reflections before
+    int mirrors = 0;  ///< number of specular reflections before
     bool is_of_camera = false;
   };
-  /// /// Reflected rays and their cones.
+  /// Reflected rays and their cones.
   struct Cones {
     float spread = 0;
-    std::vector<float> widths;  ///< ///< empty: unused
+    std::vector<float> widths;  ///< empty: unused
   };
   struct GlossyHits;
 
@@ -84,7 +83,7 @@ class Shader {
   void add_textures(const RayBatch& batch, std::size_t ray, bool from_behind, SurfacePoint& point,
                     SurfaceHits& hits) const;
   Appearance appearance_of(const SurfaceHits& hits, std::size_t i) const;
-  /// /// Adds diffuse light at hits, and visible lights. Returns the hits of each field.
+  /// Adds diffuse light at hits, and visible lights. Returns the hits of each field.
   std::vector<SurfaceHits> shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
                                          HeldView::Batch* held) const;
   /// Light from other surfaces at hits; empty: none.
@@ -105,7 +104,7 @@ class Shader {
   std::vector<PixelSample> seen_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                       const Cones& cones, const Pass& pass, int mirrors,
                                       HeldView::Batch* held = nullptr) const;
-  /// /// Specular reflection without rays, of an irradiance taken as uniform over the hemisphere.
+  /// Specular reflection without rays, of an irradiance taken as uniform over the hemisphere.
   void add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch) const;
   float width_at(const RayBatch& batch, std::size_t ray) const;
   bool mirrors_surfaces() const {
@@ -116,7 +115,7 @@ class Shader {
   std::vector<Light> lights_;            // recentred
   std::vector<RgbF> emitted_;            // one a light
   MetLights met_, seen_;                 // by any ray, by those of the camera
-  std::vector<Light> unit_lights_;       // // all with unit emission, if reflections are cacheable
+  std::vector<Light> unit_lights_;       // all with unit emission, if reflections are cacheable
   std::vector<Appearance> appearances_;  // one a mesh
   SurfaceTextures textures_;
   float pixel_spread_ = 0;  // pixel spread of camera rays

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Specular reflection at dielectric and metallic boundaries: of lights, environments and other surfaces. A
+// Specular reflection at dielectric and metallic boundaries: of lights, environments and other surfaces. A
 // smooth boundary traces one
 // ray. A rough boundary samples its lobe and the lights, combined by the power heuristic (Veach & Guibas
 // 1995).
@@ -15,17 +15,17 @@
 namespace opaline {
 namespace {
 
-// // Lobe samples and light samples per camera ray, at one ray per pixel.
+// Lobe samples and light samples per camera ray, at one ray per pixel.
 constexpr int kFacets = 16, kLightSamples = 16;
-// // Factor by which both are reduced behind a specular reflection.
+// Factor by which both are reduced behind a specular reflection.
 constexpr int kFewerOfMirrored = 4;
-// // Maximum specular reflections of a camera ray: if all are metallic, and if all are dielectric. Further
+// Maximum specular reflections of a camera ray: if all are metallic, and if all are dielectric. Further
 // reflections are
 // approximated by a uniform illumination.
 constexpr int kMostMirrors = 4, kMostCoats = 2;
-// // Factor by which shadow rays are reduced behind a specular reflection.
+// Factor by which shadow rays are reduced behind a specular reflection.
 constexpr int kFewerInMirrors = 4;
-// // Spread of the cones around the directions of a lobe, for texture filtering.
+// Spread of the cones around the directions of a lobe, for texture filtering.
 constexpr float kGlossySpread = .1f;
 
 TracedRay leaving(const SurfacePoint& point, const Vec3f& direction) {
@@ -33,11 +33,11 @@ TracedRay leaving(const SurfacePoint& point, const Vec3f& direction) {
   return {{point.position + point.geometric * (side * point.offset), direction}, {}};
 }
 
-// // Shading frame of a hit, as in RoughBoundary.
+// Shading frame of a hit, as in RoughBoundary.
 struct Frame {
   Vec3f x, y, z, view;
 
-  /// /// tangent: 0 for an isotropic boundary
+  /// tangent: 0 for an isotropic boundary
   Frame(const SurfacePoint& point, const Vec3f& tangent, const Vec3f& towards_eye) : z(point.normal) {
     if (tangent == Vec3f{}) {
       tangent_frame(z, x, y);
@@ -60,19 +60,19 @@ void add_hit(const SurfaceHits& hits, std::size_t i, SurfaceHits& to) {
   if (!hits.textures.empty()) to.textures.push_back(hits.textures[i]);
 }
 
-// // Radiance of a light with an area, or of an environment. is_free: the ray hits no surface.
+// Radiance of a light with an area, or of an environment. is_free: the ray hits no surface.
 RgbF seen_radiance(const Light& light, const Ray& ray, bool is_free) {
   const EmitterHit emitter = intersect_emitter(light, ray.origin, ray.direction, ray.far);
   return emitter.hit ? emitter.radiance : is_free ? background(light, ray.direction) : RgbF{};
 }
 
-// // Power heuristic: less noise than the balance heuristic where one strategy is much better.
+// Power heuristic: less noise than the balance heuristic where one strategy is much better.
 float power(float own, float other) {
   const float ratio = other / own;
   return own > 0 ? 1 / (1 + ratio * ratio) : 0;
 }
 
-// // Number of recent lobes searched for a similar one.
+// Number of recent lobes searched for a similar one.
 constexpr std::size_t kRecentLobes = 8;
 
 bool are_alike(const Lobe& a, const Lobe& b) {
@@ -129,8 +129,8 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
     const float cosine = cos_view(hits.points[i], batch.rays[hits.rays[i]].ray.direction);
     PixelSample& sample = batch.out[hits.rays[i]];
     RgbF arriving = sample.irradiance * (kInversePi / (1 - appearance.average_reflectance));
-    // // Without an irradiance in the field, it follows from the exitance: outgoing light over that of
-    // uniform illumination.
+    // Without an irradiance in the field, it follows from the exitance: outgoing light over that of uniform
+    // illumination.
     const float leaving = appearance.translucent ? 1 - appearance.reflectance(cosine) : 0;
     if (arriving == RgbF{} && leaving > 0)
       for (std::size_t c = 0; c < 3; ++c)
@@ -139,7 +139,7 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
   }
 }
 
-// // Lights without an area are invisible in smooth boundaries.
+// Lights without an area are invisible in smooth boundaries.
 void Shader::add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const {
   std::vector<TracedRay> mirrored;
   Cones cones{batch.spread, {}};
@@ -160,18 +160,18 @@ void Shader::add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const 
   }
 }
 
-/// /// Hits of rough boundaries, and the tables for sampling their lobes.
+/// Hits of rough boundaries, and the tables for sampling their lobes.
 struct Shader::GlossyHits {
   const SurfaceHits& hits;
   const RayBatch& batch;
   std::vector<Frame> frames;
-  std::vector<Appearance> textured;  // // with textures only
+  std::vector<Appearance> textured;  // with textures only
   std::vector<const Appearance*> appearances;
   int facets, to_lights;
   std::uint64_t seed;
-  std::vector<std::uint64_t> keys;  // // random-number keys, in the sequence of the pixel
+  std::vector<std::uint64_t> keys;  // random-number keys, in the sequence of the pixel
   std::vector<Lobe> lobes;
-  std::vector<RoomLobe> rooms;  // // reflections of an environment by the lobes, if any
+  std::vector<RoomLobe> rooms;  // reflections of an environment by the lobes, if any
 
   GlossyHits(const Shader& shader, const SurfaceHits& all, const RayBatch& rays)
       : hits(all),
@@ -183,7 +183,7 @@ struct Shader::GlossyHits {
     to_lights = (kLightSamples + shared_by - 1) / shared_by;
     textured.reserve(hits.textures.size());
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
-      // // Directions behind a reflection are independent: the first reflection uses the pixel's sequence.
+      // Directions behind a reflection are independent: the first reflection uses the pixel's sequence.
       keys.push_back(rays.mirrors > 0 ? hash_bits(seed, hits.keys[i])
                                       : key_in_pixel(hits.keys[i], std::uint64_t(spp)));
       frames.emplace_back(hits.points[i], hits.textures.empty() ? Vec3f{} : hits.textures[i].tangent,
@@ -198,7 +198,7 @@ struct Shader::GlossyHits {
         shader.lights_, [](const Light& l) { return std::holds_alternative<EnvironmentLight>(l.source); });
     if (room == shader.lights_.end()) return;
     rooms.reserve(lobes.size());
-    // // Neighbouring rays have similar lobes, which share one table.
+    // Neighbouring rays have similar lobes, which share one table.
     std::vector<Lobe> known;
     for (std::size_t i = 0; i < lobes.size(); ++i) {
       const auto recent = known.end() - std::ptrdiff_t(std::min(known.size(), kRecentLobes));
@@ -213,14 +213,14 @@ struct Shader::GlossyHits {
     }
   }
   const RoughBoundary& boundary(std::size_t i) const { return *appearances[i]->rough; }
-  // // Reflectance by direction, in the local frame.
+  // Reflectance by direction, in the local frame.
   RgbF color(std::size_t i, const Vec3f& light) const {
     if (!(appearances[i]->metalness > 0)) return RgbF(1);
     return appearances[i]->mirror_color(dot(frames[i].view, normalized(frames[i].view + light)),
                                         boundary(i).reflected_once(frames[i].view.z));
   }
   RgbF& specular(std::size_t i) const { return batch.out[hits.rays[i]].specular; }
-  // // Sampling densities of the lobe and of a light, times their number of samples, 1/sr.
+  // Sampling densities of the lobe and of a light, times their number of samples, 1/sr.
   float of_lobe(std::size_t i, const Vec3f& towards) const {
     return float(facets) * boundary(i).density(frames[i].view, frames[i].local(towards));
   }
@@ -232,11 +232,11 @@ struct Shader::GlossyHits {
 
   struct LobeRay {
     float weight;
-    RgbF color;  // // factor of metals
+    RgbF color;  // factor of metals
     std::uint32_t hit;
-    bool is_again;  // // reflected into the surface by a bent normal, and from there outwards again
+    bool is_again;  // reflected into the surface by a bent normal, and from there outwards again
   };
-  // // Samples directions of the lobes, hit by hit; fills `rays`, to be traced.
+  // Samples directions of the lobes, hit by hit; fills `rays`, to be traced.
   std::vector<LobeRay> draw_from_lobes(std::vector<TracedRay>& rays) const {
     std::vector<LobeRay> drawn;
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
@@ -259,8 +259,8 @@ struct Shader::GlossyHits {
   }
 };
 
-// // True if the radiance of all lights is exactly proportional to their emission and no surface is a metal,
-// as a metal's colour depends on
+// True if the radiance of all lights is exactly proportional to their emission and no surface is a metal, as
+// a metal's colour depends on
 // the direction.
 bool Shader::can_hold_coats() const {
   const auto has_plain_radiance = [](const Light& light) {
@@ -287,7 +287,7 @@ void Shader::add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pa
   held->coat = std::move(coat);
 }
 
-// // Repeats add_highlights and add_reflections, sum by sum.
+// Repeats add_highlights and add_reflections, sum by sum.
 void Shader::add_held_coat(HeldView::Coat& coat, const RayBatch& batch, const Pass& pass) const {
   for (const auto& [ray, light, unit, weight] : coat.lights)
     batch.out[ray].specular += emitted_[light] * unit * weight;
@@ -297,7 +297,7 @@ void Shader::add_held_coat(HeldView::Coat& coat, const RayBatch& batch, const Pa
     batch.out[coat.rays[m]].specular += (seen[m].diffuse + seen[m].specular) * coat.shares[m];
 }
 
-// // Samples the lights.
+// Samples the lights.
 void Shader::add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) const {
   const PointIrradianceInput lighting{input_.rays, glossy.hits.points, glossy.keys, lights_,
                                       0,           glossy.to_lights,   glossy.seed};
@@ -316,18 +316,18 @@ void Shader::add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) cons
       glossy.lobes);
 }
 
-// // Samples the lobes.
+// Samples the lobes.
 void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldView::Coat* coat) const {
   struct Met {
-    float weight;  // // sum over the rays that hit surfaces
-    RgbF share;    // // the same with each ray's colour
+    float weight;  // sum over the rays that hit surfaces
+    RgbF share;    // the same with each ray's colour
     std::uint32_t hit;
   };
   std::vector<TracedRay> rays;
   const std::vector<GlossyHits::LobeRay> drawn = glossy.draw_from_lobes(rays);
   input_.rays.intersect(rays);
 
-  // // One randomly chosen surface represents all surfaces hit by the rays of a hit.
+  // One randomly chosen surface represents all surfaces hit by the rays of a hit.
   std::vector<Met> met;
   Cones cones{kGlossySpread, {}};
   std::vector<TracedRay> met_rays;

@@ -49,13 +49,13 @@ RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
   return color;
 }
 
-// // 8-bit normal maps have no exact zero: the values 127 and 128 on both sides of it count as zero.
+// 8-bit normal maps have no exact zero: the values 127 and 128 on both sides of it count as zero.
 float slope_of(float value) {
   const float slope = 2 * value - 1;
   return std::abs(slope) < 1.01f / 255 ? 0 : slope;
 }
 
-/// /// error if a tile of the texture is missing at the centroid of a triangle
+/// error if a tile of the texture is missing at the centroid of a triangle
 void check_tiles(const Texture& texture, const Mesh& mesh, const std::string& shape) {
   if (texture.file->has_tile(-1, -1)) return;
   for (const CornerUvs& uvs : mesh.uvs) {
@@ -81,12 +81,12 @@ RgbF powered(const RgbF& value, double exponent) {
   return result;
 }
 
-/// /// Directions of u and v in the shading tangent plane; zeros if the UVs are degenerate.
+/// Directions of u and v in the shading tangent plane; zeros if the UVs are degenerate.
 struct TangentFrame {
   Vec3f tangent{}, bitangent{};
 };
 
-/// /// From the mesh's tangent, if present. Its handedness refers to the outside of the surface.
+/// From the mesh's tangent, if present. Its handedness refers to the outside of the surface.
 TangentFrame frame_of(const SurfaceTextures::Place& place, const SurfacePoint& point) {
   const auto& [direction, handedness] = place.tangent;
   const Vec3f own = normalized(direction - point.normal * dot(direction, point.normal));

@@ -10,8 +10,8 @@
 namespace opaline {
 namespace {
 
-constexpr double kTolerance = 1e-3;  // tolerance of the solver; moves the bunny's picture by .03 %
-constexpr double kRough = 1e-2;      // tolerance of the fluence for the oblique flow
+constexpr double kTolerance = 1e-3;  // tolerance of the solver
+constexpr double kRough = 1e-2;      // tolerance of the fluence for the oblique flux
 
 DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice,
                         const Boundary& boundary) {
@@ -25,14 +25,14 @@ DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshe
 }  // namespace
 
 Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell) {
-  constexpr int kMultiple = 2 * DiffusionGrid::kLargest;  // multiple that allows cells of twice the size
+  constexpr int kMultiple = 2 * DiffusionGrid::kLargest;  // multiple allowing cells of twice the size
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (const std::uint32_t m : meshes)
     for (const Vec3d& p : world.meshes[m].positions) {
       low = component_min(low, p);
       high = component_max(high, p);
     }
-  // No plane of the lattice in a face of a box.
+  // Shifts the lattice so none of its planes coincides with a face of a box.
   const Vec3d margin = Vec3d(1.3713, 1.4289, 1.3317) * cell;
   const auto cells = [&](double extent) {
     return kMultiple * int(std::ceil((extent / cell + 2.8) / kMultiple));
@@ -99,8 +99,9 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
   return solution;
 }
 
-// The fluence beside a sample, under it as deep as the cell's centre, through the resistances from there to the outside.
-// All samples together let out what all cells lose.
+// Exitance at the samples: fluence under a sample, at the depth of its cell's centre, times the conductance
+// to the outside. Normalized so
+// the samples emit exactly the loss of all cells.
 std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
                                       std::span<const RgbF> leaving) const {
   struct Plane {

@@ -85,7 +85,7 @@ class ConjugateGradients {
     });
   }
 
-  /// The solution, scaled so that all that comes in is lost.
+  /// The solution, scaled to conserve energy: total loss equals total source.
   std::vector<Channels> take() {
     const Sums lost = sum([&](std::size_t i, Sums& sums) {
       for (std::size_t c = 0; c < 4; ++c) sums[c] += double(problem_.loss[i].c[c]) * double(x_[i].c[c]);
@@ -102,7 +102,7 @@ class ConjugateGradients {
   }
 
  private:
-  // Where the diffusivity differs from cell to cell it is in them, and 1 otherwise.
+  // A variable diffusivity is included in the conductances; a constant one is 1 here.
   void weigh_links() {
     const DiffusionGrid& grid = problem_.grid;
     diffusivity_.c.fill(1);

@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// R G B and a fourth, unused, that makes them one vector of the machine.
+/// R G B and an unused fourth, filling a vector register.
 struct alignas(16) Channels {
   std::array<float, 4> c{};
 };
@@ -33,8 +33,8 @@ struct DiffusionSolution {
   int iterations = 0;
 };
 
-/// Conjugate gradients, preconditioned by the diagonal: on cells that grow inwards a step reaches far.
-/// in    start: a guess, empty or one a cell
+/// Conjugate gradients with a Jacobi preconditioner; few iterations suffice on cells growing inwards.
+/// in    start: initial guess, empty or one per cell
 ///       tolerance: of the residual, in the norm of the inverse diagonal, over that of the source
 /// out   losses and sources balance to rounding; the same bits for any number of threads
 /// error Error{interrupted}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the fluence changes from a cell to its neighbours, and what that adds to the flow between cut cells.
+// Gradient of the fluence, and its correction to the flux between cut cells.
 #pragma once
 
 #include <array>
@@ -10,15 +10,16 @@
 
 namespace opaline {
 
-/// The fluence around a cell: least squares over its neighbours.
-/// fluence: one a cell
-/// out   a channel: per lattice cell
+/// Gradient of the fluence at a cell: least squares over its neighbours.
+/// fluence: one per cell
+/// out   per channel and lattice cell
 std::array<Vec3f, 3> gradient_at(const DiffusionGrid& grid, std::span<const Channels> fluence,
                                  std::uint32_t cell);
 
-/// Adds to the problem's sources what the differences of fluence between cells misstate: across an oblique link the
-/// fluence changes from one centre to the other also along the face, and nothing flows through the face for that.
-/// fluence: one a cell, of the problem as it is
+/// Corrects the sources for oblique links: the fluence difference of two offset centres includes the change
+/// along their face, which
+/// causes no flux through it.
+/// fluence: one per cell, of the uncorrected problem
 void add_oblique_flow(DiffusionProblem& problem, std::span<const Channels> fluence);
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A medium that differs from place to place inside a body.
+// Heterogeneous medium inside a body.
 #pragma once
 
 #include <array>

@@ -12,13 +12,13 @@
 namespace opaline {
 namespace {
 
-// A cache is begun where its vertices are few against the points of the picture, and given up where its
-// places are not: a place costs about three times what a point does (they lie wider apart, and more of them
-// beside shadow edges), looking up a tenth. It pays from about 320,000 points of the bunny, which has 35,000
-// vertices.
+// Largest ratios of a cache's vertices, and of its points, to the image's points on the body. A cache point
+// costs about three times a
+// hit, being sparser and more often beside a shadow edge; a lookup costs a tenth. src/exitance/README.md has
+// the break-even.
 constexpr double kBegin = 0.11, kMost = 0.4;
 
-// Points of the picture on each mesh, by rays to a few of its pixels.
+// Estimates the image's points on each mesh, by rays through a few pixels.
 std::vector<double> expected_points(const PrecomputeInput& input) {
   constexpr int kColumns = 48, kRows = 48;
   const Film& film = input.scene.film;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fit of the means over a body's cells, with weights that later fits of the same samples reuse.
+// Fit of the means over a body's cells, with weights cached for later fits of the same samples.
 #pragma once
 
 #include <memory>

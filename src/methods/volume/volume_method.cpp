@@ -76,7 +76,7 @@ const VolumeState& volume_state(const Body& body) {
   return state_of<VolumeState>(body);
 }
 
-// Sums are of whole passes: an interruption keeps those that are complete.
+// Sums consist of whole passes: an interruption keeps the complete ones.
 void VolumeMethod::prepare(BodyStages& stages) const {
   const PrecomputeInput& input = stages.input;
   auto& state = state_of<VolumeState>(stages.body);

@@ -10,7 +10,7 @@
 namespace opaline {
 
 /// Cells with the media of the body.
-/// in    body: with the samples of its cut surface; normals: of that
+/// in    body: with the samples of its cut surface; normals: of the same surface
 VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals);
 
 }  // namespace opaline

@@ -20,7 +20,7 @@ class Shader;
 struct Pass {
   std::uint64_t index = 0;
   int entry_samples = 0;  ///< entry samples of each camera ray
-  bool is_seen = true;    ///< ///< false: for gathered rays; without a near field
+  bool is_seen = true;    ///< false: for gathered rays; without a near field
   /// `direct`: gathering of light from other surfaces at points of entry, by one ray each; null: direct light only.
   const Shader* gathers = nullptr;
   /// The same for surfaces seen in specular reflections; null: the same.

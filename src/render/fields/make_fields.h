@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Field of each mesh.
+// Field of each mesh.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// // Surface with a diffusely reflecting fraction (1 - subsurface_weight) over the field of a translucent
-// body.
+// Surface with a diffusely reflecting fraction (1 - subsurface_weight) over the field of a translucent body.
 #pragma once
 
 #include <memory>

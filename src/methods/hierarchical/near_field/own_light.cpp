@@ -15,15 +15,16 @@
 namespace opaline {
 namespace {
 
-// Above this fraction of the irradiance at the point itself (SplitKernel::own_irradiance) the near field's rms
-// radius is under a fifth of h, less than two segments of the finest lattice.
+// Largest weight of the point's own irradiance (SplitKernel::own_irradiance) that a cache resolves. Above it,
+// the near field's rms radius
+// is under a fifth of h, less than two segments of the finest lattice.
 constexpr float kSharp = 0.8f;
-// Error, over the tolerance, that lattices need not resolve: bumps of the mesh, resolved by its own
-// vertices, and noise of a few shadow rays beside a shadow's edge.
+// Interpolation error, over the tolerance, left to lattices: at bumps of the mesh, resolved by its own
+// vertices, and by noise of a few
+// shadow rays beside an edge.
 constexpr float kBumps = 1, kEdgeNoise = 2;
-// Sensitivity to the near field's irradiance (stake_of), over the tolerance, above which points are evaluated directly.
-// `render scenes/bunny-marble.json --resolution 2048x2048 --evaluator surface_cache` against brute_force, p99
-// over all / over the ear: 1: .31 / .63 %, .5: .23 / .27 %.
+// Stake (stake_of), over the tolerance, above which points are evaluated directly; src/exitance/README.md has
+// the comparison.
 constexpr float kTooSharp = 0.5f;
 
 std::uint64_t key_of(const Vec3f& p) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The light of a surface depending on the irradiance at each place itself, for surface caches.
+// Exitance depending on the irradiance at a point itself, for surface caches.
 #pragma once
 
 #include <span>
@@ -11,16 +11,19 @@
 
 namespace opaline {
 
-/// True if a cache can hold the light depending on the irradiance at each place, so pictures trace no
-/// shadow rays: facets without smooth normals are lit each in its own way, and the shadows of a mean free
-/// path far below the sample spacing are too sharp to interpolate; light that bounces is known at the picture's points.
+/// True if a cache can store the exitance depending on the point's own irradiance, so images trace no shadow
+/// rays. Excludes meshes without
+/// smooth normals, whose facets differ in irradiance; mean free paths far below the sample spacing, whose
+/// shadows are too sharp to
+/// interpolate; and bounced light, computed at the image's points only.
 bool can_hold_own_light(const Scene& scene, const World& world, const Body& group);
 
-/// The light that the shader adds at its points. Beside shadow edges a cache that the settings ask for leaves it to the
-/// points, so its tolerance holds; one that `automatic` takes for its speed holds what a few shadow rays tell.
+/// Adds this exitance at the shader's points. Beside shadow edges, an explicitly requested cache leaves it to
+/// the points, to meet its
+/// tolerance; an automatic one, made for speed, stores the estimate of a few shadow rays.
 class OwnLight {
  public:
-  /// Both must outlive it.
+  /// Both must outlive the object.
   OwnLight(const PrecomputeInput& input, const Body& group);
 
   /// As AddOwnLight.
