@@ -46,7 +46,7 @@ class PartPictures {
   PartPictures(const BenchArguments& arguments, const BenchFolder& folder, const BenchScene& scene)
       : arguments_(arguments), folder_(folder), scene_(scene) {}
 
-  /// The EXR within the folder; a failure is told in `failure`.
+  /// The EXR within the folder; a failure is in `failure`.
   std::string render(const BudgetPart& part, const std::vector<std::string>& overrides, Monitor& monitor,
                      std::string& failure) {
     const auto known = done_.find(overrides);

@@ -11,8 +11,9 @@
 
 namespace opaline {
 
-/// As text: "# key: value" a note, quoted if it has a comma, a line of names, a line of units, a line a row;
-/// cells quoted where they must be (RFC 4180), lines end in \n.
+/// Text format: "# key: value" per note, quoted if it has a comma, a line of names, a line of units, a line
+/// per row; cells quoted where
+/// necessary (RFC 4180), lines end in \n.
 struct CsvTable {
   std::vector<std::pair<std::string, std::string>> notes;  ///< no line breaks; no ": " in a key
   std::vector<std::string> names, units;                   ///< a column each
@@ -24,13 +25,13 @@ std::string to_csv(const CsvTable& table);
 /// error Error{bad_input} naming `file` and the line: an open quote, a row of another length than the names
 CsvTable parse_csv(std::string_view text, const std::string& file);
 
-/// Raised whenever a column changes its name, unit or meaning, or goes.
+/// Increases with each change of a column's name, unit or meaning, and with each removed column.
 inline constexpr int kBenchSchema = 2;
 
 /// The schema is the first note. Empty cells were not measured; a failed rung's `failure` says why.
 CsvTable bench_table(const BenchReport& report);
 
-/// The parts of the error, a row each.
+/// Components of the error, one per row.
 CsvTable budget_table(const BenchReport& report);
 
 }  // namespace opaline

@@ -44,7 +44,7 @@ bool is_png(const std::string& path) {
   return output_format(path) == OutputFormat::png;
 }
 
-/// A PNG does not say what it is a crop of.
+/// PNG files do not store their crop.
 void check_comparable(const Picture& picture, const Picture& reference) {
   const auto size = [](const Image& i) { return fmt::format("{} x {} pixels", i.width, i.height); };
   const auto crop = [](const Image& i) {
@@ -64,7 +64,7 @@ void check_comparable(const Picture& picture, const Picture& reference) {
                    fmt::format("{}", fmt::join(picture.layer.names, " ")));
 }
 
-/// The pictures of one run: the one under test, then the reference or its halves.
+/// Images of one run: the tested one, then the reference or its halves.
 std::vector<Picture> load_all(const CompareArguments& arguments) {
   std::vector<std::string> paths{arguments.picture};
   if (arguments.halves.empty())
@@ -84,7 +84,7 @@ std::vector<Picture> load_all(const CompareArguments& arguments) {
   return pictures;
 }
 
-/// Pixels that show an object in any of the references.
+/// Pixels covered in any of the references.
 std::vector<std::uint8_t> object_of(const std::vector<Picture>& pictures) {
   std::vector<std::uint8_t> object = pictures[1].object;
   for (const Picture& reference : pictures)
@@ -171,7 +171,7 @@ void write_error_picture(const std::string& path, const RelativeErrors& errors, 
   write_exr(path, image, /*half=*/false);
 }
 
-/// The reference's defects must not pass for a small error.
+/// Rejects defects of the reference, which could appear as a small error.
 void check_values(const CompareReport& report, const Picture& reference) {
   if (!report.failures.empty()) return;
   for (std::size_t c = 0; c < report.channels.size(); ++c)

@@ -6,8 +6,8 @@
 
 namespace opaline {
 
-/// in    more_bytes: beside what the plan tells
-/// error Error{run_failed}: the plan needs more memory than this process can still have; says what takes less
+/// in    more_bytes: in addition to the plan
+/// error Error{run_failed}: the plan exceeds the memory available to this process; suggests smaller settings
 void check_memory(const Scene& scene, const Plan& plan, std::size_t more_bytes);
 
 }  // namespace opaline

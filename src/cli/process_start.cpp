@@ -33,17 +33,17 @@ void catch_from_the_start() {
   std::set_terminate(end_by_exception);
 }
 
-// Runs before the libraries' constructors, which allocate, too.
+// Runs before the libraries' constructors, as they allocate.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = catch_from_the_start;
 
 }  // namespace
 
 void prepare_process() {
-  // The lowest number that is free is the one that was found closed. For reading only: a result that nobody
-  // can receive is then told from one that was delivered.
+  // open returns the lowest free number, the closed descriptor found. Read-only, so writing fails and an
+  // undeliverable result is detected.
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor)
     if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDONLY) != descriptor)
-      std::_Exit(3);  // no descriptor to say it on
+      std::_Exit(3);  // no descriptor for a message
   std::signal(SIGXFSZ, SIG_IGN);
 }
 

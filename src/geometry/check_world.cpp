@@ -16,7 +16,7 @@ double twice_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return length(cross(b - a, c - a));
 }
 
-/// Area that rounding adds to or removes from all triangles, over their sum.
+/// Absolute change of the triangles' area by rounding, over their sum.
 double area_lost(const Mesh& mesh) {
   double sum = 0, lost = 0;
   for (const auto& [a, b, c] : mesh.triangles) {

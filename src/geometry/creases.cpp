@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-/// Sets of triangle corners at one position between which there is no crease. Corner 3 t + k is that of triangle t.
+/// Sets of triangle corners at one position not separated by creases. Corner 3 t + k belongs to triangle t.
 class Fans {
  public:
   Fans(const Mesh& mesh, const Smoothing& smoothing)

@@ -12,7 +12,7 @@
 namespace opaline {
 namespace {
 
-/// The corners of a polygon from its lowest vertex towards the lower of that one's neighbours: the same for all polygons
+/// Corners of a polygon from its lowest vertex towards the lower of its neighbours: equal for all polygons
 /// with the same edges.
 class Circuit {
  public:
@@ -28,7 +28,7 @@ class Circuit {
   std::size_t size() const { return corners_.size(); }
   bool is_forward() const { return is_forward_; }
 
-  /// The polygon's corner at a place of the circuit, and the other way round.
+  /// Polygon corner at an index of the circuit, and the inverse.
   std::uint32_t corner(std::size_t place) const {
     return std::uint32_t((is_forward_ ? start_ + place : start_ + size() - place) % size());
   }
@@ -84,7 +84,7 @@ class DoubleCutter {
   }
 
  private:
-  /// Triangles that are no part of a polygon.
+  /// Triangles outside all polygons.
   void find_given_triangles() {
     std::size_t next = 0;
     for (std::size_t t = 0; t < triangles_.size();) {

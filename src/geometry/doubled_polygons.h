@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Polygons that a file gives more than once.
+// Duplicate polygons in a file.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,11 @@
 
 namespace opaline {
 
-/// Cuts of polygons with the same corners become alike, whichever corner they start at and whichever way they run, so
-/// that their triangles are duplicates of each other. A quad that the file also gives as two triangles is cut as they are.
-/// in    cuts: of cut_concave_polygons, in the order of the fans; positions that are equal are one corner
-/// out   cuts with those of the later polygons added or replaced
+/// Unifies the triangulations of polygons with the same corners, in any rotation or direction, so their
+/// triangles become duplicates. A quad
+/// also given as two triangles uses their diagonal.
+/// in    cuts: of cut_concave_polygons, in the order of the fans; equal positions are one corner
+/// out   cuts, with those of later polygons added or replaced
 void cut_doubles_alike(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
                        const std::vector<Fan>& fans, std::vector<Recut>& cuts);
 

@@ -49,7 +49,7 @@ std::string_view name_of(ValueType type) {
   return "object";
 }
 
-/// Ends of a slider: those of the range, or a thousandth inside where the range is without them.
+/// Ends of a slider: those of the range, or a thousandth inside if the range excludes them.
 Json slider_json(const Range& range) {
   constexpr double kWidest = 1e6;  // maximum range of a slider
   const double width = range.high - range.low, inside = width < kWidest ? 1e-3 * width : 0;
