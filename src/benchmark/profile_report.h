@@ -20,8 +20,7 @@ struct ProfileRequest {
   std::string name;  ///< displayed name of the medium
   PhysicalMedium coefficients;
   double eta = 1.3;
-  double g = 0;                                                ///< mean cosine of the walks; sigma_s' is
-                                                               ///< unchanged
+  double g = 0;                                                ///< mean cosine of the walks at equal sigma_s'
   double thickness = std::numeric_limits<double>::infinity();  ///< mm; infinite: a half space
   std::optional<std::size_t> walks;  ///< per channel and angle of incidence; none: by a limit on collisions
   std::uint64_t seed = 1;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kRings = 192;
 
-// Radii over h of the rings' borders, dense towards the point, where steep profiles have all of their light.
+// Radii over h of the rings' edges, dense near the point, where steep profiles have most of their mass.
 double ring_radius(int i) {
   return std::pow(double(i) / kRings, 4);
 }
@@ -27,7 +27,7 @@ std::vector<double> ring_shares(const std::vector<double>& within) {
   return shares;
 }
 
-// The part of the rings lying on this side of a straight border at distance t h.
+// Part of the rings on this side of a straight border at distance t h.
 double inside_border(const std::vector<double>& shares, double t) {
   double sum = 0;
   for (int i = 0; i < kRings; ++i) {
@@ -38,14 +38,14 @@ double inside_border(const std::vector<double>& shares, double t) {
   return sum;
 }
 
-// Area shares of the weight (1 - t^2)^2 with which the samples' areas are summed.
+// Fractions of the weight (1 - t^2)^2, used for the sum of the samples' areas.
 std::vector<double> area_shares() {
   std::vector<double> within;
   for (int i = 0; i <= kRings; ++i) within.push_back(1 - std::pow(1 - ring_radius(i) * ring_radius(i), 3));
   return ring_shares(within);
 }
 
-// Near shares of 2 pi r R_d (1 - w(r/h)), by parts: steep profiles are bounded only in that form.
+// Near fractions of 2 pi r R_d (1 - w(r/h)), integrated by parts: bounded even for steep profiles.
 std::vector<double> near_shares(const ChannelProfile& profile, double h) {
   std::vector<double> within{0};
   double by_parts = 0;
@@ -57,13 +57,13 @@ std::vector<double> near_shares(const ChannelProfile& profile, double h) {
   return ring_shares(within);
 }
 
-// Over h, for each row the distance at which a border leaves its fraction of the areas on this side.
+// For each row, the distance over h of the border leaving its fraction of the areas.
 std::array<double, SplitKernel::kBorderRows> border_distances() {
   const std::vector<double> area = area_shares();
   std::array<double, SplitKernel::kBorderRows> distances{};
   for (std::size_t row = 0; row < SplitKernel::kBorderRows; ++row) {
     const double wanted = 0.5 + 0.5 * double(row) / (SplitKernel::kBorderRows - 1);
-    double low = 0, high = 1;  // the area grows with the distance of the border
+    double low = 0, high = 1;  // the area increases with the border's distance
     for (int i = 0; i < 20; ++i)
       (inside_border(area, 0.5 * (low + high)) < wanted ? low : high) = 0.5 * (low + high);
     distances[row] = 0.5 * (low + high);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much of the near field is left beside the border of a surface.
+// Remaining part of the near field beside a surface's border.
 #pragma once
 
 #include "opaline/exitance/evaluate.h"
 
 namespace opaline {
 
-/// SplitKernel::border for a profile split at h: what is left of the near field beside the straight edge of a half plane.
-/// Each row is for an edge that cuts off as much of the area, weighted as the samples are, as the row stands for.
-/// Numerical, error below 1e-3.
+/// Table SplitKernel::border for a profile split at h: the remaining fraction of the near field beside the
+/// straight edge of a half plane.
+/// Each row is for the edge that leaves the row's fraction of the area, with the samples' weight. Numerical,
+/// error below 1e-3.
 std::array<std::array<float, 3>, SplitKernel::kBorderRows> border_shares(const DiffuseProfile& profile,
                                                                          double h);
 

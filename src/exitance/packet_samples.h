@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Adds the samples of leaves, those of another sheet with their whole kernel. room: scratch
+/// Adds the samples of leaves, those on another sheet with their whole kernel. room: scratch
 void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
                  const std::vector<std::uint32_t>& leaves, const Packet& packet, PacketSums& sums,
                  std::vector<std::uint32_t>& room);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture that shines from all around.
+// Environment map as a light.
 #include <cmath>
 #include <numbers>
 

@@ -36,9 +36,7 @@ struct ReferenceState {
   Method method = Method::direct;
   std::size_t samples = 0;  ///< direct: entry samples per pixel; volume: walks per sample
   double noise = 0;         ///< relative, rms: direct: of its pixels; volume: of its cells
-  double difference =
-      0;  ///< error_beyond_noise of the final image's diffuse light, over translucent pixels, or all if
-          ///< unmarked
+  double difference = 0;    ///< error_beyond_noise of the final diffuse image, over translucent pixels or all
 };
 
 /// State of the error-against-time table of a scene.
