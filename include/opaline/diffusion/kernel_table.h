@@ -20,7 +20,7 @@ namespace opaline {
 class KernelTable {
  public:
   KernelTable() = default;
-  /// r_min, r_max in mm: the distances that will be asked for; the table ends earlier where R_d underflows.
+  /// r_min, r_max in mm: range of distances in use; the table ends earlier if R_d underflows.
   KernelTable(const DiffuseProfile& profile, double r_min, double r_max);
   /// The same of far_side_profile.
   static KernelTable of_far_side(const DiffuseProfile& profile, double r_min, double r_max);

@@ -16,9 +16,10 @@ struct NormalizedDiffusion {
   double d = 0;      ///< shape length, mm
 };
 
-/// Knots of the table of NormalizedDiffusionFit::refit (bench_normalized_diffusion). The nearest row stands for other etas.
+/// Knots of the table of NormalizedDiffusionFit::refit (bench_normalized_diffusion). Other etas use the
+/// nearest row.
 inline constexpr std::array<double, 7> kRefitEtas{.75, 1, 1.15, 1.3, 1.5, 2, 3};
-inline constexpr std::size_t kRefitAbsorptions = 11;  ///< fourth root of 1 - alpha': 0, .1, ... 1
+inline constexpr std::size_t kRefitAbsorptions = 11;  ///< fourth root of 1 - alpha': 0, 0.1, ... 1
 
 /// Diffuse entry fit d = l / (1.9 - A + 3.5 (A - 0.8)^2), l = mean free path in mm, A in [0, 1].
 NormalizedDiffusion make_normalized_diffusion(double mean_free_path, double total);

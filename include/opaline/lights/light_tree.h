@@ -41,20 +41,22 @@ class LightTree {
   /// Shading point.
   struct Place {
     Vec3f point, normal;         ///< normal: unit
-    const Lobe* lobe = nullptr;  ///< in which it mirrors light; null: its irradiance is wanted
+    const Lobe* lobe = nullptr;  ///< for reflected light; null: for irradiance
   };
 
   struct Drawn {
     std::uint32_t light = 0;
-    float expected = 0;  ///< how often it is drawn in the mean; 0: nothing was drawn
+    float expected = 0;  ///< expected number of samples; 0: not sampled
     float rest = 0;      ///< uniform in [0, 1), for a point of the light
     /// Unshadowed irradiance by `colour`, without a boundary, of lights with their own importance: of this light over
     /// `expected`, and its mean over all draws in this position of `drawn`. Black for other lights.
     RgbF unshadowed{}, mean_unshadowed{};
   };
-  /// Draws drawn.size() lights, or fewer if fewer contribute, in an order that is similar for neighbouring points. A delta
-  /// light with an expected number of 1 is drawn once; if they are no more than drawn.size(), each is drawn.
-  /// in    random: in [0, 1); key: shared by draws with stratified `random`, selects the positions in the strata
+  /// Samples drawn.size() lights, or fewer if fewer contribute, in a similar order for neighbouring points. A
+  /// delta light with an expected number of 1 is
+  /// sampled once; if they are no more than drawn.size(), each is sampled.
+  /// in    random: in [0, 1); key: shared by draws with stratified `random`, selects the positions in the
+  ///       strata
   void draw(const Place& at, double random, std::uint64_t key, std::span<Drawn> drawn) const;
 
   /// Expected number of draws of this light in one draw.
@@ -65,8 +67,8 @@ class LightTree {
 
   struct Node {
     Vec3f center{};
-    float radius = 0;  ///< radius of a ball around its lights
-    /// Axis of the cone of directions that the lights face; a half angle of pi: all directions.
+    float radius = 0;  ///< radius of a bounding sphere of its lights
+    /// Axis of the cone of its lights' directions; a half angle of pi: all directions.
     Vec3f axis{};
     float cos_half = -1, sin_half = 0;
     /// Emission is full within one angle from the axis and 0 beyond another. In between it falls with the cosine, for spots
@@ -99,12 +101,12 @@ class LightTree {
   bool has_area_ = false;
   std::uint64_t hash_ = 0;
   std::vector<std::uint32_t> order_,
-      places_;  ///< lights in the order of the leaves, and where each of them is there
+      places_;  ///< lights in the order of the leaves, and each light's index there
   std::vector<Node> nodes_;
-  std::shared_ptr<const LampTable> lamps_;  ///< in the leaves' order; null: nodes are weighed
+  std::shared_ptr<const LampTable> lamps_;  ///< in the leaves' order; null: weighted by nodes
 };
 
-/// Maximum number of delta lights, and of area lights, that are all traced.
+/// Number of delta lights, and of area lights, up to which each is traced.
 inline constexpr std::size_t kMostTraced = 16;
 
 /// True if with_trees changes the lights.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene that is edited and rendered repeatedly, with reuse of all valid stage results.
+// A session: edits and renders a scene repeatedly, and reuses all valid stage results.
 #pragma once
 
 #include <cstdint>
@@ -51,10 +51,11 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Chooses the profiles of the bodies (choose_models.h) for all later scenes. With methods that have samples, it also
-  /// places the samples of this scene and keeps them: later scenes move these samples along, or place their own on
-  /// different surfaces without discarding them. The frames of a shot are therefore the same in any process,
-  /// whichever frames it renders.
+  /// Chooses the profiles of the bodies (choose_models.h) for all later scenes. For methods with samples,
+  /// also places the samples of this scene: later
+  /// scenes move them along, or place others on different surfaces without discarding these. The frames of a
+  /// shot are therefore
+  /// equal in any process, for any subset of frames.
   /// error as edit
   void anchor(Scene scene, Monitor* monitor = nullptr);
 
@@ -71,12 +72,12 @@ class Session {
   /// metals; smooth boundaries are traced again. Costs memory (HeldView). Off by default.
   void hold_view(bool hold);
 
-  /// If true, each image is bit-identical to that of a new session. Samples are then placed again if a new session
-  /// would place others, instead of moving along or staying denser than required. Default: false.
+  /// If true, each image is bit-identical to that of a new session: samples are placed again, instead of
+  /// moving along or staying denser than required,
+  /// if a new session would place others. Default: false.
   void match_new_session(bool matches);
 
-  /// If no further edits follow, the session drops the data that only edits reuse. Default: true. No image
-  /// depends on it.
+  /// False: frees the data needed by further edits only. Default: true. No image depends on it.
   void expect_edits(bool edits);
 
   /// Sums of random walks to resume from, and their storage.
