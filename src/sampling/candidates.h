@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The places that a round of dart throwing tries.
+// Candidates of a round of dart throwing.
 #pragma once
 
 #include <tbb/parallel_sort.h>
@@ -13,16 +13,16 @@
 
 namespace opaline {
 
-/// A place on the surface that has no accepted sample within the radius yet.
+/// Candidate point of the surface, with no accepted sample within the radius yet.
 struct Candidate {
   Vec3f position;
   SampleGrid::Place place;  // its triangle is an index into the TriangleList
-  std::uint32_t order;      // random: the order in which a cell's candidates are tried
+  std::uint32_t order;      // random: order of the candidates within a cell
 };
 
 /// A candidate in its cell. Sorted by phase (the cell's parities), cell and random order.
 struct CandidateEntry {
-  std::uint64_t cell;  // its key, the phase moved from the lowest bits to the highest
+  std::uint64_t cell;  // its key, with the phase moved from the lowest bits to the highest
   std::uint32_t order, candidate;
   std::uint64_t phase() const { return cell >> 61; }
   std::uint64_t key() const { return cell << 3 | phase(); }

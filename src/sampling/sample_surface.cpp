@@ -16,11 +16,11 @@
 namespace opaline {
 namespace {
 
-// Radius over sqrt(area / count) for a sampling of 6 rounds; measured (test_density checks the count).
+// Radius over sqrt(area / count) for 6 rounds; test_density checks the resulting count.
 constexpr double kRadiusPerSpacing = 0.7195;
 
-// Samples over those asked for at which no further round is thrown; six rounds on an even surface end within
-// 3 % of what is asked for.
+// Ratio of samples to the requested number at which rounds stop. Six rounds on a smooth surface are within 3
+// % of the number.
 constexpr double kEnough = 1.1;
 
 Bounds bounds_of(const World& world, std::span<const std::uint32_t> meshes) {
@@ -33,17 +33,17 @@ Bounds bounds_of(const World& world, std::span<const std::uint32_t> meshes) {
   return box;
 }
 
-// The samples before they are put in order.
+// Unsorted samples.
 struct PlacedSamples {
   std::vector<SampleGrid::Place> places;
   std::vector<SurfaceShare> shares;
-  std::vector<SurfacePiece> pieces;  // if asked for
+  std::vector<SurfacePiece> pieces;  // on request
 };
 
 PlacedSamples place_samples(const SamplingInput& input, const TriangleList& triangles, float radius,
                             bool want_pieces) {
   PoissonDisk poisson(triangles, bounds_of(input.world, input.meshes), radius);
-  // Where the surface is thinner than the radius no dart meets another one, and each round adds as many.
+  // Where the surface is thinner than the radius, darts never meet, and each round adds as many samples.
   const auto enough = std::size_t(kEnough * double(input.count));
   for (int round = 0; round < input.candidate_rounds && poisson.grid().size() <= enough; ++round)
     poisson.throw_darts(input.count, hash_bits(input.seed, std::uint64_t(round)), input.monitor);

@@ -36,7 +36,7 @@ void add_panel(double low, double high, std::vector<Node>& nodes) {
   }
 }
 
-/// Parted at the critical angle, where there is one.
+/// Split at the critical angle, if any.
 std::vector<Node> make_nodes(double eta) {
   const double critical = eta > 1 ? std::sqrt(1 - 1 / (eta * eta)) : .25;
   std::vector<Node> nodes;
@@ -45,7 +45,7 @@ std::vector<Node> make_nodes(double eta) {
   return nodes;
 }
 
-/// 1 - t cot t, its digits kept where t is small.
+/// 1 - t cot t, without cancellation for small t.
 double cotangent_deficit(double t) {
   if (t > .2) return 1 - t / std::tan(t);
   const double s = t * t;
@@ -88,7 +88,7 @@ class HFunction {
 using Matrix = std::array<std::array<double, kNodes>, kNodes>;
 using Vector = std::array<double, kNodes>;
 
-/// The solution of (1 - M) x = b, whose rows sum to less than 1: no pivoting is needed.
+/// Solves (1 - M) x = b with row sums of M below 1, without pivoting.
 Vector solve_series(Matrix& m, Vector b) {
   for (std::size_t i = 0; i < kNodes; ++i)
     for (std::size_t j = 0; j < kNodes; ++j) m[i][j] = (i == j ? 1 : 0) - m[i][j];
@@ -143,7 +143,7 @@ HalfSpace::HalfSpace(double absorbed, double eta) : absorbed_(absorbed) {
   diffuse_share_ = std::clamp(left / entered, 0.0, 1.0);
 }
 
-// By reciprocity it is the radiance coming up along the direction where light enters from everywhere.
+// By reciprocity it is the upward radiance in the direction of incidence, under uniform illumination.
 double HalfSpace::share(double cos_inside) const {
   if (sources_.empty()) return diffuse_share_;
   double sum = 0;
