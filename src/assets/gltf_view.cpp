@@ -10,7 +10,7 @@ namespace opaline {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr int kLongerSide = 512;  // longer side of the picture, pixels
+constexpr int kLongerSide = 512;  // longer side of the image, pixels
 
 std::string label_of(const char* kind, const std::string& name, std::size_t index) {
   return name.empty() ? record_name(kind, index)

@@ -50,7 +50,7 @@ MtlUse use_of(const MtlStatement& statement);
 /// " (did you mean 'map_Kd'?)", or nothing.
 std::string mtl_suggestion(const std::string& keyword);
 
-/// A colour between 0 and 1. One number stands for all three.
+/// A colour between 0 and 1. One number applies to all three.
 /// from  Wavefront, MTL material format 4.2: "the g and b are optional; if only r is specified, g and b equal r"
 struct MtlColor {
   std::optional<Vec3d> value;  ///< none: the text is not a colour

@@ -69,7 +69,7 @@ std::vector<BenchRow> rows_of(const std::vector<BenchJob>& jobs) {
   const BenchJob* lambert = nullptr;
   for (const BenchJob& job : jobs) {
     if (lambert == nullptr || lambert->scene != job.scene) lambert = &job;  // first rung of a scene
-    // A failed rung's earlier rounds are not told.
+    // Earlier rounds of a failed rung are not printed.
     const bool failed = !job.failure.empty();
     rows.push_back(
         summarize(job.scene->id, *job.rung, failed ? std::span<const BenchRun>() : job.runs, lambert->runs));

@@ -33,7 +33,7 @@ struct KeptRun {
   std::string name;                    ///< name of its record in runs/
   std::string picture;                 ///< within the folder
   std::string scene_key;               ///< scene key of the rendered scene
-  std::vector<std::string> arguments;  ///< without the picture
+  std::vector<std::string> arguments;  ///< without the image
 };
 
 /// Reads a run from its record, if the same executable made it from the same scene with the same arguments

@@ -120,7 +120,7 @@ void add_pictures(const BenchFolder& folder, const std::vector<BenchScene>& scen
   }
 }
 
-// The same picture as both halves: a reference without noise.
+// The same image as both halves: a reference without noise.
 std::vector<BudgetRow> budget_rows(const BenchFolder& folder, const std::vector<BudgetJob>& jobs) {
   std::vector<BudgetRow> rows;
   for (const BudgetJob& job : jobs) {

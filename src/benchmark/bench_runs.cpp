@@ -40,7 +40,7 @@ std::string outcome(const BenchJob& job, bool is_kept) {
   return short_time(job.runs.back().job.wall_seconds) + (is_kept ? " (reused)" : "");
 }
 
-/// Pictures of one scene by their overrides.
+/// Images of one scene by their overrides.
 class PartPictures {
  public:
   PartPictures(const BenchArguments& arguments, const BenchFolder& folder, const BenchScene& scene)

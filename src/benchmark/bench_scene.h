@@ -52,7 +52,7 @@ void prepare_reference(const BenchArguments& arguments, const std::string& folde
 /// Overrides of a run, after those of the scene.
 std::vector<std::string> rung_overrides(const BenchScene& scene, const Rung& rung);
 
-/// Command line of a run, for run_own_child; "-o" and the picture are still missing.
+/// Command line of a run, for run_own_child; without "-o" and the image.
 std::vector<std::string> render_arguments(const BenchArguments& arguments, const BenchScene& scene,
                                           const std::vector<std::string>& overrides);
 

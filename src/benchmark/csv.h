@@ -28,7 +28,7 @@ CsvTable parse_csv(std::string_view text, const std::string& file);
 /// Increases with each change of a column's name, unit or meaning, and with each removed column.
 inline constexpr int kBenchSchema = 2;
 
-/// The schema is the first note. Empty cells were not measured; a failed rung's `failure` says why.
+/// The schema is the first note. Empty cells were not measured; a failed rung has the reason in `failure`.
 CsvTable bench_table(const BenchReport& report);
 
 /// Components of the error, one per row.

@@ -7,7 +7,7 @@
 
 namespace opaline {
 
-/// page.html with its style, scripts and library; the data takes the place of "{{data}}".
+/// page.html with its style, scripts and library; the data replaces "{{data}}".
 extern const char* const kPage;
 
 /// A page without network access.

@@ -182,7 +182,7 @@ void check_values(const CompareReport& report, const Picture& reference) {
 }  // namespace
 
 int compare_command(const CompareArguments& arguments) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader leaving must not cost the error picture
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe must not prevent the error image
   const std::vector<Picture> pictures = load_all(arguments);
   const Layer& layer = pictures[0].layer;
   const std::vector<std::uint8_t> object = object_of(pictures);

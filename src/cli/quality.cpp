@@ -140,7 +140,7 @@ RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache*
 FinishPicture trial_writing(const RenderArguments& arguments, const Film& film) {
   return [&arguments, &film](const Image& picture) {
     for (const std::string& path : arguments.outputs) {
-      const AtomicFile trial(path);  // never put in place
+      const AtomicFile trial(path);  // never committed
       write_picture(trial.temporary(), picture, film, arguments.layers);
     }
   };

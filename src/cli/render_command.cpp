@@ -306,7 +306,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
 }  // namespace
 
 void render_command(const RenderArguments& arguments) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader of the log leaving must not cost the picture
+  std::signal(SIGPIPE, SIG_IGN);  // a closed log pipe must not fail the render
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));

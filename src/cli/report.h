@@ -52,7 +52,7 @@ void print_budget(const Log& log, double budget, double before, const TimeBudget
 /// Prints the existing images of a skipped frame.
 void print_skipped(const Log& log, const std::vector<std::string>& outputs);
 
-/// Standard error of the irradiance a light brings, over its mean (LightTransfer::relative_error).
+/// Standard error of a light's irradiance, over its mean (LightTransfer::relative_error).
 struct LightNoise {
   std::string group, light;
   double relative_error = 0;

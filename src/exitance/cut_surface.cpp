@@ -110,7 +110,7 @@ class MeshCutter {
   double longest_;
   SurfaceCache& cache_;
   std::vector<Vec3f>& normals_;
-  std::vector<std::uint32_t> shared_;  // vertex of the cache, one a vertex of the mesh
+  std::vector<std::uint32_t> shared_;  // vertex of the cache, one per vertex of the mesh
   bool smooth_;
   std::vector<Vec3f> means_;  // mean normals of the facets at each vertex, if not smooth
   Vec3f facet_;

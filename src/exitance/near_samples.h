@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// Entered irradiance of a sample over the tree's flux unit.
+/// Transmitted irradiance of a sample over the tree's flux unit.
 inline RgbF irradiance_of(const TreeSample& s) {
   return RgbF{s.flux[0], s.flux[1], s.flux[2]} / s.area;
 }

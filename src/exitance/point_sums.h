@@ -50,7 +50,7 @@ inline Points4 root(Points4 f) {
   return (Points4)_mm_sqrt_ps((__m128)f);
 }
 
-/// SplitKernel::border at a place between its rows.
+/// SplitKernel::border interpolated between rows.
 inline std::array<float, 3> border_share(const SplitKernel& kernel, float place) {
   const std::size_t row = std::min(std::size_t(place), SplitKernel::kBorderRows - 2);
   const float t = place - float(row);

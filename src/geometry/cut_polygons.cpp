@@ -52,7 +52,7 @@ class CornerGrid {
     for (const std::uint32_t c : corners) corners_[next[cell(points[c])]++] = c;
   }
 
-  /// True if a corner lies in the squares from low to high; counts the corners it looks at.
+  /// True if a corner lies in the squares from low to high; counts the corners tested.
   template <class Predicate>
   bool any(const Point& low, const Point& high, std::size_t& looks, Predicate is_one) const {
     const std::size_t first = cell(low), last = cell(high), across = last % columns_ - first % columns_;

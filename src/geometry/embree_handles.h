@@ -34,7 +34,7 @@ struct RayScene::Handles {
   }
 };
 
-// One cache line holds two of them: a hit's interpolation reads three.
+// A cache line contains two of them: a hit's interpolation reads three.
 struct alignas(32) RayScene::Vertex {
   Vec3f position, normal;
 };

@@ -27,8 +27,8 @@ struct MeshParts {
   struct RimEdge {
     std::uint32_t part, from, to;  ///< as its triangle has it
   };
-  std::vector<std::uint32_t> of;  ///< one a triangle: its part
-  std::vector<Kind> kinds;        ///< one a part
+  std::vector<std::uint32_t> of;  ///< one per triangle: its part
+  std::vector<Kind> kinds;        ///< one per part
   std::vector<RimEdge> rims;      ///< edges of the open parts' holes
 };
 

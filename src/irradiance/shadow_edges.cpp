@@ -120,7 +120,7 @@ class EdgeFinder {
   NeighbourGrid grid_;
   std::vector<Span> spans_;          // cells x lights
   std::vector<bool> has_edge_near_;  // one per cell; may be true without an edge
-  std::vector<float> floors_;        // one a light
+  std::vector<float> floors_;        // one per light
 };
 
 // Mean weight of one light over the points of each marked sample's cell. An area light's samples are

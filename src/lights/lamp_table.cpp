@@ -204,8 +204,8 @@ class WeighedDraw::OtherLamps {
 
   std::span<Stratum> strata_;
   std::size_t stratum_ = 0;  // current
-  double border_, place_;    // its end, and where it is drawn
-  double end_ = 0;           // end of the lamps so far
+  double border_, place_;    // its end, and its sampled position
+  double end_ = 0;           // end of the lights so far
 };
 
 void WeighedDraw::take_others(std::span<Stratum> strata) const {

@@ -78,7 +78,7 @@ class WeighedDraw {
 
   const LampTable& lamps_;
   std::span<const float> weights_;
-  double scale_ = 0;  // scale of weights, to how often each is drawn
+  double scale_ = 0;  // expected samples over weight
   std::size_t blocks_;
   std::array<double, kMost / kBlock> sums_;
   std::array<float, kMost / kBlock> largest_;

@@ -13,7 +13,7 @@ bool is_dark(const Light& light) {
   return is_delta(light) && emission(light) == Rgb{};  // others occlude the background
 }
 
-/// One tree holds lights of one kind.
+/// A tree contains lights of one kind.
 constexpr std::array<const char*, 3> kKinds{"many lights without an area", "many lights with an area",
                                             "many lights with an area that the camera does not see"};
 

@@ -36,7 +36,7 @@ class SubsurfaceMethod {
   virtual bool uses_radial_profile() const { return true; }
   /// False if light leaves where it enters.
   virtual bool spreads_light() const { return true; }
-  /// True if the exitance may be evaluated at points of the surface in place of hits (surface_caches.h).
+  /// True if the exitance may be evaluated at points of the surface instead of hits (surface_caches.h).
   virtual bool may_use_surface_cache() const { return false; }
   /// Layers of an image beside those of every method.
   virtual MethodLayers layers() const { return {.variance = false, .error = true}; }
@@ -69,7 +69,7 @@ class SubsurfaceMethod {
 
   /// Name of the stage `prepare` in the table of costs.
   virtual const char* stage() const { return ""; }
-  /// Brings the state up to date with the lights. If light bounces it may keep the state of a previous call with bounced
+  /// Updates the state for the lights. If light bounces, it may keep the state of a previous call with bounced
   /// light in the same direct light.
   /// error Error{interrupted}
   virtual void prepare(BodyStages&) const {}

@@ -27,7 +27,7 @@ class StageStore {
   StageStore(StageCache* cache, SessionWork& work, std::vector<std::string>& decisions)
       : cache_(cache), work_(work), decisions_(decisions) {}
 
-  /// Brings a result up to date: reuses it, reads it from the cache, or computes and caches it.
+  /// Updates a result: reuses it, reads it from the cache, or computes and caches it.
   template <class Codec, class Compute>
   ResultSource get(StageResult<typename Codec::Value>& result, const StageKey& key, const Codec& codec,
                    const Compute& compute) {

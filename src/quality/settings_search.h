@@ -17,7 +17,7 @@ struct SettingsSearch {
   double probe_pixels = 96 * 96;      ///< errors may be in a few pixels only, beside shadow edges
   std::size_t enough_points = 3000;   ///< enough lit translucent points of a probe
   std::uint64_t pictures = 0;
-  double estimated = 0;  ///< mean relative error of the last picture, by its own `error` layer
+  double estimated = 0;  ///< mean relative error of the last image, by its own `error` layer
   /// Indirect light, if any: gathered for the first image and reused.
   std::shared_ptr<const BouncedPlaces> bounced = {};
   double bounced_seconds = 0;  ///< CPU of gathering it
@@ -47,7 +47,7 @@ struct SettingsSearch {
   bool try_surface_cache();
 };
 
-/// Tolerance of the evaluator, for an error of the whole picture.
+/// Tolerance of the evaluator, for an error of the whole image.
 double tolerance_for(double error);
 
 /// Number of pixels of a probe with a lit translucent surface.

@@ -174,7 +174,7 @@ Choice BudgetSearch::affordable(double most, double exitance) const {
   return {low, cost(low)};
 }
 
-/// Samples for the last small picture.
+/// Samples for the last small image.
 double BudgetSearch::goal() const {
   return std::min(affordable(search_.most_samples).samples / kBeyond, search_.most_samples);
 }

@@ -23,7 +23,7 @@ struct Appearance {
   float eta = 1;                       ///< eta of the boundary, where there is one
   float average_reflectance = 0;       ///< F_bar
   std::optional<RoughBoundary> rough;  ///< none: smooth
-  bool has_boundary = false;           ///< translucent things and glossy opaque ones
+  bool has_boundary = false;           ///< translucent and glossy opaque surfaces
   float metalness = 0;                 ///< metalness of an opaque one
   /// Range of a textured or anisotropic roughness.
   std::shared_ptr<const RoughnessRange> roughnesses = {};

@@ -32,7 +32,7 @@ constexpr float kVaried = 0.2f;
 constexpr float kOffPlane = 0.2f;
 constexpr float kLeastWeight = 0.05f;  // sum of the weights around a hit, each at most 1
 
-// Lanes of a row's places, one a lane; GCC's and Clang's.
+// Vector of a row's cache points; extension of GCC and Clang.
 using Lanes = float __attribute__((vector_size(BouncedPlaces::kBeside * sizeof(float))));
 
 Lanes absolute(const Lanes& values) {

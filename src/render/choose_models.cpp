@@ -149,7 +149,7 @@ BodyModel planned_model(const Scene& scene, const GroupPlan& group) {
 
 void choose_models(Scene& scene, const World& world, std::span<const GroupPlan> reference) {
   if (std::ranges::all_of(scene.media, [](const Medium& m) { return m.profile.has_value(); })) return;
-  std::vector<std::string> warnings;  // make_plan says them
+  std::vector<std::string> warnings;  // added by make_plan
   std::vector<bool> is_taken(scene.media.size());
   for (const GroupPlan& group : find_groups(scene, world, warnings)) {
     if (scene.media[group.medium].profile) continue;

@@ -21,7 +21,7 @@ struct GatherInput {
   const RayScene& rays;
   const Shader& shader;
   std::span<const SurfacePoint> points;
-  std::span<const std::uint64_t> keys;  ///< one a point: chooses its random numbers
+  std::span<const std::uint64_t> keys;  ///< one per point: chooses its random numbers
   float eta = 0;                        ///< eta of the boundary transmitting the light; 0: none
   int rays_each = 64;
   std::uint64_t seed = 0;
@@ -42,7 +42,7 @@ using UseOfGathered = std::function<void(const SurfaceLight&)>;
 
 void for_each_gathered(const GatherInput& input, const UseOfGathered& use);
 
-/// Their sums, one a point, W/mm^2.
+/// Their sums, one per point, W/mm^2.
 std::vector<RgbF> gathered_irradiance(const GatherInput& input);
 
 }  // namespace opaline

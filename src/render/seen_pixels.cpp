@@ -74,7 +74,7 @@ class SeenCells {
   std::array<std::uint64_t, kCells> seen_{};  // row by row, a bit a column
 };
 
-/// Returns false where a light may be seen anywhere.
+/// Returns false if a light may be visible anywhere.
 bool add_light(const Light& light, const CameraRays& rays, SeenCells& cells) {
   if (const auto* many = std::get_if<ManyLights>(&light.source))
     return std::ranges::all_of(many->tree->lights(), [&](const Light& one) {

@@ -19,7 +19,7 @@ class BouncedLight;
 
 class Shader {
  public:
-  /// entry_samplers: of Method::direct, one a group.
+  /// entry_samplers: of Method::direct, one per group.
   explicit Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers = {});
 
   /// Shades a batch of traced camera rays, one PixelSample per ray; returns the number of exitance queries.
@@ -113,10 +113,10 @@ class Shader {
 
   const RenderInput& input_;
   std::vector<Light> lights_;            // recentred
-  std::vector<RgbF> emitted_;            // one a light
+  std::vector<RgbF> emitted_;            // one per light
   MetLights met_, seen_;                 // by any ray, by those of the camera
   std::vector<Light> unit_lights_;       // all with unit emission, if reflections are cacheable
-  std::vector<Appearance> appearances_;  // one a mesh
+  std::vector<Appearance> appearances_;  // one per mesh
   SurfaceTextures textures_;
   float pixel_spread_ = 0;  // pixel spread of camera rays
   Fields fields_;

@@ -120,7 +120,7 @@ void map_normal(const Texture& texture, const SurfaceTextures::Place& place, Sur
 Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& place) {
   const auto [along_u, along_v] =
       texture.file->slope(texture_place(texture, *place.uv, place.footprint), texture.channel);
-  // Angle of the picture's u and v, by the mesh's.
+  // Angle of the image's u and v, by the mesh's.
   const double angle = texture.uv_rotation * std::numbers::pi / 180;
   const double cosine = std::cos(angle), sine = std::sin(angle);
   const Vec3f x = place.uv->gradient_u * float(texture.uv_scale[0]),

@@ -20,7 +20,7 @@ bool are_samples_of(const SurfaceSamples& samples, const SampledSurface& surface
 
 bool is_light_of(const LightTransfer& transfer, std::size_t samples);
 
-/// One a sample, finite and >= 0.
+/// One per sample, finite and >= 0.
 bool are_values_of(std::span<const RgbF> values, std::size_t samples);
 
 /// True if the byte at `offset` of every item is 0 or 1, so it may be read as a bool.

@@ -66,7 +66,7 @@ struct Session::State {
   RayBuild rays_build_ = RayBuild::careful;
   std::vector<MeshKeys> rays_keys_;
   std::vector<Body> bodies_;
-  std::vector<BodyKeys> keys_;  // one a body
+  std::vector<BodyKeys> keys_;  // one per body
   std::size_t pictures_ = 1;
   bool holds_view_ = false;
   HeldView view_;

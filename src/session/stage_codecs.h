@@ -23,7 +23,7 @@ namespace opaline {
 struct SampledSurface {
   const World& world;
   std::span<const std::uint32_t> meshes;  ///< meshes of the body, in its order
-  std::size_t count;                      ///< samples asked for
+  std::size_t count;                      ///< requested samples
 };
 
 /// Samples of a surface. Entries number meshes by their position in the body: a scene may number its shapes differently.

@@ -35,7 +35,7 @@ class DirectlyLitBodies {
   }
 
   std::span<BodyStages> bodies_;
-  std::vector<std::unique_ptr<MethodState>> other_;  // one a body
+  std::vector<std::unique_ptr<MethodState>> other_;  // one per body
 };
 
 }  // namespace

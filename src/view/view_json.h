@@ -22,7 +22,7 @@ std::string scene_text(const SceneEdits& edits, const std::string& command);
 /// "plan": requirements of the scene, in words.
 std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan);
 
-/// "report": of a final picture.
+/// "report": on a final image.
 std::string report_text(const ViewReport& report);
 
 /// "behind": requested background work.

@@ -52,7 +52,7 @@ struct ViewEvents {
   std::function<void(std::uint32_t revision, const std::string& why)> failed;
 };
 
-/// error Error{run_failed}: the picture needs more memory than the machine has left
+/// error Error{run_failed}: the image needs more memory than available
 void check_memory(const Plan& plan);
 
 class ViewRenderer {

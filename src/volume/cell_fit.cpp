@@ -88,7 +88,7 @@ struct FittedMean {
 
 constexpr std::size_t kChunk = 256;  // cells
 
-/// Centroids in place of positions.
+/// Centroids instead of positions.
 std::vector<SurfaceSample> at_centroids(std::span<const SurfaceSample> samples) {
   std::vector<SurfaceSample> moved(samples.begin(), samples.end());
   for (SurfaceSample& s : moved) s.position = s.centroid;

@@ -165,7 +165,7 @@ class ConjugateGradients {
   const DiffusionProblem& problem_;
   std::size_t count_;
   Channels diffusivity_;
-  std::vector<Channels> conductances_;  // one a link of the grid, or none
+  std::vector<Channels> conductances_;  // one per link of the grid, or none
   std::vector<Channels> x_, residual_, inverse_, direction_, product_;
   Sums squared_{}, source_{};  // norms of the residual and of the source
 };

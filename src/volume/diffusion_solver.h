@@ -20,16 +20,16 @@ struct alignas(16) Channels {
 struct DiffusionProblem {
   const DiffusionGrid& grid;
   std::array<float, 3> diffusivity{};
-  std::vector<Channels> loss;                ///< one a cell, >= 0
-  std::vector<Channels> source;              ///< one a cell
-  std::vector<Channels> diffusivities = {};  ///< one a cell, > 0; empty: `diffusivity` everywhere
+  std::vector<Channels> loss;                ///< one per cell, >= 0
+  std::vector<Channels> source;              ///< one per cell
+  std::vector<Channels> diffusivities = {};  ///< one per cell, > 0; empty: `diffusivity` everywhere
 
   /// Coefficient between two cells' centres: half of the distance belongs to each, by their sizes.
   Channels between(std::uint32_t a, std::uint32_t b) const;
 };
 
 struct DiffusionSolution {
-  std::vector<Channels> fluence;  ///< one a cell
+  std::vector<Channels> fluence;  ///< one per cell
   int iterations = 0;
 };
 

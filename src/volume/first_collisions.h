@@ -19,8 +19,8 @@ namespace opaline {
 /// Transmitted light at the samples, from lights or uniform.
 struct EnteringLight {
   std::span<const Light> lights;             ///< recentred
-  std::span<const LightTransfer> transfers;  ///< one a light
-  std::span<const RgbF> tints;               ///< factors, one a sample; empty: none
+  std::span<const LightTransfer> transfers;  ///< one per light
+  std::span<const RgbF> tints;               ///< factors, one per sample; empty: none
   std::span<const RgbF> even = {};           ///< uniform, W per area, one per sample; empty: none
 };
 
@@ -34,7 +34,7 @@ struct AttachedElement {
 struct DiffusionSpace {
   const Lattice& lattice;
   const DiffusionGrid& grid;
-  std::span<const std::array<CalibratedMedium, 3>> media;  ///< one for all cells, or one a cell
+  std::span<const std::array<CalibratedMedium, 3>> media;  ///< one for all cells, or one per cell
   const Boundary& boundary;
   std::span<const BoundaryElement> samples;
   std::span<const AttachedElement> attached;  ///< one an element

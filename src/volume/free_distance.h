@@ -72,7 +72,7 @@ class FreeDistance {
   /// Pieces by voxel.
   struct Pieces {
     std::vector<Piece> pieces;
-    std::vector<std::uint32_t> first;      ///< in `of_voxels`, one a voxel, and the end
+    std::vector<std::uint32_t> first;      ///< in `of_voxels`, one per voxel, and the end
     std::vector<std::uint32_t> of_voxels;  ///< indices of pieces
   };
 

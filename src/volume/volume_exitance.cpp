@@ -205,7 +205,7 @@ class Walks {
   }
 
  private:
-  static constexpr std::size_t kMostCounts = std::size_t(1) << 26;  // held at once
+  static constexpr std::size_t kMostCounts = std::size_t(1) << 26;  // in memory at once
 
   void add_together(std::span<const Job> jobs) const {
     constexpr std::size_t kChunks = BodyWalks::kChunks;

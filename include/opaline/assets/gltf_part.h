@@ -16,10 +16,10 @@ namespace opaline {
 /// One primitive of the asset: in metres and in the mesh's own space.
 struct GltfPart {
   std::vector<Vec3d> positions;
-  std::vector<Vec3f> normals;             ///< empty, or one a vertex, of any length
-  std::vector<std::array<float, 2>> uvs;  ///< empty, or one a vertex; v upwards
-  std::vector<Tangent> tangents;          ///< empty, or one a vertex
-  std::vector<RgbF> colors;               ///< empty, or one a vertex; linear, 0 to 1
+  std::vector<Vec3f> normals;             ///< empty, or one per vertex, of any length
+  std::vector<std::array<float, 2>> uvs;  ///< empty, or one per vertex; v upwards
+  std::vector<Tangent> tangents;          ///< empty, or one per vertex
+  std::vector<RgbF> colors;               ///< empty, or one per vertex; linear, 0 to 1
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::string> warnings;
 };

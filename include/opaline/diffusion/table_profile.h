@@ -44,7 +44,7 @@ struct TableProfile {
 
 /// R_d(r) of diffuse light, 1/mm^2, per transmitted flux, r > 0 in mm (infinite at 0).
 double diffuse_reflectance_profile(const TableProfile& profile, double r);
-/// Fraction of the entered diffuse light leaving within r, mm.
+/// Fraction of the transmitted diffuse light leaving within r, mm.
 double diffuse_reflectance_within(const TableProfile& profile, double r);
 /// Total of diffuse light: half_space_albedo.
 double total_diffuse_reflectance(const TableProfile& profile);

@@ -84,7 +84,7 @@ struct PacketCut {
 struct QueryPackets {
   float radius = 0;                  ///< h of the kernel at the grouping
   std::vector<std::uint32_t> order;  ///< order of the finite queries; empty: not computed
-  std::vector<PacketCut> cuts;       ///< one a chunk
+  std::vector<PacketCut> cuts;       ///< one per chunk
 };
 
 /// Error model of a cloud of samples, per channel: the parts not visible to one query. See tell_cloud_error.

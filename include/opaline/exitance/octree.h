@@ -14,7 +14,7 @@ namespace opaline {
 struct FluxSample {
   Vec3f position;  ///< in the world's space and unit, as are all lengths here
   float area = 0;
-  RgbF irradiance;  ///< entered, W/mm^2
+  RgbF irradiance;  ///< transmitted, W/mm^2
   Vec3f normal;
 };
 

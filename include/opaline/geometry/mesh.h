@@ -27,7 +27,7 @@ using CornerColors = std::array<RgbF, 3>;
 
 struct Mesh {
   std::vector<Vec3d> positions;                         ///< mm, world space
-  std::vector<Vec3f> normals;                           ///< unit, one a vertex; empty: faceted
+  std::vector<Vec3f> normals;                           ///< unit, one per vertex; empty: faceted
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise seen from outside
   std::vector<CornerUvs> uvs{};            ///< one per triangle, if a texture needs them; else empty
   std::vector<CornerTangents> tangents{};  ///< one per triangle, if requested and present

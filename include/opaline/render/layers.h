@@ -14,7 +14,7 @@ namespace opaline {
 /// Result of one camera ray; zero if it hit nothing.
 struct PixelSample {
   RgbF diffuse{}, specular{};
-  RgbF emitted{};      ///< lights and surroundings seen directly
+  RgbF emitted{};      ///< radiance of directly visible lights and environments
   float coverage = 0;  ///< 1 on a surface
   RgbF albedo{}, irradiance{};
   RgbF error{};           ///< error of diffuse, about equal for all rays of a pixel

@@ -31,8 +31,8 @@ struct Body {
   GroupPlan plan;
   DiffuseProfile profile;
   SurfaceSamples surface;
-  std::vector<LightTransfer> transfers;  ///< one a light
-  std::vector<RgbF> entering = {};       ///< entering_tints, one a sample; empty: none
+  std::vector<LightTransfer> transfers;  ///< one per light
+  std::vector<RgbF> entering = {};       ///< entering_tints, one per sample; empty: none
   std::map<Method, std::unique_ptr<MethodState>> states = {};
 };
 

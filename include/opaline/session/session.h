@@ -106,7 +106,7 @@ class Session {
   const RayScene& rays() const;  ///< after prepare
   /// Bodies after prepare; empty for a method or plan without bodies.
   std::span<const Body> bodies() const;
-  /// Bounced places of the last image with bounces, for any view and light; null: none for these shapes.
+  /// Indirect light of the last image with bounces, for any view and light; null: none for these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
   const SessionWork& work() const;  ///< work of the last edit and since
   /// Decisions on reused and recomputed stages, a line each.

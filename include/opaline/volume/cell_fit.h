@@ -38,7 +38,7 @@ class CellWeights {
   };
   /// Weights of kChunk cells, in spatial order.
   struct Chunk {
-    std::vector<Frame> frames;                ///< one a cell
+    std::vector<Frame> frames;                ///< one per cell
     std::vector<std::uint32_t> ends;          ///< end of each cell's neighbours
     std::vector<Neighbour> neighbours;        ///< cell by cell
     std::vector<std::array<float, 6>> terms;  ///< one per neighbour: its quadratic for a mean of 1
@@ -116,7 +116,7 @@ class CellFit {
   static RgbF rgb_of(const Channels& channels) { return {channels[0], channels[1], channels[2]}; }
 
   std::shared_ptr<const CellWeights::Places> places_;
-  std::vector<Fit> fits_;  ///< one a cell, in the order of their places
+  std::vector<Fit> fits_;  ///< one per cell, in spatial order
 };
 
 }  // namespace opaline

@@ -58,8 +58,8 @@ struct VolumeSums {
 };
 
 struct VolumeExitance {
-  std::vector<RgbF> exitance;  ///< one a sample: radiant exitance, W/mm^2, the mean over its cell
-  std::vector<RgbF> error;     ///< one a sample: standard error of the exitance
+  std::vector<RgbF> exitance;  ///< one per sample: radiant exitance, W/mm^2, the mean over its cell
+  std::vector<RgbF> error;     ///< one per sample: standard error of the exitance
   std::size_t walks = 0;       ///< per sample, in the channel and light with the most
   double relative_error =
       0;                  ///< rms over the surface of error over sqrt(exitance^2 + (1 % of the largest)^2)

@@ -150,7 +150,7 @@ float EntrySampler::channel_mean(float r2) const {
   return kernel[0] * inverse_total_[0] + kernel[1] * inverse_total_[1] + kernel[2] * inverse_total_[2];
 }
 
-// Expected entries per area at a place; normal: geometric, there.
+// Expected entries per area at a point; normal: geometric.
 float EntrySampler::density(const SurfacePoint& exit, const Vec3f& offset, const Vec3f& normal) const {
   if (strategy_ == EntryStrategy::chords) return channel_mean(dot(offset, offset)) / 2;
   const Frame frame(exit.geometric);

@@ -18,7 +18,7 @@ struct Kernels {
 
 struct HierarchicalState : MethodState {
   static constexpr Method kMethod = Method::hierarchical;
-  std::vector<RgbF> irradiance;  ///< transmitted, one a sample, from lights and other surfaces
+  std::vector<RgbF> irradiance;  ///< transmitted, one per sample, from lights and other surfaces
   StageResult<Octree> tree;      ///< octree of the irradiance
   StageKey direct_key;           ///< direct key of the tree before bounced light is added
   StageResult<Kernels> kernels;
@@ -36,7 +36,7 @@ const HierarchicalState& hierarchical_state(const Body& body);
 HierarchicalState& hierarchical_state(Body& body);
 
 /// Octree of the transmitted flux.
-/// in    irradiance: one a sample
+/// in    irradiance: one per sample
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);
 /// Bounds the normals of the tree's nodes if the kernel has a far side.
 void bound_far_side(HierarchicalState& state);

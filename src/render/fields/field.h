@@ -23,7 +23,7 @@ struct Pass {
   bool is_seen = true;    ///< false: for gathered rays; without a near field
   /// `direct`: gathering of light from other surfaces at points of entry, by one ray each; null: direct light only.
   const Shader* gathers = nullptr;
-  /// The same for surfaces seen in specular reflections; null: the same.
+  /// The same for surfaces visible in specular reflections; null: the same.
   const Pass* in_mirrors = nullptr;
 };
 
@@ -32,7 +32,7 @@ struct SurfaceHits {
   std::vector<SurfacePoint> points;
   std::vector<Hit> hits;              ///< mesh, triangle, barycentrics
   std::vector<std::uint64_t> keys;    ///< choose the random numbers of a hit
-  std::vector<std::uint32_t> rays;    ///< their places in the batch
+  std::vector<std::uint32_t> rays;    ///< their indices in the batch
   std::vector<HitTextures> textures;  ///< empty: the scene has none
 };
 

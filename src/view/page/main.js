@@ -18,7 +18,7 @@ const display = {exposure: 0, transform: "soft", channel: ""};
 let frame = null, pinned = null, waiting = null, isDragging = false, layers = [];
 let reference = null, waitingReference = null, behind = {trade: false, reference: ""};
 
-// ---- the picture --------------------------------------------------------------------------------------------
+// ---- the image ----------------------------------------------------------------------------------------------
 
 function takeFilm() {
   const given = serverScene.film || {}, [width, height] = given.resolution || [512, 512];

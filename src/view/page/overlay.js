@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Over the picture: lights to drag, a ruler in millimetres, and the edge of the wipe.
+// Overlay of the image: lights to drag, a ruler in millimetres, and the edge of the wipe.
 import {add, basis, heightAt, project, rounded, scale, sub} from "./camera.js";
 import {newStroke, pausedStroke} from "./connection.js";
 
