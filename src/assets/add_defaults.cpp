@@ -60,7 +60,8 @@ struct ViewFrame {
   Vec3d right, up, towards_camera;
 };
 
-/// View from the scene's camera to the asset's centre. The default view if the camera is at the centre or looks along up.
+/// View from the scene's camera to the asset's centre. The default view if the camera is at the centre or
+/// looks along up.
 ViewFrame view_frame(const AssetScene& scene) {
   const Vec3d up{0, 1, 0};
   Vec3d towards = vector_of(scene.camera["position"]) - scene.center;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Conversion of a glTF material: to a translucent medium if it scatters light inside, else to a coated colour or metal.
+// Conversion of a glTF material: to a translucent medium if it scatters light inside, else to a coated colour
+// or metal.
 #pragma once
 
 #include <cstdint>

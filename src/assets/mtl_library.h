@@ -51,7 +51,8 @@ MtlUse use_of(const MtlStatement& statement);
 std::string mtl_suggestion(const std::string& keyword);
 
 /// A colour between 0 and 1. One number applies to all three.
-/// from  Wavefront, MTL material format 4.2: "the g and b are optional; if only r is specified, g and b equal r"
+/// from  Wavefront, MTL material format 4.2: "the g and b are optional; if only r is specified, g and b equal
+///       r"
 struct MtlColor {
   std::optional<Vec3d> value;  ///< none: the text is not a colour
   std::string complaint;       ///< about the text, a verb phrase; empty: none

@@ -35,8 +35,8 @@ struct LadderInput {
 /// one rung omits it.
 std::vector<Rung> ladder(const LadderInput& input);
 
-/// Runs compared with random walks: `lambert` first, then the scene as given, with each radial profile in turn, and
-/// `volume_diffusion`.
+/// Runs compared with random walks: `lambert` first, then the scene as given, with each radial profile in
+/// turn, and `volume_diffusion`.
 std::vector<Rung> truth_ladder(bool quick);
 
 }  // namespace opaline

@@ -13,8 +13,8 @@ namespace opaline {
 /// HTML without network access, and without other files except linked tables.
 std::string to_page(const ProfileReport& report);
 
-/// The rows of the three tables below, "models" with their sources, and "channels": the medium, the curve of "fresnel", and
-/// "classical" and "grosjean" around a point source.
+/// The rows of the three tables below, "models" with their sources, and "channels": the medium, the curve of
+/// "fresnel", and "classical" and "grosjean" around a point source.
 nlohmann::ordered_json profile_page_data(const ProfileReport& report);
 
 /// Fractions of the transmitted flux: one row per channel, angle of incidence or model, and face.

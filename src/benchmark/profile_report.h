@@ -43,7 +43,8 @@ struct ProfileReport {
   bool is_slab() const { return request.thickness < std::numeric_limits<double>::infinity(); }
 };
 
-/// The same bits for any number of threads: the number of walks follows from collisions counted, not from time.
+/// The same bits for any number of threads: the number of walks follows from collisions counted, not from
+/// time.
 /// error as walk_slab
 ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor);
 

@@ -18,7 +18,8 @@ namespace opaline {
 std::string to_json(const BenchReport& report);
 nlohmann::ordered_json results_json(const BenchReport& report);
 
-/// Rows of a table as objects: numbers where the column has a unit, null where such a cell is empty or not finite.
+/// Rows of a table as objects: numbers where the column has a unit, null where such a cell is empty or not
+/// finite.
 nlohmann::ordered_json rows_json(const CsvTable& table);
 
 /// Compared data of a rung.

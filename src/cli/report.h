@@ -44,8 +44,8 @@ void print_volume_target(const Log& log, double target, const TargetError& chose
 /// Prints the command reproducing the frames without choosing.
 void print_repeat_command(const Log& log, const std::string& command);
 
-/// Prints the choice for --time-budget, and a warning if the budget is too small; `before`: CPU time before the
-/// choice, s.
+/// Prints the choice for --time-budget, and a warning if the budget is too small; `before`: CPU time before
+/// the choice, s.
 void print_budget(const Log& log, double budget, double before, const TimeBudget& chosen,
                   const Settings& settings);
 

@@ -32,7 +32,8 @@ bool is_nothing(const StageCost& cost) {
   return cost.wall_seconds < kShown && cost.cpu_seconds < kShown;
 }
 
-/// Prints the cost of each stage. Stages computed by the trials belong to the cost of choosing and are named there.
+/// Prints the cost of each stage. Stages computed by the trials belong to the cost of choosing and are named
+/// there.
 void print_costs(const Summary& summary) {
   std::vector<StageCost> shown = summary.costs;
   const auto choosing = std::ranges::find(shown, "choosing", &StageCost::stage);

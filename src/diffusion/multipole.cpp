@@ -68,12 +68,13 @@ struct Flux {
   }
 };
 
-// Sum over all images of f, for the face at `face`: sources at i period + depth, sinks at i period - depth - 2 b.
-// F: the integral of f from a height on.
+// Sum over all images of f, for the face at `face`: sources at i period + depth, sinks at i period - depth -
+// 2 b. F: the integral of f from a height on.
 template <class F, class Above>
 double sum_of_images(const Multipole& p, double face, const F& f, const Above& above) {
   const double period = 2 * height(p), sink = -p.depth - 2 * p.extrapolation;
-  // Towards the face's outside: a source at z sends f(z) up through the upper face, f(d - z) down through the lower.
+  // Towards the face's outside: a source at z sends f(z) up through the upper face, f(d - z) down through the
+  // lower.
   const double sign = face > 0 ? -1 : 1;
   const double a = p.depth - face, b = sink - face;
   double sum = f(a) - f(b);

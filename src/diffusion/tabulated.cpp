@@ -46,7 +46,8 @@ SlabWalks walk(double absorbed, double eta) {
 }
 
 RadialReference reference_of(double absorbed, double eta) {
-  // The width is half the distance between the dipole's source, one mean free path deep, and its image: 1 + 2 A / 3.
+  // The width is half the distance between the dipole's source, one mean free path deep, and its image: 1 + 2
+  // A / 3.
   const double inside = std::min(.99, average_reflectance_inside(eta));
   return {decay_constant(absorbed), 1 + 2. / 3 * (1 + inside) / (1 - inside)};
 }

@@ -236,7 +236,8 @@ class MeshChecker {
     warn_of(report_.duplicates_dropped, " duplicate triangles were removed");
   }
 
-  /// Corner data of the remaining triangles; those filling holes have none. given: data of the source, or empty
+  /// Corner data of the remaining triangles; those filling holes have none. given: data of the source, or
+  /// empty
   template <class Corners>
   std::vector<Corners> mended(const std::vector<Corners>& given) const {
     std::vector<Corners> corners;

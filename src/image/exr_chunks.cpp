@@ -21,7 +21,8 @@ namespace {
 
 namespace imf = OPENEXR_IMF_NAMESPACE;
 
-/// Decoded size of run-length encoded bytes: n >= 0 repeats the next byte n + 1 times, -n precedes n literal bytes.
+/// Decoded size of run-length encoded bytes: n >= 0 repeats the next byte n + 1 times, -n precedes n literal
+/// bytes.
 std::size_t bytes_of_runs(const char* runs, std::size_t size) {
   std::size_t bytes = 0;
   for (std::size_t at = 0; at < size;) {

@@ -11,8 +11,8 @@
 
 namespace opaline {
 
-/// Visibility of each block of an environment map from neighbouring points. The points form two halves; the rays of one
-/// half predict the visibility for the other, so a prediction is independent of its own rays.
+/// Visibility of each block of an environment map from neighbouring points. The points form two halves; the
+/// rays of one half predict the visibility for the other, so a prediction is independent of its own rays.
 class RoomShadows {
  public:
   explicit RoomShadows(const EnvironmentPicture& room);

@@ -251,8 +251,8 @@ class ShadowBatch {
                          draw.expected, 0, false});
   }
 
-  // Control variate: the unshadowed sum of all lights is exact, so the shadow rays of the other samples correct a sample. The
-  // mean is unchanged, because samples are independent.
+  // Control variate: the unshadowed sum of all lights is exact, so the shadow rays of the other samples
+  // correct a sample. The mean is unchanged, because samples are independent.
   template <class Use>
   void use_controlled(std::size_t point, const Use& use) const {
     const std::size_t samples = std::size_t(samples_), first = point * samples, lights = lights_.size();

@@ -29,7 +29,8 @@ Vec3d in_picture(const EnvironmentLight& light, const Vec3f& direction) {
   return turned(Vec3d(direction), -light.rotation);
 }
 
-/// Radiance of the environment map in a direction. Its channels are separate lights, evaluated one after the other.
+/// Radiance of the environment map in a direction. Its channels are separate lights, evaluated one after the
+/// other.
 RgbF radiance_towards(const EnvironmentLight& light, const Vec3f& direction) {
   struct Asked {
     std::uint64_t picture = 0;

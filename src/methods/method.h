@@ -69,8 +69,8 @@ class SubsurfaceMethod {
 
   /// Name of the stage `prepare` in the table of costs.
   virtual const char* stage() const { return ""; }
-  /// Updates the state for the lights. If light bounces, it may keep the state of a previous call with bounced
-  /// light in the same direct light.
+  /// Updates the state for the lights. If light bounces, it may keep the state of a previous call with
+  /// bounced light in the same direct light.
   /// error Error{interrupted}
   virtual void prepare(BodyStages&) const {}
   /// Key of the radiant exitance under the lights alone.

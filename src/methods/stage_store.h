@@ -20,7 +20,8 @@ struct StageResult {
 
 enum class ResultSource { reused, cache, computed };
 
-/// Provides stage results by key. A result has its key only once it is complete: an interrupted computation leaves none.
+/// Provides stage results by key. A result has its key only once it is complete: an interrupted computation
+/// leaves none.
 class StageStore {
  public:
   /// cache: null: no disk cache

@@ -56,7 +56,8 @@ Scene coarse_scene(Scene scene, const CoarseGrid& grid) {
   return scene;
 }
 
-/// Pixels between two camera rays in each direction: at least 8, and as many as limit the coarse image to 48 x 48.
+/// Pixels between two camera rays in each direction: at least 8, and as many as limit the coarse image to 48
+/// x 48.
 int stride_of(const Film& film) {
   constexpr int kStride = 8, kWidest = 48;
   const Rectangle part = rendered_part(film);

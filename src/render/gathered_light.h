@@ -25,7 +25,8 @@ struct GatherInput {
   float eta = 0;                        ///< eta of the boundary transmitting the light; 0: none
   int rays_each = 64;
   std::uint64_t seed = 0;
-  /// Cached hits of the same points, keys, number and seed, extended up to gathered_bytes of the view; or null.
+  /// Cached hits of the same points, keys, number and seed, extended up to gathered_bytes of the view; or
+  /// null.
   HeldView::Gathering* held = nullptr;
   HeldView* view = nullptr;  ///< cache containing it
 };

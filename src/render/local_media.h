@@ -21,8 +21,8 @@ inline bool is_local(const DiffuseProfile& profile, std::size_t channel) {
   return profile.total[channel] > 0 && !(profile.mean_free_path[channel] > 0);
 }
 
-/// Media below the surface of bodies of one medium, from the textures above: R G B, reduced, lengths in the world's
-/// unit.
+/// Media below the surface of bodies of one medium, from the textures above: R G B, reduced, lengths in the
+/// world's unit.
 class LocalMedia {
  public:
   /// medium: with diffuse colour and radius, varying inside the body. Scene and world must outlive the

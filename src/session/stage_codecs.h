@@ -26,7 +26,8 @@ struct SampledSurface {
   std::size_t count;                      ///< requested samples
 };
 
-/// Samples of a surface. Entries number meshes by their position in the body: a scene may number its shapes differently.
+/// Samples of a surface. Entries number meshes by their position in the body: a scene may number its shapes
+/// differently.
 struct SamplesCodec {
   using Value = SurfaceSamples;
   static constexpr const char* kStage = "samples";

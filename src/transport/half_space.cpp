@@ -53,9 +53,9 @@ double cotangent_deficit(double t) {
               s * (1. / 45 + s * (2. / 945 + s * (1. / 4725 + s * (2. / 93555 + s * 1382. / 638512875)))));
 }
 
-/// Chandrasekhar's H function of isotropic scattering: ln H(mu) = -(mu / pi) times the integral over t from 0 to
-/// pi/2 of ln(1 - c t cot t) / (cos^2 t + mu^2 sin^2 t). The rule is the double exponential one, dense at both
-/// ends: the logarithm varies fast near 0, the denominator near pi/2.
+/// Chandrasekhar's H function of isotropic scattering: ln H(mu) = -(mu / pi) times the integral over t from 0
+/// to pi/2 of ln(1 - c t cot t) / (cos^2 t + mu^2 sin^2 t). The rule is the double exponential one, dense at
+/// both ends: the logarithm varies fast near 0, the denominator near pi/2.
 class HFunction {
  public:
   explicit HFunction(double absorbed) {

@@ -40,8 +40,8 @@ double discrete_weight(double absorbed, double t) {
   return 2 * kappa * kappa / (cosh * cosh * c * (kappa * kappa - absorbed));
 }
 
-/// The integral over x from 1 of exp(-r x) / ((1 - c Q)^2 + (c pi / (2 x))^2), Q = ln((x + 1) / (x - 1)) / (2 x); r in
-/// mean free paths.
+/// The integral over x from 1 of exp(-r x) / ((1 - c Q)^2 + (c pi / (2 x))^2), Q = ln((x + 1) / (x - 1)) / (2
+/// x); r in mean free paths.
 double continuous_modes(double c, double r) {
   const auto integrand = [&](double above) {  // x - 1
     const double x = 1 + above, q = std::log1p(2 / above) / (2 * x), p = pi / (2 * x);

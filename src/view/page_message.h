@@ -67,12 +67,12 @@ using PageMessage =
     std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer, WorkBehind,
                  ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack, KeepLook>;
 
-/// in    text: {"do": "set", "values": {"media.marble.specular_ior": 1.4}, "stroke": 7}, {"do": "undo"}, {"do": "redo"},
-///       {"do": "reset"}, {"do": "restore", "edits": ["media.marble.specular_ior=1.4"]}, {"do": "save", "name": "a.json"},
-///       {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
-///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "choose", "error": 0.01},
-///       {"do": "frame", "frame": 7}, {"do": "shown", "frame": 3},
-///       {"do": "look", "position": [0, 0, 5], "look_at": [0, 0, 0]}, {"do": "look_back"} or {"do": "keep_look"}
+/// in    text: {"do": "set", "values": {"media.marble.specular_ior": 1.4}, "stroke": 7}, {"do": "undo"},
+///       {"do": "redo"}, {"do": "reset"}, {"do": "restore", "edits": ["media.marble.specular_ior=1.4"]},
+///       {"do": "save", "name": "a.json"}, {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
+///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "choose", "error": 0.01}, {"do":
+///       "frame", "frame": 7}, {"do": "shown", "frame": 3}, {"do": "look", "position": [0, 0, 5], "look_at":
+///       [0, 0, 0]}, {"do": "look_back"} or {"do": "keep_look"}
 /// error Error{bad_input}: no such message, within the limits of json_tree.h
 PageMessage parse_page_message(std::string_view text);
 

@@ -292,8 +292,8 @@ class Cutter {
     parts_.push_back({Vec3f(position), mesh, triangle, element, true, is_turned});
   }
 
-  // Part of each element nearest to its centre; transmitted light uses the triangle's normal, so a flipped triangle
-  // represents the element only without an alternative.
+  // Part of each element nearest to its centre; transmitted light uses the triangle's normal, so a flipped
+  // triangle represents the element only without an alternative.
   std::vector<const Part*> middles_of(std::span<const BoundaryElement> elements) const {
     std::vector<const Part*> middles(elements.size());
     std::vector<float> distances(elements.size(), INFINITY);

@@ -16,7 +16,8 @@ struct alignas(16) Channels {
   std::array<float, 4> c{};
 };
 
-/// For each cell: sum over links of diffusivity x conductance x (own - other's fluence) + loss x fluence = source.
+/// For each cell: sum over links of diffusivity x conductance x (own - other's fluence) + loss x fluence =
+/// source.
 struct DiffusionProblem {
   const DiffusionGrid& grid;
   std::array<float, 3> diffusivity{};

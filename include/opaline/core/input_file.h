@@ -7,7 +7,8 @@
 
 namespace opaline {
 
-/// A regular file, open for reading. All input files are opened here, or checked here where a library opens them.
+/// A regular file, open for reading. All input files are opened here, or checked here where a library opens
+/// them.
 class InputFile {
  public:
   /// in    noun: name of the file in messages; hint: appended to the message for a missing file

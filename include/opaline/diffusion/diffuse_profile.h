@@ -57,8 +57,9 @@ double slowest_decay(const ChannelProfile& profile);
 /// True if the profile models the other face of a plate (Multipole). Other profiles treat a point of the far
 /// face by its straight-line distance.
 bool has_far_side(const ChannelProfile& profile);
-/// Radiant exitance on the far face of a plate per unit of transmitted flux, 1/mm^2, at the straight-line distance s, mm:
-/// T(r) at s^2 = thickness^2 + r^2, and T(0) for s < thickness. R_d(s) for profiles without a far side.
+/// Radiant exitance on the far face of a plate per unit of transmitted flux, 1/mm^2, at the straight-line
+/// distance s, mm: T(r) at s^2 = thickness^2 + r^2, and T(0) for s < thickness. R_d(s) for profiles without a
+/// far side.
 double far_side_profile(const ChannelProfile& profile, double distance);
 /// Fraction of the transmitted flux leaving through the other face, `thickness` away in mm, within r along
 /// the plate.

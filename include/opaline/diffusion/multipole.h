@@ -42,7 +42,8 @@ double diffuse_reflectance_profile(const Multipole& profile, double r);
 double diffuse_reflectance_within(const Multipole& profile, double r);
 /// strength sinh(s (d + b - z)) cosh(s b) / sinh(s (d + 2 b)), b the extrapolation, z the source's depth.
 double total_diffuse_reflectance(const Multipole& profile);
-/// Samples as those of ChannelProfile: by cubics through a table, relative error of the share below 1e-6, and by bisection.
+/// Samples as those of ChannelProfile: by cubics through a table, relative error of the share below 1e-6, and
+/// by bisection.
 double sample_diffusion_distance(const Multipole& profile, double beyond);
 double sample_chord_sphere_radius(const Multipole& profile, double u, double v);
 /// Slowest decay of the lowest mode across the plate, sqrt(sigma_tr^2 + (pi / (d + 2 b))^2), 1/mm.

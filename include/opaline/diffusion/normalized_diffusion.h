@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The normalized diffusion profile of one channel (Christensen & Burley 2015), by one of four fits of its length.
+// The normalized diffusion profile of one channel (Christensen & Burley 2015), by one of four fits of its
+// length.
 #pragma once
 
 #include <array>
@@ -10,7 +11,8 @@
 
 namespace opaline {
 
-/// R_d(r) = A (exp(-r/d) + exp(-r/3d)) / (8 pi d r); includes single scattering. A is the exact albedo (half_space.h).
+/// R_d(r) = A (exp(-r/d) + exp(-r/3d)) / (8 pi d r); includes single scattering. A is the exact albedo
+/// (half_space.h).
 struct NormalizedDiffusion {
   double total = 0;  ///< A
   double d = 0;      ///< shape length, mm

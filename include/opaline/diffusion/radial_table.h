@@ -7,8 +7,8 @@
 
 namespace opaline {
 
-/// Reference function of a table: (1 + kappa r) exp(-kappa r) / (r (r^2 + width^2)), with the asymptotes of single
-/// scattering nearby and of a dipole far away. Lengths in mean free paths.
+/// Reference function of a table: (1 + kappa r) exp(-kappa r) / (r (r^2 + width^2)), with the asymptotes of
+/// single scattering nearby and of a dipole far away. Lengths in mean free paths.
 struct RadialReference {
   double decay = 0;  ///< kappa >= 0
   double width = 1;  ///< > 0

@@ -8,8 +8,8 @@
 
 namespace opaline {
 
-/// Fractions of the light transmitted into one face: reflected there, and transmitted through the other face. The rest is
-/// absorbed.
+/// Fractions of the light transmitted into one face: reflected there, and transmitted through the other face.
+/// The rest is absorbed.
 struct SlabLight {
   double back = 0, through = 0;
 };

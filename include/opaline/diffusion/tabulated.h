@@ -10,8 +10,9 @@
 
 namespace opaline {
 
-/// R_d of random walks in diffuse light (laboratory.h), with the exact total: the exitance of diffusely lit surfaces. The
-/// walks scatter isotropically, with the reduced coefficients. Deterministic: one medium always has the same bits.
+/// R_d of random walks in diffuse light (laboratory.h), with the exact total: the exitance of diffusely lit
+/// surfaces. The walks scatter isotropically, with the reduced coefficients. Deterministic: one medium always
+/// has the same bits.
 struct TabulatedProfile : TableProfile {
   double absorbed = 1, eta = 1;  ///< absorbed and eta of the medium
 };

@@ -50,13 +50,15 @@ struct CheckedMesh {
 /// Total area of the triangles, mm^2.
 double surface_area(const Mesh& mesh);
 
-/// Enclosed volume of a closed mesh, in cubes of its own unit, >= 0; by the divergence theorem about one of its corners.
+/// Enclosed volume of a closed mesh, in cubes of its own unit, >= 0; by the divergence theorem about one of
+/// its corners.
 double enclosed_volume(const Mesh& mesh);
 
 /// Integrals over a mesh's surface, in powers of the mesh's own unit.
 struct MeshMeasures {
   double area = 0, volume = 0;  ///< surface_area, enclosed_volume
-  /// Integral of n n^T over the surface, n the unit normal: xx yy zz xy yz zx. The first three sum to the area.
+  /// Integral of n n^T over the surface, n the unit normal: xx yy zz xy yz zx. The first three sum to the
+  /// area.
   std::array<double, 6> normal_products{};
   /// Area of needles: triangles with a squared longest side above 64 times their area.
   double needle_area = 0;

@@ -94,8 +94,8 @@ void add_transfers(const PointIrradianceInput& input, std::vector<PointTransfers
 std::vector<RgbF> combine_lights(std::span<const PointTransfers> transfers,
                                  const PointIrradianceInput& input);
 
-/// Light reaching a point by one shadow ray: index of the light and of the point, unit direction towards the light,
-/// irradiance per unit emission.
+/// Light reaching a point by one shadow ray: index of the light and of the point, unit direction towards the
+/// light, irradiance per unit emission.
 using UseOfRay =
     std::function<void(std::size_t light, std::size_t point, const Vec3f& towards_light, float irradiance)>;
 

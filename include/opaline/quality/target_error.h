@@ -11,9 +11,9 @@
 
 namespace opaline {
 
-/// Chosen settings and their expected error. The error is the mean relative error of the diffuse light over the
-/// translucent pixels, in the worst channel, against the converged Method::direct. It excludes antialiasing and the error of
-/// the diffusion model.
+/// Chosen settings and their expected error. The error is the mean relative error of the diffuse light over
+/// the translucent pixels, in the worst channel, against the converged Method::direct. It excludes
+/// antialiasing and the error of the diffusion model.
 struct TargetError {
   double predicted = 0;     ///< error; 0 if no translucent shape is visible
   std::size_t samples = 0;  ///< requested, of all bodies

@@ -16,8 +16,8 @@ struct GroupPlan;
 struct BodyShape {
   double area = 0;       ///< mm^2
   double thickness = 0;  ///< mean, mm: twice the volume over the area; 0 if a mesh is open
-  /// Mean squared cosine between the normals of two points of the surface: 1 of a thin plate, 1/2 of a rod, 1/3 of a
-  /// sphere or a cube.
+  /// Mean squared cosine between the normals of two points of the surface: 1 of a thin plate, 1/2 of a rod,
+  /// 1/3 of a sphere or a cube.
   double alignment = 0;
 
   /// Thickness of a square plate with this area and mean thickness, mm: its rim is part of the area.

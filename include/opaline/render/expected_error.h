@@ -10,7 +10,8 @@
 
 namespace opaline {
 
-/// Expected relative error of a body by this method against random walks; none: unknown, or the method has no model.
+/// Expected relative error of a body by this method against random walks; none: unknown, or the method has no
+/// model.
 std::optional<double> expected_error(const BodyModel& model, Method method);
 /// The largest expected error of all bodies.
 std::optional<double> expected_model_error(const Plan& plan);

@@ -59,7 +59,8 @@ struct HeldView {
       return sum;
     }
   };
-  /// Specular reflection of a rough boundary of one eta and roughness, without the colours of lights and surfaces.
+  /// Specular reflection of a rough boundary of one eta and roughness, without the colours of lights and
+  /// surfaces.
   struct Coat {
     /// Adds emission of the light * unit * weight to the radiance along a camera ray.
     struct OfLight {
@@ -108,8 +109,8 @@ struct HeldView {
   bool has_room = false;                  ///< enough memory for the points
   std::unique_ptr<std::atomic<std::size_t>> coat_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 
-  /// Gathering for the points of BouncedPlaces, by chunk and field, and for the samples of each body, by chunk, independent
-  /// of the camera (bounced_at_samples).
+  /// Gathering for the points of BouncedPlaces, by chunk and field, and for the samples of each body, by
+  /// chunk, independent of the camera (bounced_at_samples).
   std::vector<std::vector<Gathering>> at_places, at_samples;
   std::unique_ptr<std::atomic<std::size_t>> gathered_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 

@@ -89,8 +89,8 @@ class SurfaceTextures {
 /// True if vertex colours multiply the colour of the shape.
 bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh);
 
-/// Tint of transmitted light at the samples of a body: a power of the tint, averaged over each sample's cell; empty if no
-/// tint applies there.
+/// Tint of transmitted light at the samples of a body: a power of the tint, averaged over each sample's cell;
+/// empty if no tint applies there.
 std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples);
 
 /// Adds a scene's texture to a key: its file's contents and mapping; with the UVs of some meshes.

@@ -103,7 +103,8 @@ struct Medium {
   TextureMix texture_mix = TextureMix::split;
   /// Texture of ArtistMedium::subsurface_radius over its mean; the record stores the mean.
   std::optional<Texture> radius_texture{};
-  /// Fraction of the light scattering inside, [0, 1]; the rest is reflected diffusely at the surface, by base_color.
+  /// Fraction of the light scattering inside, [0, 1]; the rest is reflected diffusely at the surface, by
+  /// base_color.
   double subsurface_weight = 1;
   Rgb base_color{.8, .8, .8};
   std::optional<Texture> weight_texture{}, base_texture{};     ///< factors
@@ -147,8 +148,8 @@ struct MeshFile {
   /// and moves the mesh to y >= 0; applied before
   /// the shape's transform.
   std::optional<double> fit_size;
-  /// Part of a file with several meshes: the indices "mesh/primitive" of a glTF asset, or the material name of an OBJ.
-  /// Empty: the whole file.
+  /// Part of a file with several meshes: the indices "mesh/primitive" of a glTF asset, or the material name
+  /// of an OBJ. Empty: the whole file.
   std::string part{};
   /// True: vertex colours multiply the surface's colour; none: they do unless a texture defines that colour.
   std::optional<bool> vertex_colors{};

@@ -63,13 +63,14 @@ class Session {
   /// error as make_world; the session then keeps the previous scene
   void edit(Scene scene);
 
-  /// Sets the number of images of the same surfaces in the same light, 1 by default: the evaluator `automatic`
-  /// makes a surface cache if it pays for all of them.
+  /// Sets the number of images of the same surfaces in the same light, 1 by default: the evaluator
+  /// `automatic` makes a surface cache if it pays for all of them.
   void expect_pictures(std::size_t pictures);
 
-  /// Enables the cache of the view: camera hits, their light by source, and gathering rays, reused by later images. An edit
-  /// of colours or media then traces none of them again, and no specular reflection of rough boundaries without textures and
-  /// metals; smooth boundaries are traced again. Costs memory (HeldView). Off by default.
+  /// Enables the cache of the view: camera hits, their light by source, and gathering rays, reused by later
+  /// images. An edit of colours or media then traces none of them again, and no specular reflection of rough
+  /// boundaries without textures and metals; smooth boundaries are traced again. Costs memory (HeldView). Off
+  /// by default.
   void hold_view(bool hold);
 
   /// If true, each image is bit-identical to that of a new session: samples are placed again, instead of
@@ -89,8 +90,8 @@ class Session {
   /// Coarse preview of the scene (first_light.h); requires only the rays.
   Image first_light(Monitor* monitor = nullptr);
 
-  /// Computes all missing stages for the method; a second call does nothing. A scene without lights has no stages: it is
-  /// rendered as by Method::lambert.
+  /// Computes all missing stages for the method; a second call does nothing. A scene without lights has no
+  /// stages: it is rendered as by Method::lambert.
   /// error Error{interrupted}: complete stages remain
   void prepare(Monitor* monitor = nullptr);
 

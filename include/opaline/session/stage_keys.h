@@ -12,8 +12,8 @@
 
 namespace opaline {
 
-/// Keys of a mesh of the world, after loading, repair and transformation: of its positions only (for shadows),
-/// and with the normals; and its bounding sphere.
+/// Keys of a mesh of the world, after loading, repair and transformation: of its positions only (for
+/// shadows), and with the normals; and its bounding sphere.
 struct MeshKeys {
   StageKey shape, all;
   Vec3d center{};
@@ -49,8 +49,8 @@ StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light);
 
-/// Cache key of the light transmitted at samples from all lights: each light's transfer and colour, and the tint
-/// (tint_key).
+/// Cache key of the light transmitted at samples from all lights: each light's transfer and colour, and the
+/// tint (tint_key).
 StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> transfers,
                          std::span<const Light> lights, const StageKey& tint);
 
@@ -81,7 +81,8 @@ StageKey view_coats_key(const Scene& scene);
 /// in    light: recentred
 StageKey view_light_key(const Light& light);
 
-/// True if a mesh could lie between a light and a body's meshes, from the bounding spheres of all; conservative.
+/// True if a mesh could lie between a light and a body's meshes, from the bounding spheres of all;
+/// conservative.
 /// in    light: recentred; unit: World::unit
 bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
                 const Light& light, double unit);

@@ -10,8 +10,9 @@ namespace opaline {
 class HalfSpace {
  public:
   /// in    absorbed = 1 - albedo in [0, 1]; eta, inside over outside, > 0
-  /// from  Chandrasekhar 1960, Radiative Transfer, sec. 38 (the H function and diffuse reflection), with Fresnel's
-  ///       reflection inside by a linear system over its quadrature points; derived in src/diffusion/README.md
+  /// from  Chandrasekhar 1960, Radiative Transfer, sec. 38 (the H function and diffuse reflection), with
+  ///       Fresnel's reflection inside by a linear system over its quadrature points; derived in
+  ///       src/diffusion/README.md
   HalfSpace(double absorbed, double eta);
 
   /// Total diffuse reflectance per transmitted flux, of diffuse light.

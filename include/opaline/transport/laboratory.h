@@ -82,7 +82,8 @@ inline constexpr std::size_t kWalkBatches = 512;
 struct LaboratorySettings {
   std::size_t walks = 100000;  ///< > 0; rounded up to a multiple of kWalkBatches
   std::uint64_t seed = 1;
-  /// Maximum collisions of one walk, > 0. Limits walks in a half space without absorption, see SlabWalks::unfinished.
+  /// Maximum collisions of one walk, > 0. Limits walks in a half space without absorption, see
+  /// SlabWalks::unfinished.
   std::uint64_t most_collisions = std::uint64_t(1) << 24;
   std::vector<double> radii;  ///< outer radii of the rings, mm, ascending, > 0; empty: default_radii
   int cosine_bins = 20;       ///< cosine bins of equal width, from 1 to 10000

@@ -29,7 +29,8 @@ ResultSource update_tree(BodyStages& stages, const StageKey& key) {
   });
 }
 
-/// Reads the shapes of tabulated profiles from the cache before random walks would compute them, and keeps computed ones.
+/// Reads the shapes of tabulated profiles from the cache before random walks would compute them, and keeps
+/// computed ones.
 void find_walked_profiles(BodyStages& stages) {
   if (!stages.store.has_cache()) return;
   for (const ChannelProfile& channel : stages.body.profile.channels) {

@@ -21,7 +21,8 @@ struct Pass {
   std::uint64_t index = 0;
   int entry_samples = 0;  ///< entry samples of each camera ray
   bool is_seen = true;    ///< false: for gathered rays; without a near field
-  /// `direct`: gathering of light from other surfaces at points of entry, by one ray each; null: direct light only.
+  /// `direct`: gathering of light from other surfaces at points of entry, by one ray each; null: direct light
+  /// only.
   const Shader* gathers = nullptr;
   /// The same for surfaces visible in specular reflections; null: the same.
   const Pass* in_mirrors = nullptr;
@@ -61,8 +62,8 @@ class Field {
   virtual bool asks_samples() const { return false; }
 };
 
-/// Irradiance at the hits, from lights by shadow rays unless cached, and from other surfaces; without tints. The
-/// camera rays of a pixel, numbered by their keys, share one set of light samples.
+/// Irradiance at the hits, from lights by shadow rays unless cached, and from other surfaces; without tints.
+/// The camera rays of a pixel, numbered by their keys, share one set of light samples.
 std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, int samples_per_pixel,
                                      HeldView::Surface* held);
 

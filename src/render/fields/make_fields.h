@@ -17,7 +17,8 @@ struct Fields {
   std::vector<std::size_t> of_mesh;  ///< an index into `all` for each mesh of the world
 };
 
-/// in    entry_samplers: of Method::direct, one per group; must outlive the fields, as the input and the textures
+/// in    entry_samplers: of Method::direct, one per group; must outlive the fields, as the input and the
+///       textures
 Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
                    std::span<const EntrySampler> entry_samplers);
 

@@ -19,8 +19,8 @@ struct SelectionBiasInput {
   std::span<const std::uint32_t> refined;  ///< indices returned by NearFieldSampler::refine, ascending
 };
 
-/// Signed error of the exitance, one per point, caused by noise: a point's near field is refined if its irradiance
-/// differs from its neighbours' by chance: the other points keep theirs, and their mean is off.
+/// Signed error of the exitance, one per point, caused by noise: a point's near field is refined if its
+/// irradiance differs from its neighbours' by chance: the other points keep theirs, and their mean is off.
 /// in    points in an order in which neighbours follow each other
 /// from  README.md of src/exitance, "Choices made by noise"
 std::vector<RgbF> selection_bias(const SelectionBiasInput& input);
