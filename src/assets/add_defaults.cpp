@@ -20,8 +20,8 @@ constexpr double kMargin = 1.05;  // radius of the visible sphere, over the asse
 constexpr int kSamplesPerPixel = 4;
 
 /// An invisible sphere light: position, in units along the image's right, the world's up and towards the
-/// camera; radius over that of the
-/// asset; and radiance of a white diffuse surface at the asset's centre facing it.
+/// camera; radius over that of the asset; and radiance of a white diffuse surface at the asset's centre
+/// facing it.
 struct DefaultLight {
   const char* name;
   Vec3d direction;

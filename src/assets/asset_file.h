@@ -20,8 +20,7 @@ struct OutsideAsset : Error {
 };
 
 /// Finds a file by the name in an asset: relative to `folder`, with slashes or backslashes. If missing, as
-/// with paths of another machine,
-/// finds the file of that name in the same folder.
+/// with paths of another machine, finds the file of that name in the same folder.
 /// in    asset: its folder must contain the file; folder: of the referring file
 /// error OutsideAsset naming the asset and the file: it is outside, possibly through a link, and
 ///       allow_files_outside_assets was not called

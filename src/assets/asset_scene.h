@@ -52,8 +52,7 @@ struct AssetPlace {
 
 /// Translates a surface of a MaterialX file.
 /// in    file_and_name: "skin.mtlx", or "skin.mtlx#name" of a surface or material in it; scene: provides the
-///       unit of lengths, and
-///       receives warnings
+///       unit of lengths, and receives warnings
 /// error Error{bad_input} naming the file: not XML, no such surface, a value of the wrong type
 SurfaceTranslation translate_materialx(const std::string& file_and_name, const AssetPlace& asset,
                                        AssetScene& scene);

@@ -36,8 +36,7 @@ struct Shares {
 };
 
 /// Single-scattering albedo of an index-matched half space with the reflectance `color` (Kulla & Conty 2017,
-/// with van de Hulst's similarity for
-/// anisotropy), as in the glTF draft.
+/// with van de Hulst's similarity for anisotropy), as in the glTF draft.
 Shares single_scattering(double color, double g) {
   const double s = 4.09712 + 4.20863 * color - std::sqrt(9.59217 + 41.6808 * color + 17.7126 * color * color);
   const double square = std::clamp(s * s, 0., 1.), scale = 1 / (1 - g * square);
@@ -72,8 +71,7 @@ BaseLayer metallic_roughness(const GltfRecord& pbr) {
 }
 
 /// Metalness and base colour equivalent to a diffuse and a specular colour: Khronos's conversion (glTF
-/// repository,
-/// extensions/2.0/Archived/KHR_materials_pbrSpecularGlossiness).
+/// repository, extensions/2.0/Archived/KHR_materials_pbrSpecularGlossiness).
 BaseLayer specular_glossiness(const GltfRecord& model) {
   constexpr double kDielectric = .04, kLeast = 1e-6;
   const auto brightness = [](const Vec3d& c) {
@@ -243,8 +241,8 @@ class MaterialTranslator {
   }
 
   /// Transmitted light scatters inside: clear transmission in the base colour, or diffuse transmission in a
-  /// colour of its own. The rest is reflected
-  /// in the base colour. Without either, all light enters, as otherwise nothing would scatter.
+  /// colour of its own. The rest is reflected in the base colour. Without either, all light enters, as
+  /// otherwise nothing would scatter.
   void add_entry(SurfaceTranslation& surface) {
     constexpr const char *kClear = "KHR_materials_transmission",
                          *kDiffuse = "KHR_materials_diffuse_transmission";

@@ -92,13 +92,11 @@ struct GltfModel {
 };
 
 /// Reads a GLB or glTF file with its buffers, but not its images. Caches the last one, as an asset is loaded
-/// once for its nodes and once for each of
-/// its parts.
+/// once for its nodes and once for each of its parts.
 /// out   every index between its records is in range, every buffer view within its buffer, no node has two
 ///       parents
 /// error Error{bad_input} naming the file and the record: no such file, not glTF 2.0, a missing or short
-/// buffer, a dangling
-///       reference, a value of a wrong type, mesh data in an unsupported compression
+///       buffer, a dangling reference, a value of a wrong type, mesh data in an unsupported compression
 std::shared_ptr<const GltfModel> load_gltf(const std::string& path);
 
 /// Bytes of a buffer view.

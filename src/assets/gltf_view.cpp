@@ -30,8 +30,7 @@ Json picture_size(double aspect_ratio) {
 }
 
 /// glTF measures point and spot lights in candela, directional ones in lux, and lengths in metres. A lux
-/// becomes 1 W/mm^2; a
-/// candela then is 1e6 W/sr, as there are 1e6 mm^2 in a square metre.
+/// becomes 1 W/mm^2; a candela then is 1e6 W/sr, as there are 1e6 mm^2 in a square metre.
 constexpr double kIntensityOfCandela = 1e6;
 
 double luminance(const Vec3d& color) {

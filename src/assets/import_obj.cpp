@@ -259,8 +259,7 @@ class ObjImporter {
   }
 
   /// The value of -bm is the height of white, in the OBJ's unit. Some programs write normal maps here,
-  /// recognised by their blue mean; `norm` always is
-  /// one.
+  /// recognised by their blue mean; `norm` always is one.
   void take_bump(const MtlMaterial& material, const MtlStatement& statement, Surface& surface) {
     const MtlTexture texture = read_mtl_texture(statement.text);
     std::string file;

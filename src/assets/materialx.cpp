@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Constants and bumps of MaterialX's open_pbr_surface and standard_surface. Both describe a translucent body
-// by its diffuse colour and mean free
-// paths, like the artist's medium of a scene file, so no inversion is necessary.
+// by its diffuse colour and mean free paths, like the artist's medium of a scene file, so no inversion is
+// necessary.
 #include <fmt/format.h>
 
 #include <array>
@@ -122,8 +122,7 @@ class SurfaceReader {
   }
 
   /// Adds anisotropy in OpenPBR's parametrization, the scene's own. Standard Surface divides and multiplies
-  /// alpha by the root of the alphas' ratio.
-  /// Returns the roughness for it.
+  /// alpha by the root of the alphas' ratio. Returns the roughness for it.
   double add_grain(Json& keys) {
     const double roughness = number("specular_roughness", model_.default_roughness, 0, 1);
     const double anisotropy = number(model_.specular_anisotropy, 0, 0, 1),

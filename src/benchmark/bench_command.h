@@ -28,11 +28,9 @@ struct BenchArguments {
 };
 
 /// Measures each scene's rungs, prints a table and writes the CSV and the report. Returns the exit code: 0, 3
-/// if a rung failed, or 1 if
-/// one is worse than in earlier results.
+/// if a rung failed, or 1 if one is worse than in earlier results.
 /// error Error{bad_input}: an unusable scene, half or file of earlier results; Error{run_failed}: the
-/// reference or an output
-///       failed; Error{interrupted}: the old outputs remain
+///       reference or an output failed; Error{interrupted}: the old outputs remain
 int bench_command(const BenchArguments& arguments);
 
 }  // namespace opaline

@@ -37,8 +37,7 @@ struct KeptRun {
 };
 
 /// Reads a run from its record, if the same executable made it from the same scene with the same arguments
-/// and its image exists.
-/// Otherwise runs it in a child process and records the result unless it failed.
+/// and its image exists. Otherwise runs it in a child process and records the result unless it failed.
 /// out   is_kept: read from the record
 /// error as run_own_child; Error{run_failed}: the record cannot be written
 OwnChild run_or_recall(const BenchFolder& folder, const KeptRun& run, Monitor& monitor, bool& is_kept);

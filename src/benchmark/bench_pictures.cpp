@@ -42,8 +42,7 @@ Image image_of(const Layer& layer) {
 }
 
 /// Pixels sharing a value of a reference's noise. Random walks are collected on cells, half of them visible,
-/// and interpolated over about
-/// five cells.
+/// and interpolated over about five cells.
 double alike_pixels(const std::vector<std::uint8_t>& object, std::size_t cells) {
   constexpr double kSeen = .5, kBlended = 5;
   if (cells == 0) return 1;

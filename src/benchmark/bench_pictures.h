@@ -9,8 +9,8 @@
 namespace opaline {
 
 /// Computes errors and report images. Call after the last run: large images in this process would count as
-/// its children's memory. In a
-/// report's folder, reduces the EXRs to the compared channels and adds a PNG of each image and of its error.
+/// its children's memory. In a report's folder, reduces the EXRs to the compared channels and adds a PNG of
+/// each image and of its error.
 /// in    rows: one per job, in the same order
 /// out   subjects: one per scene; each row's error and image
 /// error Error{run_failed}: an image cannot be written

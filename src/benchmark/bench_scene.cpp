@@ -27,8 +27,7 @@ constexpr std::array<const char*, 2> kProfiles{"dipole", "normalized_diffusion"}
 constexpr std::array<const char*, 2> kReferenceSeeds{"101", "102"};
 
 // Random walks of the reference stop at this noise. Fewer cells would smooth the reference visibly: an error
-// of volume_diffusion would
-// appear larger.
+// of volume_diffusion would appear larger.
 constexpr std::size_t kWalkedCells = 6000;
 constexpr double kWalkNoise = .2;  // walk noise of a cell
 

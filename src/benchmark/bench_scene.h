@@ -37,8 +37,7 @@ struct BenchScene {
 };
 
 /// Settings and rungs of a scene, once, or once per profile on request if a shape is translucent; with
-/// `truth` once more against random
-/// walks. A child process makes the plan.
+/// `truth` once more against random walks. A child process makes the plan.
 /// error Error{bad_input} as load_scene and make_plan
 std::vector<BenchScene> open_bench_scenes(const BenchArguments& arguments, const std::string& file,
                                           Monitor& monitor);

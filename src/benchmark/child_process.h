@@ -22,10 +22,9 @@ struct OwnChild {
 };
 
 /// Runs the current executable, even if its file has been replaced, and waits for its end. Cancelling the
-/// monitor stops the child, by force
-/// if necessary, and throws Error{interrupted}; the child also ends with this process. The kernel counts the
-/// forked parent's
-/// memory as the child's first, so call before loading large data.
+/// monitor stops the child, by force if necessary, and throws Error{interrupted}; the child also ends with
+/// this process. The kernel counts the forked parent's memory as the child's first, so call before loading
+/// large data.
 /// in    arguments: including "--log json", for events
 /// error Error{run_failed}: no process; Error{interrupted}
 OwnChild run_own_child(const std::vector<std::string>& arguments, Monitor& monitor);

@@ -12,8 +12,7 @@
 namespace opaline {
 
 /// Text format: "# key: value" per note, quoted if it has a comma, a line of names, a line of units, a line
-/// per row; cells quoted where
-/// necessary (RFC 4180), lines end in \n.
+/// per row; cells quoted where necessary (RFC 4180), lines end in \n.
 struct CsvTable {
   std::vector<std::pair<std::string, std::string>> notes;  ///< no line breaks; no ": " in a key
   std::vector<std::string> names, units;                   ///< a column each

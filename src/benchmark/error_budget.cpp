@@ -27,9 +27,8 @@ std::string tree_of(EvaluatorKind evaluator) {
 }  // namespace
 
 // Isolates the components. Samples and near field are compared at a tolerance small enough not to hide them.
-// Samples are compared at an
-// equal total number of shadow rays: otherwise more samples would also average out more noise of the
-// irradiance.
+// Samples are compared at an equal total number of shadow rays: otherwise more samples would also average out
+// more noise of the irradiance.
 std::vector<BudgetPart> error_budget(std::size_t planned_samples, const Settings& settings) {
   if (planned_samples == 0) return {};
   const std::size_t most = std::max(std::min(kFactor * planned_samples, kMostSamples), 2 * planned_samples);

@@ -30,9 +30,8 @@ struct LadderInput {
 };
 
 /// Rungs of a scene. The first is `lambert`, the baseline. Sample counts are 1/4, 1 and 4 times the plan's,
-/// equal for all bodies. With
-/// light between shapes, all rungs gather it, and `direct`, the reference, traces it from each entry point;
-/// one rung omits it.
+/// equal for all bodies. With light between shapes, all rungs gather it, and `direct`, the reference, traces
+/// it from each entry point; one rung omits it.
 std::vector<Rung> ladder(const LadderInput& input);
 
 /// Runs compared with random walks: `lambert` first, then the scene as given, with each radial profile in

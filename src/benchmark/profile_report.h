@@ -49,8 +49,7 @@ struct ProfileReport {
 ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor);
 
 /// Exitance of a model on one face of the slab. On the far face it is the transmission, or for a model
-/// without two faces (has_far_side)
-/// the profile at that distance.
+/// without two faces (has_far_side) the profile at that distance.
 struct ModelFace {
   const ChannelProfile* profile;
   double height = 0;  ///< thickness for the far face, mm

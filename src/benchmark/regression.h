@@ -25,10 +25,9 @@ struct Regression {
 };
 
 /// Matches rungs by scene key and name. A ratio has changed if the gap between the ranges of both benchmarks
-/// exceeds half the sum of their
-/// widths, and the medians differ by more than 5 %; an error if its square differs by more than three
-/// combined standard errors
-/// (error_floor), and the error by more than 5 %. Times are not compared, as machines may differ.
+/// exceeds half the sum of their widths, and the medians differ by more than 5 %; an error if its square
+/// differs by more than three combined standard errors (error_floor), and the error by more than 5 %. Times
+/// are not compared, as machines may differ.
 Regression compare_results(std::span<const WatchedRung> before, std::span<const WatchedRung> now);
 
 }  // namespace opaline

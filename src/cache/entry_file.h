@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One cache entry as a file: an HDF5 file for other tools, after a header with checksums and the positions of
-// its data sets. This program copies the
-// data sets directly, without HDF5's parser: HDF5 trusts its input, and anyone may write to a cache's folder.
+// its data sets. This program copies the data sets directly, without HDF5's parser: HDF5 trusts its input,
+// and anyone may write to a cache's folder.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +35,8 @@ struct BadEntry {
 };
 
 /// Checks the whole file before any use: the header has the name, the positions of the data sets, and the
-/// length and the hash (XXH3, 128 bits) of the
-/// rest, and must match byte by byte. Marks the entry as most recently used, if the folder is writable.
+/// length and the hash (XXH3, 128 bits) of the rest, and must match byte by byte. Marks the entry as most
+/// recently used, if the folder is writable.
 /// in    most_bytes: upper bound for results with this key; larger files are rejected unread
 std::variant<BlobReader, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name,
                                                        std::uint64_t most_bytes);

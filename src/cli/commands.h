@@ -8,8 +8,7 @@ namespace opaline {
 
 /// Renders a scene file to images. Writes nothing unless all previous steps succeed.
 /// error Error of the stages; run_failed before any work if an output cannot be written, and after all of it
-/// if some of
-///       several frames failed
+///       if some of several frames failed
 void render_command(const RenderArguments& arguments);
 
 /// Writes an asset as a scene file, and prints the translation of each value.
@@ -20,17 +19,14 @@ void import_command(const ImportArguments& arguments);
 void info_command(const InfoArguments& arguments);
 
 /// Prints the error of an image against its reference, and writes the error image. Returns the exit code: 0,
-/// or 1 if the error is above the
-/// bound or the image has non-finite values.
+/// or 1 if the error is above the bound or the image has non-finite values.
 /// error Error{bad_input}: not an image, without the layer, or of another size or crop; Error{run_failed}:
-/// the error image
-///       cannot be written
+///       the error image cannot be written
 int compare_command(const CompareArguments& arguments);
 
 /// Traces random walks in a medium, prints each model's totals beside theirs, and writes the report.
 /// error Error{bad_input}: unknown medium, or a value out of range; Error{run_failed}: the folder cannot be
-/// written;
-///       Error{interrupted}: the old report remains
+///       written; Error{interrupted}: the old report remains
 void profile_command(const ProfileArguments& arguments);
 
 /// Serves the scene as a page until Ctrl-C.

@@ -20,8 +20,7 @@ std::vector<int> parse_frames(const std::string& text);
 std::string frames_text(const std::vector<int>& frames);
 
 /// Calls work(frame) for each frame; it returns true if it rendered the frame, false if its images existed.
-/// Prints errors with the frame
-/// number and continues. Updates `so_far`, and prints a summary at the end.
+/// Prints errors with the frame number and continues. Updates `so_far`, and prints a summary at the end.
 /// error Error{run_failed} at the end, naming the failed frames; Error{interrupted} at once
 void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_far,
                 const std::function<bool(int)>& work);

@@ -31,8 +31,7 @@ Metadata frame_metadata(const RenderArguments& arguments, const std::string& has
 
 /// opaline:version; opaline:scene, the scene file's name without its folder; opaline:scene_hash, left out if
 /// empty; opaline:seed; opaline:settings, JSON of the values in use; opaline:command, a command line
-/// reproducing the image,
-/// without outputs, threads and log; opaline:frame, for one of a range.
+/// reproducing the image, without outputs, threads and log; opaline:frame, for one of a range.
 Metadata make_metadata(const RenderArguments& arguments, const std::string& hash, const Scene& scene,
                        const World& world, std::span<const Body> groups, std::optional<int> frame);
 

@@ -11,7 +11,7 @@
 namespace opaline {
 
 /// error Error{bad_input}: --target-error or --time-budget together with settings chosen by them, or with
-/// incompatible options
+///       incompatible options
 void check_quality(const RenderArguments& arguments);
 
 /// Chooses the settings for --target-error or --time-budget, if given, and prints them. The session has the
@@ -20,8 +20,7 @@ void check_quality(const RenderArguments& arguments);
 KnownErrors choose_settings(StageRunner& stages, const RenderArguments& arguments, Session& session);
 
 /// Resolves --target-error for all frames of a range: the reference frame decides the settings, returned as
-/// overrides. Unchanged if that frame
-/// shows no translucent shape.
+/// overrides. Unchanged if that frame shows no translucent shape.
 /// error as choose_settings; Error{bad_input}: several bodies with settings.samples
 RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache* cache);
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Log of the program. Text: results on stdout, warnings and errors on stderr. JSON: one object per line on
-// stdout,
-// {"event": "view" | "frame" | "skipped" | "target" | "plan" | "reuse" | "warning" | "progress" | "stage" |
-// "done" |
-// "error", ...}.
+// stdout, {"event": "view" | "frame" | "skipped" | "target" | "plan" | "reuse" | "warning" | "progress" |
+// "stage" | "done" | "error", ...}.
 #pragma once
 
 #include <cstdio>

@@ -56,8 +56,7 @@ std::size_t left_in_group(const std::filesystem::path& folder, const GroupFiles&
 }
 
 /// Available memory of a control group and its parents. In a container, the path reported by the kernel may
-/// be missing; the mount's own folder is then
-/// the container's group.
+/// be missing; the mount's own folder is then the container's group.
 std::size_t left_in_groups(const std::filesystem::path& mount, std::string group, const GroupFiles& names) {
   std::size_t left = left_in_group(mount, names);
   while (group.size() > 1) {

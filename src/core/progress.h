@@ -62,10 +62,8 @@ class TerminalLine {
 enum class InnerStages { parts, trials };
 
 /// During its lifetime, polls the monitor ten times a second and shows the stage on stderr: on a terminal as
-/// one updating line, erased at the end,
-/// otherwise as a line after ten seconds and then in growing intervals. With a JSON log: an event at the
-/// start and at most two per
-/// second. No output with --quiet.
+/// one updating line, erased at the end, otherwise as a line after ten seconds and then in growing intervals.
+/// With a JSON log: an event at the start and at most two per second. No output with --quiet.
 class Progress {
  public:
   Progress(const Log& log, const Monitor& monitor, std::string stage, InnerStages inner = InnerStages::parts);

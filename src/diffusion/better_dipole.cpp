@@ -16,8 +16,7 @@ double mean_decay(double x) {
 }
 
 // Integral of r' R_d 4 pi / alpha'^2 from r to infinity. The term z (1 + s d) e^-sd / d^3 gives z e^-sd / d,
-// and e^-sd / d gives e^-sd / s; the
-// difference between the sources avoids 0/0. r in mean free paths.
+// and e^-sd / d gives e^-sd / s; the difference between the sources avoids 0/0. r in mean free paths.
 double beyond_radius(const BetterDipole& p, double r) {
   const double real = std::hypot(r, 1.0), high = std::hypot(r, p.height);
   const double apart = (p.height - 1) * (p.height + 1) / (real + high);  // high - real

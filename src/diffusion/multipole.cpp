@@ -17,9 +17,8 @@ namespace {
 using std::numbers::pi;
 
 // Pairs of images summed on either side; an integral approximates the rest. Error about 1e-6 of R_d where the
-// two sides nearly cancel in a thin plate,
-// otherwise below 1e-7 (MultipoleProfile.IsTheSumOverImages). Images serve below half of the plate's height,
-// modes beyond.
+// two sides nearly cancel in a thin plate, otherwise below 1e-7 (MultipoleProfile.IsTheSumOverImages). Images
+// serve below half of the plate's height, modes beyond.
 constexpr int kImages = 16;
 constexpr double kNegligible = 40;  // exponents
 

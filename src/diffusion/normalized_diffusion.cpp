@@ -64,8 +64,7 @@ double sample_diffusion_distance(const NormalizedDiffusion& profile, double beyo
 }
 
 // Radius R of spheres with chord lengths matching one exponential of R_d: exp(-r/L) / (2 pi r L) gives the
-// density (1 + R/L) exp(-R/L) / (2L), half an
-// exponential, half a gamma of order 2.
+// density (1 + R/L) exp(-R/L) / (2L), half an exponential, half a gamma of order 2.
 double sample_chord_sphere_radius(const NormalizedDiffusion& profile, double u, double v) {
   const bool narrow = u < 0.25;
   const double length = narrow ? profile.d : 3 * profile.d;

@@ -69,8 +69,7 @@ std::vector<double> reference_shares(const RadialReference& reference) {
 }
 
 /// Solves for f at the knots, with the reference times e^f matching the walks: minimizes the Poisson deviance
-/// of the rings plus penalties on first and
-/// second differences of f. Convex; by Newton's method.
+/// of the rings plus penalties on first and second differences of f. Convex; by Newton's method.
 class SmoothFit {
  public:
   SmoothFit(std::vector<double> reference, std::vector<double> walked, double variance)

@@ -30,8 +30,7 @@ struct ChunkPackets {
 };
 
 /// Coarse exitance of each packet as the scale of errors: at its middle, or the minimum over its points if
-/// they are far apart. The near field
-/// follows from the far one, for a uniform irradiance.
+/// they are far apart. The near field follows from the far one, for a uniform irradiance.
 void guess_exitance(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
                     const ChunkPackets& packets, std::span<RgbF> guesses);
 

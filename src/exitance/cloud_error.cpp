@@ -22,20 +22,18 @@ constexpr double kFineTolerance = 1.5e-3;
 // Largest distance of neighbours, in spacings.
 constexpr float kNeighbours = 1.6f;
 // Creases: a neighbour with a normal's cosine below kCrease is on another face if the other neighbours' mean
-// cosine is at least kFlat;
-// otherwise the samples are too sparse for the curvature.
+// cosine is at least kFlat; otherwise the samples are too sparse for the curvature.
 constexpr float kCrease = 0.7f;
 constexpr double kFlat = 0.99;
 // Shadow edges: neighbours' irradiance differs by kStep or more. Samples store the mean over their cell, so
-// for lights without area only the
-// fraction kStepLeft of the difference is an error. A neighbour at a steeper sine than kStacked belongs to
-// another sheet.
+// for lights without area only the fraction kStepLeft of the difference is an error. A neighbour at a steeper
+// sine than kStacked belongs to another sheet.
 constexpr float kStep = 0.5f, kStepLeft = 0.2f, kStacked = 0.3f;
 // Least determinant of neighbours' moments over the squared trace; collinear neighbours define no slope.
 constexpr float kDegenerate = 1e-3f;
 // Scale of errors: kAtCreases at creases, less with a fraction of samples beside creases below kManyCreases.
-// On smooth surfaces down to kLeast, but
-// at least kRough times the roughness, up to 1, as few trials meet a shadow edge.
+// On smooth surfaces down to kLeast, but at least kRough times the roughness, up to 1, as few trials meet a
+// shadow edge.
 constexpr double kAtCreases = 1.6, kManyCreases = 0.02, kLeast = 0.03, kMost = 10, kRough = 4;
 // Mean error of the nodes over the tolerance, minimum and maximum.
 constexpr double kLeastHierarchy = 0.005, kMostHierarchy = 0.15;

@@ -11,8 +11,7 @@
 namespace opaline {
 
 /// Divides the triangles of meshes into patches no longer than `longest`, mm. Triangles share vertices in
-/// smooth parts of a mesh: everywhere with
-/// normals, otherwise where facets meet at small angles.
+/// smooth parts of a mesh: everywhere with normals, otherwise where facets meet at small angles.
 /// out   splits, patches and the vertices' positions of the cache; returns the vertices' normals
 std::vector<Vec3f> cut_surface(const World& world, std::span<const std::uint32_t> meshes, double longest,
                                SurfaceCache& cache);

@@ -18,12 +18,10 @@ namespace {
 
 constexpr std::size_t kTogether = 4;  // packets descending together
 // Factor on error bounds, for the third-order terms left by second moments, with typical shapes of nodes, and
-// for the sum of many nodes' errors.
-// test_dual_tree checks the resulting bound.
+// for the sum of many nodes' errors. test_dual_tree checks the resulting bound.
 constexpr float kErrorShare = 0.7f;
 // Exitance below which errors are absolute, over the p99 of all queries (below the bound's 1e-3, as estimates
-// are high), and over the
-// largest possible exitance.
+// are high), and over the largest possible exitance.
 constexpr float kDark = 2e-4f, kDarkest = 1e-8f;
 
 // Node lists of a packet.
@@ -156,8 +154,7 @@ class Chunk {
 
   // Adds nodes far from packets [first, last) to their expansion, and passes the others down.
   // candidates: `count` nodes; inherited: expansion of the nodes above, around `center`; rest_blocks: scratch
-  // of this and nested
-  // calls
+  // of this and nested calls
   void refine(std::span<std::vector<SourceBlock>> rest_blocks, std::size_t first, std::size_t last,
               std::span<const SourceBlock> candidates, std::size_t count, const Expansion& inherited,
               const Vec3f& center) {

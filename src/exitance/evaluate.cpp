@@ -49,8 +49,7 @@ void walk(const EvaluateInput& input, const Query& query, Gather& gather) {
 }
 
 // Weight of the point's own irradiance. Its mixture with the samples' mean (weight (1 - t^2)^2, mean square
-// radius h^2/4) has the near kernel's
-// mean square radius.
+// radius h^2/4) has the near kernel's mean square radius.
 double own_share(const ChannelProfile& profile, double h) {
   double flux = 0, moment = 0;
   constexpr int kRings = 1000;

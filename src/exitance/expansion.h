@@ -10,8 +10,7 @@
 namespace opaline {
 
 /// M(c + e) = value - 2 slope.e + bend |e|^2 + 2 e'He + ..., per channel, in flux units per mm^2: from the
-/// second-order series of
-/// F(|d - e|^2).
+/// second-order series of F(|d - e|^2).
 struct Expansion {
   std::array<float, 3> value{}, bend{};
   std::array<std::array<float, 3>, 3> slope{};

@@ -65,8 +65,7 @@ struct QueryBounds {
 enum class Sheets { same, other, both };  // both: mixed or unknown
 
 // Sheets of all normals in a cone, seen from all queries: the angle to them is at most that of the axes plus
-// both cones' half-angles; beyond 120
-// degrees it is another sheet (same_sheet).
+// both cones' half-angles; beyond 120 degrees it is another sheet (same_sheet).
 Sheets sheets_of(const QueryBounds& queries, const Vec3f& axis, float cosine, float sine) {
   if (cosine == 0 || queries.cosine == 0) return Sheets::both;
   const float c = cosine * queries.cosine - sine * queries.sine,  // cosine and sine of the sum of both angles

@@ -13,8 +13,8 @@ namespace opaline {
 std::shared_ptr<const FarSide> make_far_side(const DiffuseProfile& profile, double r_min, double r_max);
 
 /// Corrects sums over all samples by R_d for transmission: adds T - R_d for samples on other sheets, where
-/// the two differ. Nodes entirely on
-/// another sheet are points if small at their distance (Octree::normal_cones).
+/// the two differ. Nodes entirely on another sheet are points if small at their distance
+/// (Octree::normal_cones).
 void add_far_side(const EvaluateInput& input, std::span<Exitance> result);
 
 }  // namespace opaline

@@ -56,8 +56,7 @@ class Gather {
     _mm_store_ps(near_flux, near_flux_);
     _mm_store_ps(near_squares, near_squares_);
     // Error of a point for a patch over the patch's solid angle: 3/8 for a power law 1/r^3 above a plane,
-    // less on surfaces, where errors of nodes on
-    // opposite sides partly cancel.
+    // less on surfaces, where errors of nodes on opposite sides partly cancel.
     constexpr float kFlattened = 0.12f;
     PointSums<float> sums;
     sums.near_area = near_weight_;

@@ -15,15 +15,14 @@ namespace {
 // Fractions of the tolerance: for the evaluation at the nodes, and for the estimated interpolation error.
 constexpr double kEvaluationShare = 0.6, kInterpolationShare = 0.4;
 // Remaining fractions of the interpolation error (test_surface_cache): of the slopes' contribution at the
-// middle of an edge; of the previous
-// lattice's error at new nodes; and of the same at the finest lattice, where only large errors leave a patch
-// to points.
+// middle of an edge; of the previous lattice's error at new nodes; and of the same at the finest lattice,
+// where only large errors leave a patch to points.
 constexpr float kRiseError = 0.6f, kRest = 0.6f, kRestAtFinest = 0.05f;
 // Least cosine between two vertices' normals for using slopes between them; README.md has the comparison.
 constexpr float kBent = 0.95f;
 // In near-field radii: longest patch, as longer ones could hide variation of the far kernel; smallest
-// distance of nodes, as closer ones resolve the
-// samples' noise; largest distance of vertices that detects a shadow edge blurred by the near field.
+// distance of nodes, as closer ones resolve the samples' noise; largest distance of vertices that detects a
+// shadow edge blurred by the near field.
 constexpr double kReach = 2, kFinest = 0.25, kBlur = 0.5;
 
 // Change of the point's own contribution between two vertices, over all light and halved, above which a

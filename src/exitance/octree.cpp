@@ -79,8 +79,7 @@ struct Sums {
 };
 
 // Writes the nodes in depth-first order. Parts of the tree are counted and built in parallel; the nodes above
-// them are summed last. The division
-// depends on the samples alone.
+// them are summed last. The division depends on the samples alone.
 class Builder {
  public:
   Builder(Octree& tree, std::vector<std::uint64_t> keys) : tree_(tree), keys_(std::move(keys)) {}

@@ -69,8 +69,7 @@ inline std::array<Points4, 3> border_share(const SplitKernel& kernel, Points4 pl
 }
 
 /// Fraction of a plane's near field present, per channel. At half of a plane's area or less: a border or
-/// corner; above all of it: a crease,
-/// ignored because steep profiles do not see the excess.
+/// corner; above all of it: a crease, ignored because steep profiles do not see the excess.
 template <class F>
 std::array<F, 3> surface_share(const SplitKernel& kernel, F near_area) {
   // Integral of the weight (1 - r^2/h^2)^2 over a plane.
@@ -91,8 +90,7 @@ inline constexpr float kDeviationOfMean = 1.2533f;
 inline constexpr float kOffset = 0.2f;
 
 /// Squared distance of a sample on another sheet after moving it by its offset along the sheet, averaged over
-/// directions. apart: from the
-/// point to the sample; near2: h^2, 6.25 squared spacings
+/// directions. apart: from the point to the sample; near2: h^2, 6.25 squared spacings
 inline float moved_distance2(const Vec3f& apart, const Vec3f& normal, float near2) {
   const float r2 = dot(apart, apart), across = dot(apart, normal),
               along2 = std::max(0.0f, r2 - across * across);
@@ -101,8 +99,7 @@ inline float moved_distance2(const Vec3f& apart, const Vec3f& normal, float near
 }
 
 /// Standard error of channel c, in flux units. near: part of the kernel using the interpolated irradiance;
-/// variance: of the irradiance around
-/// the point.
+/// variance: of the irradiance around the point.
 template <class F>
 F estimated_error(const PointSums<F>& sums, std::size_t c, F near, F variance, const CloudError& cloud) {
   // Error of the mean over the deviation of a varying irradiance.

@@ -16,8 +16,7 @@ inline constexpr std::size_t kChunk = 256;  ///< queries beginning the traversal
 std::vector<std::uint32_t> chunk_order(std::span<const Query> queries);
 
 /// Sorts a chunk into packets of at most kLanes queries: halves it along the longest side, and again if the
-/// halves separately have fewer neighbours
-/// within `reach`, mm, than together.
+/// halves separately have fewer neighbours within `reach`, mm, than together.
 PacketCut sort_into_packets(std::span<std::uint32_t> chunk, std::span<const Query> queries, float reach);
 
 }  // namespace opaline

@@ -34,15 +34,12 @@ struct CheckMemory {
 };
 
 /// Welds exactly equal vertices, drops and counts zero-area and duplicate triangles, winds the rest
-/// consistently and outward, fills holes on
-/// request, counts open and non-manifold edges, and completes the normals. Zero-area triangles are those of
-/// is_sliver.
+/// consistently and outward, fills holes on request, counts open and non-manifold edges, and completes the
+/// normals. Zero-area triangles are those of is_sliver.
 /// in    positions finite; normals of any length, missing if zero or not finite; memory: null, or results of
-///       earlier calls,
-///       reused for the same triangles with equal connectivity; does not change the result
+///       earlier calls, reused for the same triangles with equal connectivity; does not change the result
 /// out   at least one triangle, and no unused vertex. A vertex with several normals in the source remains
-///       several vertices at
-///       one position. Scaling all positions by a power of two changes only the positions
+///       several vertices at one position. Scaling all positions by a power of two changes only the positions
 /// error Error{bad_input}: no triangle with an area is left
 CheckedMesh check_mesh(SourceMesh source, const CheckSettings& settings, CheckMemory* memory = nullptr);
 

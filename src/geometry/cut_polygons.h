@@ -28,9 +28,8 @@ struct PolygonCuts {
 };
 
 /// Triangulates polygons not covered by their fans: clips ears of the projection along the mean normal, so a
-/// quad is split at its reflex
-/// corner. Other polygons keep their fans. A self-intersecting polygon uses the triangulation of the smaller
-/// area.
+/// quad is split at its reflex corner. Other polygons keep their fans. A self-intersecting polygon uses the
+/// triangulation of the smaller area.
 /// in    positions finite; fans of at least two triangles
 /// from  Meisters 1975, Polygons have ears; mean normal after Newell
 PolygonCuts cut_concave_polygons(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,

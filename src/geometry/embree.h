@@ -40,8 +40,7 @@ constexpr RTCSceneFlags kAllowsHitFilter = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTIO
 #endif
 
 /// Traces a ray through all hits refused by the filter. The filter's arguments point to the context, usable
-/// as the first member of the
-/// caller's record.
+/// as the first member of the caller's record.
 void find_hits_with(HitFilter filter, QueryContext& context, RTCScene scene, const Ray& ray);
 
 }  // namespace opaline

@@ -125,8 +125,7 @@ class Orienter {
   }
 
   /// A component is closed if an even number of its triangles meets at each of its edges. The other
-  /// components have rims, at edges with more
-  /// of their triangles in one direction than in the other.
+  /// components have rims, at edges with more of their triangles in one direction than in the other.
   void find_rims() {
     edges_.for_each([&](std::uint32_t low, std::uint32_t high, std::span<const std::uint32_t> corners) {
       for (std::size_t i = 0; i < corners.size(); ++i) {

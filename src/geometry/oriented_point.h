@@ -18,8 +18,7 @@ inline Vec3f unit_or(const Vec3f& v, const Vec3f& substitute) {
 constexpr float kReversed = -0.5f;
 
 /// A point of the triangle with edges ab and ac. blended: interpolated vertex normals, null for a facet. The
-/// vertex normals define the
-/// outside: a triangle reversed by a fold faces against them.
+/// vertex normals define the outside: a triangle reversed by a fold faces against them.
 template <class T>
 SurfacePoint oriented_point(const Vec3<T>& position, const Vec3<T>& ab, const Vec3<T>& ac,
                             const Vec3f* blended) {

@@ -22,8 +22,7 @@ using HalfedgeMesh = OpenMesh::TriMesh;  // coordinates in double
 using Halfedge = OpenMesh::HalfedgeHandle;
 
 // Number of a hole's edges up to which all triangulations are compared, in cubic time. The faster search
-// within a Delaunay
-// tetrahedralization breaks ties by addresses, so its result is not reproducible.
+// within a Delaunay tetrahedralization breaks ties by addresses, so its result is not reproducible.
 constexpr std::size_t largest_cubic_hole = 500;
 
 class HoleFiller {

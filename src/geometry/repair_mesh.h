@@ -21,11 +21,9 @@ struct HoleFilling {
 
 /// Triangulates the holes of a mesh without new vertices.
 /// in    triangles: consistently wound, no duplicates, no vertex twice in a triangle; open_edges: the edges
-///       with one triangle,
-///       ascending
+///       with one triangle, ascending
 /// from  Liepa 2003, by CGAL's triangulate_hole; holes of more than 500 edges only by the faster search over
-///       a Delaunay
-///       triangulation
+///       a Delaunay triangulation
 HoleFilling fill_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
                        const std::vector<Edge>& open_edges);
 

@@ -18,8 +18,7 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3d>& positions, const std::
 std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions);
 
 /// Moves vertices to the first one differing by rounding alone: by 2^-44 of the largest coordinate along each
-/// axis. Moves none if a
-/// triangle would lose its area.
+/// axis. Moves none if a triangle would lose its area.
 void join_seams(SourceMesh& mesh);
 
 /// True for a triangle without area: twice it is at most 1e-12 of the square of its longest side.
@@ -29,8 +28,7 @@ bool is_sliver(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles);
 
 /// Edges of a triangle soup, each with its starting corners. Corner 3 t + k is the edge of triangle t from
-/// its vertex k to the next. Edges
-/// are in the order of (lower vertex, higher vertex), corners ascend.
+/// its vertex k to the next. Edges are in the order of (lower vertex, higher vertex), corners ascend.
 class EdgeTable {
  public:
   EdgeTable(const std::vector<Triangle>& triangles, std::size_t vertices);

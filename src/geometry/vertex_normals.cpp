@@ -34,8 +34,7 @@ std::vector<std::uint32_t> triangles_against(const Mesh& mesh, const Around& aro
 }
 
 /// Triangles reversed by a fold. The sum of the area vectors around a vertex depends only on its one-ring, so
-/// it is independent of the
-/// vertex's own displacement.
+/// it is independent of the vertex's own displacement.
 template <class SiteOf>
 std::vector<std::uint32_t> reversed_by_areas(const Mesh& mesh, const SiteOf& site_of) {
   std::vector<Vec3d> sums(mesh.positions.size());

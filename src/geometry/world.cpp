@@ -42,8 +42,7 @@ double power_of_1024(double length) {
 }
 
 /// Unit between the smallest and the largest translucent body, because derivatives of their profiles contain
-/// up to the eighth power of a
-/// length. The scene's size if no shape is translucent.
+/// up to the eighth power of a length. The scene's size if no shape is translucent.
 double unit_of(const Scene& scene, std::span<const Bounds> boxes, double diagonal) {
   double least = INFINITY, largest = 0;
   for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -8,8 +8,8 @@
 namespace opaline {
 
 /// Checks the first part of a file: every uncompressed or run-length encoded chunk; of ZIP chunks, protected
-/// by checksums, the first and the last. No
-/// chunk may be empty. The decoders of other compressions make the same check.
+/// by checksums, the first and the last. No chunk may be empty. The decoders of other compressions make the
+/// same check.
 /// error Error{bad_input} naming the file: truncated, damaged
 /// from  the OpenEXR file layout (openexr.com/en/latest/OpenEXRFileLayout.html)
 void check_exr_chunks(const std::string& path);

@@ -24,12 +24,10 @@ namespace opaline {
 inline constexpr std::string_view kTextureFormats[] = {"exr", "hdr", "png", "jpeg", "tiff"};
 
 /// Decodes the first part of another input. Texels become linear colours, see TexelColors; those of sRGB are
-/// halves, with rounding below that of 8
-/// bits. Formats without random access are decoded as a whole and cached until each row was read: the cache
-/// reads rows in any
-/// order, and OpenImageIO 2.4 rewinds by reopening the file, impossible for an image in memory. The same
-/// applies to images with a
-/// data window inside the display window, as OpenImageIO 2.4 misplaces their tiles.
+/// halves, with rounding below that of 8 bits. Formats without random access are decoded as a whole and
+/// cached until each row was read: the cache reads rows in any order, and OpenImageIO 2.4 rewinds by
+/// reopening the file, impossible for an image in memory. The same applies to images with a data window
+/// inside the display window, as OpenImageIO 2.4 misplaces their tiles.
 class LinearInput : public OIIO::ImageInput {
  public:
   /// Registers the source of inputs with this name.

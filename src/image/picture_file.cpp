@@ -10,8 +10,7 @@ namespace opaline {
 namespace {
 
 /// Largest ratio of floats in memory to bytes in the file: bounds the most compressible images of each format
-/// (constant DWA and ZIP EXRs, one-bit
-/// palette PNGs, progressive JPEGs of empty blocks) with a margin.
+/// (constant DWA and ZIP EXRs, one-bit palette PNGs, progressive JPEGs of empty blocks) with a margin.
 double densest(const OIIO::ImageSpec& spec, std::string_view format) {
   if (format == "png") return 131072;
   if (format == "jpeg" || format == "tiff") return 16384;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Image reading with OpenImageIO. The reader is a module loaded on the first use, as OpenImageIO depends on
-// some 250 libraries and loading them costs as
-// much CPU as a whole preview.
+// some 250 libraries and loading them costs as much CPU as a whole preview.
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PNG chunk structure. Checked before decoding: on damaged files, libpng prints to stderr, accepts a missing
-// end, and leaks by a long jump out of
-// OpenImageIO 2.4. Text chunks are added after encoding, as libpng's simple encoder writes none.
+// end, and leaks by a long jump out of OpenImageIO 2.4. Text chunks are added after encoding, as libpng's
+// simple encoder writes none.
 #pragma once
 
 #include <span>

@@ -16,10 +16,8 @@ namespace opaline {
 std::vector<bool> meshes_of(std::span<const SurfaceSample> samples);
 
 /// Points of the cells of a batch of samples, computed together: add the samples, project, read the points. A
-/// cell is the surface nearer to its sample
-/// than to any other on surfaces not facing away, as in the area measurement of sampling. Where two sheets
-/// are closer than the
-/// samples, it includes parts of both.
+/// cell is the surface nearer to its sample than to any other on surfaces not facing away, as in the area
+/// measurement of sampling. Where two sheets are closer than the samples, it includes parts of both.
 class CellPoints {
  public:
   static constexpr std::uint32_t kMost = 24;  ///< lines through one cell
@@ -36,14 +34,12 @@ class CellPoints {
              float spacing);
 
   /// Chooses lines through the cell of a sample, parallel to its geometric normal, at low-discrepancy points
-  /// of its tangent plane nearer to it than to any
-  /// of the neighbours; the index alone, without a seed, determines their rotation. Returns the cell's number
-  /// in the batch.
+  /// of its tangent plane nearer to it than to any of the neighbours; the index alone, without a seed,
+  /// determines their rotation. Returns the cell's number in the batch.
   std::uint32_t add(std::uint32_t index, std::span<const std::uint32_t> neighbours);
 
   /// Intersects the lines of all cells with the outside of the surface within their cell. Some have no
-  /// intersection, if the surface ends or turns away by
-  /// more than a right angle; others have several.
+  /// intersection, if the surface ends or turns away by more than a right angle; others have several.
   void project();
 
   /// Line by line.

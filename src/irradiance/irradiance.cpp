@@ -36,10 +36,9 @@ class Halves {
 };
 
 // Calibrates the error from halves. Half of the rays are less evenly distributed than all, by a factor
-// depending on their number and the light, and a
-// single ray has no halves. With successive points close together, the deviation from the nearer of two
-// neighbours is at least the
-// noise: the halves' errors are scaled down to it in total, never up.
+// depending on their number and the light, and a single ray has no halves. With successive points close
+// together, the deviation from the nearer of two neighbours is at least the noise: the halves' errors are
+// scaled down to it in total, never up.
 void fit_to_neighbours(const std::vector<float>& weights, bool single, std::vector<float>& deviations) {
   const std::size_t n = weights.size();
   if (n < 3) return;

@@ -12,8 +12,7 @@
 namespace opaline {
 
 /// A read-only hash grid over finished samples, with cells as wide as the search radius. (SampleGrid, which
-/// grows during dart throwing, has cells for
-/// its own radius and no finished samples.)
+/// grows during dart throwing, has cells for its own radius and no finished samples.)
 class NeighbourGrid {
  public:
   struct Cell {

@@ -87,8 +87,8 @@ class ShadowBatch {
   }
 
   /// Calls use(light, point in batch, sample, contribution, unoccluded contribution) for each ray in order,
-  /// then discards them. Deterministic parts are
-  /// split equally over samples of both halves, so the halves differ by their error only.
+  /// then discards them. Deterministic parts are split equally over samples of both halves, so the halves
+  /// differ by their error only.
   template <class Use>
   void trace_lights(const Use& use) {
     if (scattered_ && shadow_.size() > kSorted)
@@ -278,8 +278,7 @@ class ShadowBatch {
   }
 
   // Control variate: the unshadowed irradiance of an environment is exact. The rays of a pool estimate the
-  // visible fraction per channel; the rays of a
-  // point add their difference from that estimate.
+  // visible fraction per channel; the rays of a point add their difference from that estimate.
   template <class Use>
   void use_pool(std::size_t begin, std::size_t end, const Use& use) const {
     const std::size_t samples = std::size_t(samples_), lights = lights_.size();
@@ -311,10 +310,9 @@ class ShadowBatch {
   }
 
   // Control variate by block: the rays of one half of the pixels, every other one, predict the light at the
-  // other half, block by block of the
-  // environment; a pixel's own rays add their difference. Unbiased, as predictions are independent of the
-  // pixel's rays. Negative
-  // results are clamped, and subtracted from others.
+  // other half, block by block of the environment; a pixel's own rays add their difference. Unbiased, as
+  // predictions are independent of the pixel's rays. Negative results are clamped, and subtracted from
+  // others.
   template <class Use>
   void use_together(const Use& use) const {
     const std::size_t samples = std::size_t(samples_), lights = lights_.size();

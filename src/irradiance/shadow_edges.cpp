@@ -124,8 +124,7 @@ class EdgeFinder {
 };
 
 // Mean weight of one light over the points of each marked sample's cell. An area light's samples are
-// distributed over the points, twice as many as for a
-// single point.
+// distributed over the points, twice as many as for a single point.
 void average(const IrradianceInput& input, std::uint32_t light, std::span<const Mark> marks,
              const CellPoints& points, std::vector<Refined>& refined) {
   const bool delta = is_delta(input.lights[light]);

@@ -16,10 +16,8 @@ inline SurfacePoint entered_at(const IrradianceInput& input, SurfacePoint point)
 }
 
 /// Replaces, per light, the weight of each sample beside a shadow edge by its mean over points of the
-/// sample's Voronoi cell; all other weights keep
-/// their bits. An edge is a change of the light's visible fraction between samples, not a change of the
-/// surface's orientation or
-/// distance.
+/// sample's Voronoi cell; all other weights keep their bits. An edge is a change of the light's visible
+/// fraction between samples, not a change of the surface's orientation or distance.
 /// in    unblocked: unoccluded weights, one array per light
 void refine_shadow_edges(const IrradianceInput& input, std::span<const std::vector<float>> unblocked,
                          std::span<LightTransfer> transfers);

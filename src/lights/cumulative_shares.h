@@ -20,8 +20,7 @@ inline std::size_t draw(const float* ends, std::size_t count, double& u) {
 }
 
 // Normalises running sums. Intervals of zero width at the end of the table become exactly empty: rounding
-// would leave them a tiny probability with a
-// huge weight.
+// would leave them a tiny probability with a huge weight.
 inline void normalize(float* ends, std::size_t count, double sum) {
   const float whole = ends[count - 1];
   for (std::size_t i = 0; i < count; ++i)

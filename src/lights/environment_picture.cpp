@@ -162,8 +162,8 @@ void EnvironmentPicture::make_means() {
 }
 
 // Importance of cells, including some of their neighbours': reflected rays see the image interpolated, so a
-// dark cell beside a light contains some of
-// its radiance, and without light samples there such rays would have huge weights.
+// dark cell beside a light contains some of its radiance, and without light samples there such rays would
+// have huge weights.
 void EnvironmentPicture::make_importance() {
   constexpr float kOfNeighbours = .04f;
   for (std::size_t r = 0; r < rows_; ++r)

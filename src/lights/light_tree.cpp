@@ -18,8 +18,7 @@ constexpr float kWide = .5f;
 // Fraction of the largest reflected contribution above which nodes are split to the width of the lobe.
 constexpr float kMirrored = .03f;
 // Weight of the cosine bound at the surface in a node's importance; the rest is the cosine of its centre.
-// src/irradiance/README.md has the
-// comparison.
+// src/irradiance/README.md has the comparison.
 constexpr float kBound = .25f;
 // Added to cosines as a bound of rounding, so visible lights keep a nonzero probability.
 constexpr float kRounding = 1e-3f;
@@ -54,8 +53,7 @@ std::uint64_t hash_of(std::span<const Light> lights) {
 
 /// Upper bound of the lights' emission towards a point, over their maximum.
 /// in    cosine: of the angle between the node's axis and the point, from its centre; ball: sine of half the
-///       angle subtended by
-///       the node's ball
+///       angle subtended by the node's ball
 double facing(const LightTree::Node& node, float cosine, float ball) {
   const Angle off = Angle::of_cosine(std::clamp(double(cosine), -1.0, 1.0))
                         .less({double(node.cos_half), double(node.sin_half)})
@@ -175,8 +173,7 @@ LightExtent LightTree::extent() const {
 }
 
 // The cosine at the surface is interpolated between that of the ball's centre and an upper bound over its
-// lights. The bound alone is positive for
-// all visible lights, but overestimates wide nodes.
+// lights. The bound alone is positive for all visible lights, but overestimates wide nodes.
 double LightTree::importance(const Node& node, const Place& at) {
   const Vec3f to = node.center - at.point;
   const float d2 = dot(to, to), r2 = node.radius * node.radius;

@@ -29,8 +29,7 @@ Scene sparse_scene(const Session& session, Monitor* monitor) {
 }
 
 /// Error of one channel, with the reference's independent noise subtracted at each point. Relative to the
-/// image, which has little noise; dividing by
-/// the reference would overweight its low values.
+/// image, which has little noise; dividing by the reference would overweight its low values.
 MeasuredError measured(const std::vector<double>& errors, const std::vector<float>& picture,
                        const DirectState& reference, std::size_t channel, double floor) {
   std::vector<double> without;

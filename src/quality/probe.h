@@ -28,15 +28,12 @@ std::vector<std::uint8_t> translucent_pixels(const Image& picture);
 double probe_difference(const Image& a, const Image& b);
 
 /// Mean relative error of a, worst channel, from images with half and a quarter of its samples. The error is
-/// a common pattern, decreasing by 2^p between
-/// images, plus independent noise, decreasing likewise. The means of (a - b)^2 and (a - b)(b - c) separate
-/// the two, and |b - c|
-/// over |a - b| gives p.
+/// a common pattern, decreasing by 2^p between images, plus independent noise, decreasing likewise. The means
+/// of (a - b)^2 and (a - b)(b - c) separate the two, and |b - c| over |a - b| gives p.
 double probe_error(const Image& a, const Image& b, const Image& c);
 
 /// Order of the error in the number of samples, from the errors at half of them (`before`) and now; averaged
-/// with the usual order, as two images are a
-/// weak estimate.
+/// with the usual order, as two images are a weak estimate.
 double error_slope(double before, double now);
 
 }  // namespace opaline

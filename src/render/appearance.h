@@ -81,9 +81,8 @@ struct Appearance {
 };
 
 /// Cosine of the view direction with the shading normal, at least half of its cosine with the geometric
-/// normal. On coarse meshes
-/// a shading normal may face away from a camera facing the triangle, and the boundary would then transmit
-/// nothing.
+/// normal. On coarse meshes a shading normal may face away from a camera facing the triangle, and the
+/// boundary would then transmit nothing.
 inline float cos_view(const SurfacePoint& point, const Vec3f& direction) {
   const float side = dot(point.geometric, direction), shading = dot(point.normal, direction);
   const float towards = side > 0 ? shading : -shading;

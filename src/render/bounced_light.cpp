@@ -14,16 +14,15 @@ namespace {
 
 constexpr std::uint64_t kSeed = 4000;
 // Gathered rays: from a sample (few, because the medium blurs neighbouring samples); from a hit without
-// cached irradiance; from a
-// cache point, per pixel of its spacing, at least and at most. Closer cache points use the maximum.
+// cached irradiance; from a cache point, per pixel of its spacing, at least and at most. Closer cache points
+// use the maximum.
 constexpr int kOfSample = 16, kOfHit = 24, kOfPixel = 3, kFewestOfPlace = 48, kMostOfPlace = 192;
 constexpr std::size_t kPlacesAtOnce = 256;  // each of many rays, and the threads share them
 constexpr int kAcross = 64;                 // cache points along the image's longer side, first lattice
 constexpr int kAround = 2;                  // beyond each border
 constexpr std::size_t kLattices = 3;
 // Mean inverse distance of a cache point's hits, times the spacing, above which closer cache points are
-// added. A wall meeting a
-// floor gives 0.21 at a distance of one spacing.
+// added. A wall meeting a floor gives 0.21 at a distance of one spacing.
 constexpr float kNear = 0.07f;
 // Required variation of four cache points: the difference of the largest and the smallest irradiance, over
 // the largest.

@@ -16,10 +16,8 @@
 namespace opaline {
 
 /// Irradiance cache for indirect light, in image space: 64 points along the longer side of the image, and
-/// closer ones where near
-/// surfaces light each other and the irradiance varies. Includes a second bounce if the bodies' trees contain
-/// indirect light; they do
-/// not in a Session's cache.
+/// closer ones where near surfaces light each other and the irradiance varies. Includes a second bounce if
+/// the bodies' trees contain indirect light; they do not in a Session's cache.
 /// from  Ward, Rubinstein & Clear 1988
 class BouncedPlaces {
  public:
@@ -73,8 +71,8 @@ class BouncedPlaces {
 };
 
 /// Indirect light at the hits of an image: from RenderInput::bounced, or from a cache of its own. Hits
-/// without a usable cache point,
-/// as at silhouettes, gather rays themselves, with a second bounce if the bodies' trees contain the first.
+/// without a usable cache point, as at silhouettes, gather rays themselves, with a second bounce if the
+/// bodies' trees contain the first.
 class BouncedLight {
  public:
   /// shader: without bounced light; both must outlive it

@@ -13,8 +13,8 @@ namespace opaline {
 double pixel_width(const Camera& camera, const Film& film);
 
 /// Rays through the film. Directions have length 1 along the view axis, so a ray's time is the depth Z. All
-/// pixels share one pattern
-/// of sub-pixel positions, sampled from the reconstruction filter; a single sample is at the centre.
+/// pixels share one pattern of sub-pixel positions, sampled from the reconstruction filter; a single sample
+/// is at the centre.
 class CameraRays {
  public:
   CameraRays(const Camera& camera, const Film& film, const World& world);
@@ -23,8 +23,7 @@ class CameraRays {
   Ray ray(int x, int y, int sample) const;
 
   /// Projection of a world point: pixels from the top left of the image, and the depth Z. Behind the camera
-  /// (Z <= 0), x and y are
-  /// meaningless.
+  /// (Z <= 0), x and y are meaningless.
   struct FilmPlace {
     double x, y, depth;
   };

@@ -13,10 +13,8 @@ namespace opaline {
 
 /// Distance from the middle of a light to the nearest point of these meshes, mm, if it is below the limit.
 /// The middle is the point, the sphere's centre (unoccluded, a sphere light is equivalent to a point light
-/// there) or the
-/// quad's middle line along its longer side. None for lights at least twice as wide as the limit, directional
-/// lights and
-/// environments.
+/// there) or the quad's middle line along its longer side. None for lights at least twice as wide as the
+/// limit, directional lights and environments.
 /// in    limit: > 0, mm
 std::optional<double> near_light_distance(const Light& light, const World& world,
                                           std::span<const std::uint32_t> meshes, double limit);

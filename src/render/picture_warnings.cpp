@@ -154,8 +154,7 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
 }
 
 /// Point lights fall off with the square of the distance in mm, whatever the scene's unit: the usual cause of
-/// a brightness wrong by
-/// the square of the unit.
+/// a brightness wrong by the square of the unit.
 std::string unit_text(const Scene& scene, double brightest) {
   const double factor = scene.mm_per_unit * scene.mm_per_unit, meant = brightest * factor;
   const bool has_points = std::ranges::any_of(scene.lights, [](const Light& light) {

@@ -82,8 +82,7 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
 }
 
 // A quick build saves time per triangle, and costs time per camera ray (coherent) and per shadow ray from a
-// sample; world.h has the
-// measurement. Shadow edges need about as many rays again.
+// sample; world.h has the measurement. Shadow edges need about as many rays again.
 RayBuild cheaper_build(const Scene& scene, std::span<const Light> lights, const Plan& plan) {
   constexpr double kSaved = 300, kPictureRay = 5, kSampleRay = 75;  // ns
   const double samples = method_of(scene.settings.method).samples_with_shadow_rays(plan);
@@ -217,8 +216,7 @@ Plan make_plan(const Scene& scene, const World& world) {
     samples += memory.evaluated_samples;
   }
   // Upper bound by pixels and by samples, fitted to bench_plan: the irradiance lattice beside shadow edges,
-  // with about as many points
-  // as pixels at its finest level, and surface caches, finer at higher resolution.
+  // with about as many points as pixels at its finest level, and surface caches, finer at higher resolution.
   plan.bytes += std::min(60 * seen, 500 * samples);
   if (samples > 0 && scene.film.samples_per_pixel > 1) plan.bytes += 5'000'000;
   if (bounces_of(scene) > 0) plan.bytes += kBytesOfBouncePlaces;

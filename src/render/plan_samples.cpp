@@ -17,17 +17,15 @@ namespace opaline {
 namespace {
 
 // Lower bounds resolving the irradiance itself, however far light travels inside. With many bodies, each is
-// small in the image, and
-// all share kFewestOfAll.
+// small in the image, and all share kFewestOfAll.
 constexpr double kFewestSamples = 10000, kFewestOfAll = 2e6, kFewestOfMany = 100;
 constexpr double kSuspiciouslyFew = 100;
 constexpr const char* kTheMinimum = "the minimum";
 
 // Largest sample spacing: 1.5 mean free paths, or the diffuse mean free path if that is shorter, but at least
-// one mean free path.
-// SplitKernel takes transport below the spacing from the irradiance at the shading point itself. Where
-// diffuse light decays
-// faster, the exitance in shadow depends on the exact sample positions, so the spacing follows the decay.
+// one mean free path. SplitKernel takes transport below the spacing from the irradiance at the shading point
+// itself. Where diffuse light decays faster, the exitance in shadow depends on the exact sample positions, so
+// the spacing follows the decay.
 double widest_spacing(const DiffuseProfile& profile) {
   double widest = INFINITY;
   for (std::size_t c = 0; c < 3; ++c) {

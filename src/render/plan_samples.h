@@ -15,8 +15,7 @@ inline constexpr double kMostCells = 1.2e6;
 /// Widest cell resolving transport, mean free paths.
 double widest_cell(const Settings& settings);
 /// True if such cells would exceed kMostCells. The surface is then flat on the scale of a mean free path, and
-/// a radial profile is
-/// accurate.
+/// a radial profile is accurate.
 bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group);
 /// True if light crosses the body almost without scattering, where the diffusion equation fails.
 bool is_too_thin_for_cells(const GroupPlan& group);

@@ -24,8 +24,7 @@ constexpr int kNarrowest = 16;  // pixels of a cell
 constexpr double kApart = 3;    // pixels around a triangle: the filter's radius, and rounding
 
 /// Cells around a position in the image, as x0, -x1, y0, -y1, so the union of two boxes is a minimum. Outside
-/// the part, a coordinate is
-/// -1 or the number of cells.
+/// the part, a coordinate is -1 or the number of cells.
 typedef short CellBox __attribute__((vector_size(8)));
 CellBox around_both(const CellBox& a, const CellBox& b) {
   return a < b ? a : b;

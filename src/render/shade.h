@@ -29,8 +29,7 @@ class Shader {
                     std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
   /// Outgoing radiance along rays that hit surfaces, W/(mm^2 sr): diffuse, and specular under an
-  /// approximately uniform illumination.
-  /// Traces one ray per light.
+  /// approximately uniform illumination. Traces one ray per light.
   /// in    held: cached light transport at these surfaces, extended; or null
   std::vector<RgbF> radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                    HeldView::Batch* held = nullptr) const;

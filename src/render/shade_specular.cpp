@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Specular reflection at dielectric and metallic boundaries: of lights, environments and other surfaces. A
-// smooth boundary traces one
-// ray. A rough boundary samples its lobe and the lights, combined by the power heuristic (Veach & Guibas
-// 1995).
+// smooth boundary traces one ray. A rough boundary samples its lobe and the lights, combined by the power
+// heuristic (Veach & Guibas 1995).
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -20,8 +19,7 @@ constexpr int kFacets = 16, kLightSamples = 16;
 // Factor by which both are reduced behind a specular reflection.
 constexpr int kFewerOfMirrored = 4;
 // Maximum specular reflections of a camera ray: if all are metallic, and if all are dielectric. Further
-// reflections are
-// approximated by a uniform illumination.
+// reflections are approximated by a uniform illumination.
 constexpr int kMostMirrors = 4, kMostCoats = 2;
 // Factor by which shadow rays are reduced behind a specular reflection.
 constexpr int kFewerInMirrors = 4;
@@ -260,8 +258,7 @@ struct Shader::GlossyHits {
 };
 
 // True if the radiance of all lights is exactly proportional to their emission and no surface is a metal, as
-// a metal's colour depends on
-// the direction.
+// a metal's colour depends on the direction.
 bool Shader::can_hold_coats() const {
   const auto has_plain_radiance = [](const Light& light) {
     return is_delta(light) || std::holds_alternative<EnvironmentLight>(light.source) ||

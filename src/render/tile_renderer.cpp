@@ -10,8 +10,7 @@ constexpr int kTile = 16;
 constexpr std::uint64_t kBatchRays = 512;
 
 // Rays of a batch: all samples of a square of pixels, or part of one pixel's samples if those are too many.
-// Keeps rays coherent,
-// and finishes a pixel at once.
+// Keeps rays coherent, and finishes a pixel at once.
 struct Batch {
   Rectangle pixels;
   std::uint64_t first, end;  // samples

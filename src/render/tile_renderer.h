@@ -34,8 +34,7 @@ class TileRenderer {
   };
 
   /// Renders all samples of the tile's pixels. Passes differ in random numbers, not in camera rays. held:
-  /// cached results of this tile,
-  /// extended; or null.
+  /// cached results of this tile, extended; or null.
   Tile render(const Rectangle& tile, const Pass& pass = {},
               std::vector<HeldView::Batch>* held = nullptr) const;
 

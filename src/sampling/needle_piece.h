@@ -9,8 +9,8 @@
 namespace opaline {
 
 /// The quadrilateral a b c d between a short side a b, possibly a point, and a short side c d. Halving a
-/// needle at its longest side gives needles of the
-/// same shape, in a number quadratic in the ratio of lengths; slicing across is linear in it.
+/// needle at its longest side gives needles of the same shape, in a number quadratic in the ratio of lengths;
+/// slicing across is linear in it.
 struct NeedlePiece : FlatPiece<4> {
   NeedlePiece(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) : FlatPiece({a, b, c, d}) {}
 

@@ -69,8 +69,7 @@ void remove_dominated(std::vector<Owner>& owners, std::size_t first) {
 }
 
 /// Sorts the owners from `first` on by their sums of squared distances, as integers with the sum in the upper
-/// half and the sample in the lower:
-/// non-negative floats sort like integers, and integers move faster.
+/// half and the sample in the lower: non-negative floats sort like integers, and integers move faster.
 inline void nearest_first(const std::vector<Owner>& owners, std::size_t first,
                           std::vector<std::uint64_t>& sorted) {
   sorted.clear();

@@ -19,8 +19,7 @@
 namespace opaline {
 
 /// Dart throwing in phase groups (Wei 2008) over a hash grid: rounds of candidates, accepted if no sample of
-/// their sheet is within the radius;
-/// independent of threads.
+/// their sheet is within the radius; independent of threads.
 class PoissonDisk {
  public:
   PoissonDisk(const TriangleList& triangles, const Bounds& box, float radius)

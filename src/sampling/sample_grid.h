@@ -16,10 +16,8 @@
 namespace opaline {
 
 /// Cells are at least twice the Poisson radius wide: a ball of one radius intersects at most eight. A hash
-/// table contains blocks of 4 x 4 x 4 cells, with
-/// a bit per existing cell, as most of the space around a surface is empty. Samples are stored cell by cell,
-/// in Morton order for
-/// cells created together.
+/// table contains blocks of 4 x 4 x 4 cells, with a bit per existing cell, as most of the space around a
+/// surface is empty. Samples are stored cell by cell, in Morton order for cells created together.
 class SampleGrid {
  public:
   struct Cell {
@@ -156,8 +154,7 @@ class SampleGrid {
   };
 
   // visit_block for the blocks in this part of the curve with cells possibly in [a, b]; true if a visit
-  // returned true. Their keys differ in the lowest
-  // `bits` bits only.
+  // returned true. Their keys differ in the lowest `bits` bits only.
   template <class Visit>
   bool visit_existing(std::size_t begin, std::size_t end, int bits, const Coordinates& a,
                       const Coordinates& b, const Visit& visit) const {

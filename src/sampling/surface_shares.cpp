@@ -69,8 +69,7 @@ struct TaskResult {
 };
 
 /// Divides a task's triangles. Sums contributions by sample regularly, at counts not reached by ordinary
-/// triangles, so needles meeting the same samples
-/// do not accumulate many.
+/// triangles, so needles meeting the same samples do not accumulate many.
 void divide_task(const TriangleList& triangles, const SampleGrid& grid, float radius, const Task& task,
                  Monitor* monitor, bool keep, TaskResult& result) {
   constexpr std::size_t kMany = 8192;

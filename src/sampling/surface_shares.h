@@ -25,8 +25,7 @@ struct SurfacePiece {
 };
 
 /// Area of each sample's Voronoi cell, in the grid's order. Halves triangles down to the spacing and clips
-/// them by the bisecting planes: the cells are
-/// exact and sum to the surface's area.
+/// them by the bisecting planes: the cells are exact and sum to the surface's area.
 /// out   pieces: null, or receives their parts
 std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
                                          Monitor* monitor, std::vector<SurfacePiece>* pieces = nullptr);

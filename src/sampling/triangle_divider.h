@@ -94,8 +94,7 @@ class TriangleDivider {
   }
 
   // Finds all samples nearest to some point of the piece, and few more: the undominated ones. Returns false,
-  // with an incomplete result, after
-  // examining more than `most` samples.
+  // with an incomplete result, after examining more than `most` samples.
   template <class Piece>
   bool find_owners(const Piece& piece, std::size_t most) {
     const Owner near = some_near(piece);
@@ -119,8 +118,7 @@ class TriangleDivider {
   }
 
   // A nearby sample of the triangle's sheet: from the cell of the piece's centre, or the nearest within a
-  // growing reach. A sheet without nearby samples is
-  // assigned to other sheets' samples.
+  // growing reach. A sheet without nearby samples is assigned to other sheets' samples.
   template <class Piece>
   Owner some_near(const Piece& piece) {
     any_sheet_ = false;

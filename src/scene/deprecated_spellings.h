@@ -9,8 +9,7 @@
 namespace opaline {
 
 /// Replaces old spellings in the tree by current ones, with a line in document.warnings for each. A later
-/// override replaces the value of the same key
-/// in either spelling.
+/// override replaces the value of the same key in either spelling.
 /// error Error{bad_input}: both spellings of a key in the file, or in one override
 void replace_deprecated_spellings(Document& document);
 /// The same for one medium; path: prefix of its keys in warnings.

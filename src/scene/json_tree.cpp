@@ -10,8 +10,7 @@ namespace opaline {
 namespace {
 
 /// Tracks the parser's position in the text. nlohmann-json 3.11 reports no positions, but all values and keys
-/// in order, with only blanks, comments,
-/// commas and colons between them.
+/// in order, with only blanks, comments, commas and colons between them.
 class TokenCursor {
  public:
   explicit TokenCursor(std::string_view text) : text_(text) {
@@ -146,8 +145,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
                    const nlohmann::json::exception& exception) override {
     if (exception.id == 406) fail_too_large();
     // "[json...] parse error at line 1, column 2: syntax error while parsing value - invalid literal; last
-    // read: '...'": omits the file's
-    // contents, which may be binary.
+    // read: '...'": omits the file's contents, which may be binary.
     std::string reason = exception.what();
     const std::size_t begin = reason.find("while parsing ");
     reason = begin == std::string::npos ? "broken" : reason.substr(begin);

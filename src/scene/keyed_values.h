@@ -7,10 +7,9 @@
 namespace opaline {
 
 /// Replaces every {"keyed": {"1": value, "24": value}, "between": "linear" | "spline"} in the tree by its
-/// value at document.frame: numbers and lists
-/// of numbers are interpolated, and constant outside the keys. Splines are cubic, with the slope at a key
-/// equal to that of the
-/// line between its neighbours (Catmull & Rom 1974).
+/// value at document.frame: numbers and lists of numbers are interpolated, and constant outside the keys.
+/// Splines are cubic, with the slope at a key equal to that of the line between its neighbours (Catmull & Rom
+/// 1974).
 /// error Error{bad_input} at the value: no keys, a key other than a frame, values without interpolation
 void resolve_keyed_values(Document& document);
 

@@ -93,8 +93,7 @@ void read_surroundings(const Value& value, std::vector<Light>& lights) {
 }
 
 /// Distributes triangles over spheres. A few have the maximum, limited by the precision of float vertices.
-/// More have a quarter each, with 0.02 % less
-/// area; hundreds share the memory of one hundred.
+/// More have a quarter each, with 0.02 % less area; hundreds share the memory of one hundred.
 void share_triangles(std::vector<Shape>& shapes) {
   constexpr double kMostTriangles = 8e6, kFinestTriangles = 81920, kFewBalls = 6;
   const auto for_each_curved = [&](const auto& use) {

@@ -25,8 +25,7 @@ struct SampleOrigin {
 };
 
 /// True if the body no longer fits the spacing of carried samples: they would exceed the scene's limit, or,
-/// with a set number, be a small fraction of
-/// it.
+/// with a set number, be a small fraction of it.
 bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings);
 
 /// Keys of the stages shared by all methods.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Plausibility of a cache entry for its key: checks every count, index and range used by later stages, and
-// values against the surface. One pass over the
-// entry.
+// values against the surface. One pass over the entry.
 #pragma once
 
 #include <cstdint>

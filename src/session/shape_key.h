@@ -11,8 +11,7 @@
 namespace opaline {
 
 /// Keys of meshes' sources. Hashes a file's bytes again only if the system's record of it, with the time of
-/// its last change, differs, or is too recent
-/// to show a further change.
+/// its last change, differs, or is too recent to show a further change.
 class SourceKeys {
  public:
   /// Key of the file's bytes or the built-in shape's dimensions, and of the UV request.

@@ -14,9 +14,8 @@ void tint_bounced(const Body& body, std::span<RgbF> bounced) {
 }
 
 /// Replaces the light of bodies by their direct light, for gathering the first bounce; the destructor
-/// restores it. An interrupted constructor leaves
-/// the bodies unchanged: it replaces nothing before everything is computed, as no destructor would restore
-/// it.
+/// restores it. An interrupted constructor leaves the bodies unchanged: it replaces nothing before everything
+/// is computed, as no destructor would restore it.
 class DirectlyLitBodies {
  public:
   explicit DirectlyLitBodies(std::span<BodyStages> bodies) : bodies_(bodies) {

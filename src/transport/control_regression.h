@@ -14,17 +14,15 @@ namespace opaline {
 WalkedValue batch_mean(std::span<const double> values);
 
 /// Linear regression on control variates over batches (Lavenberg & Welch 1981). The coefficients come from
-/// the same batches, causing a bias of about
-/// (controls / batches) standard errors. The standard error is the jackknife's, from each batch's deviation
-/// from the prediction
-/// by the others (HC3 of MacKinnon & White 1985).
+/// the same batches, causing a bias of about (controls / batches) standard errors. The standard error is the
+/// jackknife's, from each batch's deviation from the prediction by the others (HC3 of MacKinnon & White
+/// 1985).
 class ControlRegression {
  public:
   /// in    controls[batch]: each of mean 0, at least 50 batches. Excludes controls explained by others, and
-  ///       badly sampled ones: with
-  ///       fewer than 40 effective batches, or a mean beyond five standard errors. Always includes the first
-  ///       control, the energy
-  ///       balance, which explains everything without absorption.
+  ///       badly sampled ones: with fewer than 40 effective batches, or a mean beyond five standard errors.
+  ///       Always includes the first control, the energy balance, which explains everything without
+  ///       absorption.
   explicit ControlRegression(const std::vector<std::vector<double>>& controls);
 
   /// Like batch_mean, with a smaller error.

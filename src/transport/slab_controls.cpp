@@ -51,8 +51,7 @@ SlabControls::Exponentials SlabControls::exponentials(double depth) const {
 }
 
 /// A flight from depth t with upward cosine mu: exp(rate t) becomes the mean over free paths s of exp(rate (t
-/// - mu s)); a collision damps order l by
-/// albedo g^l; a reflection negates mu.
+/// - mu s)); a collision damps order l by albedo g^l; a reflection negates mu.
 void SlabControls::visit(const WalkState& walk, const Crossing& crossing, Sums& sums) const {
   const double cosine = walk.direction.z, uncollided = 1 - crossing.collided;
   const Exponentials here = exponentials(-walk.position.z * medium_.sigma_t());

@@ -10,10 +10,9 @@
 namespace opaline {
 
 /// For each of a family of functions f(depth, upward cosine), the sum over a walk's flights of weight (f
-/// before the flight - mean of weight f after it),
-/// less f at the start: its mean is 0 for any f (src/transport/README.md). The family: exp(rate depth) times
-/// a Legendre polynomial
-/// of the cosine, with closed-form means. One more is the weight at the start less 1.
+/// before the flight - mean of weight f after it), less f at the start: its mean is 0 for any f
+/// (src/transport/README.md). The family: exp(rate depth) times a Legendre polynomial of the cosine, with
+/// closed-form means. One more is the weight at the start less 1.
 class SlabControls {
  public:
   static constexpr std::size_t kRates = 5, kOrders = 6, kCount = kRates * kOrders + 1;

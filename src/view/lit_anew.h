@@ -18,8 +18,7 @@ struct LitAnew {
 };
 
 /// Final image of a scene from that of another: light is additive, and each channel is linear in the lights'
-/// emission. None if the scenes
-/// differ in other ways, or the lights by different factors.
+/// emission. None if the scenes differ in other ways, or the lights by different factors.
 /// in    picture: of `before`, with the layers of a method without noise estimate (not `direct`)
 std::optional<LitAnew> lit_anew(const Image& picture, const Scene& before, const Scene& now);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Background work after a final image, during a pause of edits: settings for an error, the trade-off of error
-// against time, and a
-// progressively refined reference.
+// against time, and a progressively refined reference.
 #pragma once
 
 #include <condition_variable>
@@ -64,8 +63,7 @@ struct BackgroundEvents {
 };
 
 /// Has its own session and thread, so interactive images neither depend on it nor wait for it. The session
-/// exists only while work is
-/// requested.
+/// exists only while work is requested.
 class ViewBackground {
  public:
   explicit ViewBackground(BackgroundEvents events);

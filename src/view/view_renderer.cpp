@@ -124,8 +124,7 @@ void ViewRenderer::run() {
 }
 
 /// Frames share samples, as in `opaline render --frames`, and thereby all results equal between them. Changed
-/// samples need a new session,
-/// because anchoring is permanent.
+/// samples need a new session, because anchoring is permanent.
 void ViewRenderer::anchor(const Wanted& wanted) {
   Scene reference = *wanted.reference;
   reference.camera = {};

@@ -21,10 +21,9 @@
 namespace opaline {
 
 /// moving: the result of a thirtieth of a second; sharper: more pixels and the same samples, or the last
-/// final image relit (lit_anew.h);
-/// final: the bytes of `opaline render`, or the last final image scaled, if all lights changed by one factor
-/// and a new render
-/// takes long. reference: of another method, for comparison (view_background.h).
+/// final image relit (lit_anew.h); final: the bytes of `opaline render`, or the last final image scaled, if
+/// all lights changed by one factor and a new render takes long. reference: of another method, for comparison
+/// (view_background.h).
 enum class PictureStep : std::uint32_t { moving, sharper, final, reference };
 
 struct ViewPicture {
@@ -64,8 +63,7 @@ class ViewRenderer {
   ViewRenderer& operator=(const ViewRenderer&) = delete;
 
   /// Replaces a waiting scene, and cancels the images of the current one. An image due within a frame's time
-  /// is still shown, so continuous
-  /// edits show images.
+  /// is still shown, so continuous edits show images.
   /// reference: for a scene with frames, the scene with the surfaces of all frames' samples (Session::anchor)
   void show(Scene scene, std::uint32_t revision, std::optional<Scene> reference = {});
 

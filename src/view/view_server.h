@@ -41,7 +41,7 @@ class ViewServer {
  public:
   /// Starts listening.
   /// error Error{bad_input}: not an IP address, or an invalid token; Error{run_failed}: the port is
-  /// unavailable
+  ///       unavailable
   ViewServer(SceneEdits edits, ViewOptions options, ViewHooks hooks);
   ~ViewServer();
   ViewServer(const ViewServer&) = delete;

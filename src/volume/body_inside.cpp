@@ -44,8 +44,7 @@ BodyInside::BodyInside(const RayScene& rays, const World& world, std::span<const
 }
 
 // True if meshes may overlap: if their boxes intersect, or if a ray into the body, from some thousand
-// triangles, meets the front of
-// another sheet.
+// triangles, meets the front of another sheet.
 bool BodyInside::find_overlaps(const World& world, std::span<const std::uint32_t> meshes) const {
   constexpr std::size_t kTriangles = 4096;  // maximum triangles of a mesh
   std::vector<Bounds> boxes;

@@ -73,8 +73,7 @@ class BodyWalks::Walker {
 
  private:
   // Continues light that has left or was reflected, and may re-enter. Uses its own random numbers: without
-  // re-entry, the walks are
-  // unchanged.
+  // re-entry, the walks are unchanged.
   void send_outside(const BoundaryPoint& point, const Vec3d& direction, double weight) {
     if (!body_.input_.reenter) return;
     if (weight < outside_weight_) {

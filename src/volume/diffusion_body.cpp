@@ -100,8 +100,7 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
 }
 
 // Exitance at the samples: fluence under a sample, at the depth of its cell's centre, times the conductance
-// to the outside. Normalized so
-// the samples emit exactly the loss of all cells.
+// to the outside. Normalized so the samples emit exactly the loss of all cells.
 std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
                                       std::span<const RgbF> leaving) const {
   struct Plane {

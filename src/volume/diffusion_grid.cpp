@@ -147,8 +147,7 @@ struct DiffusionGrid::Builder {
   }
 
   // Volume of a cell inside the body. Lines have a resolution of a quarter cell for surfaces parallel to
-  // them; a plane through the facets is
-  // exact.
+  // them; a plane through the facets is exact.
   void weigh_by_planes(std::span<const Facet> surface) {
     constexpr double kLeastAgreement = .97;  // least agreement of the facets' normals
     std::vector<Plane> sums(grid.cells_.size());
@@ -234,8 +233,7 @@ struct DiffusionGrid::Builder {
   };
 
   // Couples the small cells on one side of a larger one, so the flux through that side depends on their mean
-  // fluence. Uncoupled, they
-  // would conduct light along the side through the larger cell.
+  // fluence. Uncoupled, they would conduct light along the side through the larger cell.
   void link_across(std::uint32_t cell, std::size_t axis, int step, std::vector<Pair>& pairs) const {
     const int size = size_of(cell), half = size / 2;
     std::array<std::uint32_t, 4> others;
@@ -255,9 +253,8 @@ struct DiffusionGrid::Builder {
   }
 
   // Links neighbouring cells. The flux of decaying light is that at the midpoint of two centres, inside the
-  // larger cell. Half of the volume
-  // between midpoint and face moves to the smaller cell: the reflectance of a half space is then second-order
-  // accurate.
+  // larger cell. Half of the volume between midpoint and face moves to the smaller cell: the reflectance of a
+  // half space is then second-order accurate.
   void link() {
     std::vector<Pair> pairs;
     std::vector<float> given(grid.cells_.size());

@@ -12,8 +12,8 @@
 namespace opaline {
 
 /// Octree-like grid of cells of 1, 2, 4 and 8 lattice cells; sizes of neighbours differ by at most a factor
-/// of two. Cells cut by the
-/// surface have size 1, with the fractions of their volume and faces inside the body.
+/// of two. Cells cut by the surface have size 1, with the fractions of their volume and faces inside the
+/// body.
 class DiffusionGrid {
  public:
   static constexpr std::uint32_t kNone = ~0u;

@@ -177,8 +177,8 @@ Depositor::Stretch Depositor::stretch_of(double length, std::uint32_t cell) cons
 }
 
 // Exit through the plane of the nearest boundary element, if the path leaves the body between `least`, in the
-// cell `last`, and `length`:
-// if there is no cell at `length` (`next` is none), or if it is behind an element's plane in `next`.
+// cell `last`, and `length`: if there is no cell at `length` (`next` is none), or if it is behind an
+// element's plane in `next`.
 std::optional<Depositor::Exit> Depositor::exit_at(const Way& way, double length, double least,
                                                   std::uint32_t last, std::uint32_t next) const {
   const double cell = space_.lattice.cell;
@@ -205,8 +205,7 @@ std::optional<Depositor::Exit> Depositor::exit_at(const Way& way, double length,
 }
 
 // Deposits the collisions along a path from `start`, by steps below a cell, or about the edge of larger
-// cells, which lie deeper.
-// Returns the exit, with the remaining flux in `flux`.
+// cells, which lie deeper. Returns the exit, with the remaining flux in `flux`.
 std::optional<Depositor::Exit> Depositor::collide(const Way& way, double start, std::uint32_t first,
                                                   Rgb& flux) {
   const double farthest = start + kFarthest * longest_;
@@ -323,8 +322,7 @@ void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, const Rgb
 }
 
 // Light transmitted at an element from one direction. Collisions above the centre of the element's cell
-// partly leave at once, as a
-// current divided by two resistances; the rest continues.
+// partly leave at once, as a current divided by two resistances; the rest continues.
 void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) {
   const BoundaryElement& element = space_.boundary.elements[i];
   const AttachedElement& attached = space_.attached[i];

@@ -17,8 +17,7 @@ std::array<Vec3f, 3> gradient_at(const DiffusionGrid& grid, std::span<const Chan
                                  std::uint32_t cell);
 
 /// Corrects the sources for oblique links: the fluence difference of two offset centres includes the change
-/// along their face, which
-/// causes no flux through it.
+/// along their face, which causes no flux through it.
 /// fluence: one per cell, of the uncorrected problem
 void add_oblique_flow(DiffusionProblem& problem, std::span<const Channels> fluence);
 

@@ -14,13 +14,11 @@
 namespace opaline {
 
 /// Grid of cubic voxels over a box. Each has a lower bound of the distance from any of its points to any
-/// triangle of the world. Voxels near a
-/// surface also have a plane with all nearby triangles behind it, a better bound for flights along or away
-/// from it.
+/// triangle of the world. Voxels near a surface also have a plane with all nearby triangles behind it, a
+/// better bound for flights along or away from it.
 class FreeDistance {
  public:
-  /// edge: requested edge of a voxel, enlarged to limit the grid to kMostVoxels
-  /// reach: of planes, in edges
+  /// edge: requested edge of a voxel, enlarged to limit the grid to kMostVoxels reach: of planes, in edges
   FreeDistance(const World& world, const Bounds& box, double edge, double reach);
 
   static constexpr std::size_t kMostVoxels = std::size_t(1) << 23;

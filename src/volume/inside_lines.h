@@ -20,8 +20,8 @@ struct Lattice {
   Vec3d into(const Vec3d& p) const { return (p - low) / cell; }
 };
 
-/// Lines along z through the corners, edge midpoints and centres of the cells seen from above: at
-/// x = column / 2, y = row / 2 of the lattice.
+/// Lines along z through the corners, edge midpoints and centres of the cells seen from above: at x = column
+/// / 2, y = row / 2 of the lattice.
 class InsideLines {
  public:
   /// A point is inside if the entered and left sheets before it differ in number; open ends of an open mesh

@@ -101,8 +101,7 @@ EvenPoint EvenPoints::at(double share, double u, double v, std::size_t& hint) co
 }
 
 // Resampled importance sampling (Talbot et al. 2005): chooses among candidate points on the lights by
-// unoccluded irradiance. Candidates are
-// far cheaper than a walk.
+// unoccluded irradiance. Candidates are far cheaper than a walk.
 ArrivedLight light_at(const RayScene& rays, std::span<const Light> lights, bool unit_emission,
                       const SurfacePoint& point, WalkNumbers& numbers) {
   constexpr int kCandidates = 16;

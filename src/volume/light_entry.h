@@ -31,8 +31,8 @@ class EvenPoints {
 
   double area() const { return ends_.empty() ? 0 : ends_.back(); }
 
-  /// share: of the area, [0, 1); u, v: within a piece, [0, 1)
-  /// hint: index of the last point's piece, for ascending shares; 0 is valid
+  /// share: of the area, [0, 1); u, v: within a piece, [0, 1) hint: index of the last point's piece, for
+  /// ascending shares; 0 is valid
   EvenPoint at(double share, double u, double v, std::size_t& hint) const;
 
  private:

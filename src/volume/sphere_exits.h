@@ -12,10 +12,8 @@
 namespace opaline {
 
 /// Pool of walks in spheres. With isotropic scattering, a walk just scattered leaves a sphere around it
-/// uniformly over its surface; the
-/// number of collisions and the exit angle depend on the radius in mean free paths alone. A random element of
-/// a random pool is an
-/// unbiased sample.
+/// uniformly over its surface; the number of collisions and the exit angle depend on the radius in mean free
+/// paths alone. A random element of a random pool is an unbiased sample.
 class SphereExits {
  public:
   struct Exit {

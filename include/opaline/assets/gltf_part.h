@@ -27,8 +27,7 @@ struct GltfPart {
 /// in    part: "mesh/primitive", the indices of both; uvs: UV request
 /// out   every index in range, every position finite and below 1e18; strips and fans as triangles
 /// error Error{bad_input} naming the file, the accessor and its element: no such part, points or lines, data
-/// out of bounds or of a
-///       type invalid in glTF
+///       out of bounds or of a type invalid in glTF
 GltfPart read_gltf_part(const std::string& path, const std::string& part, MeshUvs uvs = MeshUvs::unread);
 
 /// Contents of a part: changes with the bytes of the file or of its buffers.

@@ -25,8 +25,8 @@ void allow_files_outside_assets();
 bool are_files_outside_assets_allowed();
 
 /// in    path: an asset; mesh_path: its name in the scene file, relative to that file's folder; material: a
-///       MaterialX file replacing
-///       the asset's materials, "skin.mtlx" or "skin.mtlx#name" of a surface or material in it
+///       MaterialX file replacing the asset's materials, "skin.mtlx" or "skin.mtlx#name" of a surface or
+///       material in it
 /// out   a valid scene with a visible shape: with a camera and lights, the asset's or default ones
 /// error Error{bad_input} naming the file and the record: missing, broken, or without a triangle
 ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,

@@ -14,8 +14,8 @@
 namespace opaline {
 
 /// A folder of entries, HDF5 files shared by any number of processes: an entry appears atomically under its
-/// key, and is checked as a whole before use.
-/// Failures never fail a run: unusable entries are recomputed, and unwritable ones skipped.
+/// key, and is checked as a whole before use. Failures never fail a run: unusable entries are recomputed, and
+/// unwritable ones skipped.
 class BlobCache {
  public:
   static constexpr std::uint64_t kDefaultBytes = std::uint64_t(8) << 30;

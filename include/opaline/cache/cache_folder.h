@@ -25,13 +25,11 @@ struct CacheEntry {
 std::vector<CacheEntry> list_cache(const std::string& folder);
 
 /// Reads a whole entry in pieces; returns the reason it is unusable ("is truncated"), or an empty text. Does
-/// not check its plausibility, which needs the
-/// scene.
+/// not check its plausibility, which needs the scene.
 std::string problem_of(const std::string& folder, const CacheEntry& entry);
 
 /// Removes the least recently used entries down to this many bytes, and temporary files of writers killed
-/// more than an hour ago. One process at a time;
-/// readers and writers continue. Keeps folders.
+/// more than an hour ago. One process at a time; readers and writers continue. Keeps folders.
 /// in    wait: called every 10 ms while another process has the lock: false gives up, removing nothing; none:
 ///       waits indefinitely
 /// out   the removed entries

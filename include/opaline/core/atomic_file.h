@@ -8,8 +8,7 @@
 namespace opaline {
 
 /// Output under a temporary name beside the final file; `commit` renames it. Otherwise the destructor removes
-/// it: an interrupted or failed run leaves
-/// the old file or none.
+/// it: an interrupted or failed run leaves the old file or none.
 class AtomicFile {
  public:
   /// error Error{run_failed} if the folder cannot be written

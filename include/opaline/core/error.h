@@ -11,8 +11,7 @@ namespace opaline {
 enum class ErrorKind { bad_input = 2, run_failed = 3, interrupted = 130 };
 
 /// Thrown by parsing and I/O; caught in `main`, or where a position is added or the run continues. `what()`
-/// is one line: "file:line:column: what
-/// (expected ..., got ...)", omitting empty or zero parts.
+/// is one line: "file:line:column: what (expected ..., got ...)", omitting empty or zero parts.
 class Error : public std::exception {
  public:
   ErrorKind kind = ErrorKind::bad_input;

@@ -9,8 +9,8 @@
 namespace opaline {
 
 /// During its lifetime, the first SIGINT or SIGTERM cancels the monitor's work; the next one of the same kind
-/// kills at once. Signals are global: the
-/// newest handler receives them, and at its end forwards late ones to the previous handler.
+/// kills at once. Signals are global: the newest handler receives them, and at its end forwards late ones to
+/// the previous handler.
 class InterruptHandler {
  public:
   /// Catches SIGINT and SIGTERM until destroyed. monitor: cancelled by the first one.

@@ -11,8 +11,7 @@
 namespace opaline {
 
 /// Sets flush-to-zero and denormals-are-zero in a scope, as recommended by Embree, and restores the caller's
-/// mode. Denormals (below 1.2e-38) in sums of
-/// exitance carry no light, but are slow.
+/// mode. Denormals (below 1.2e-38) in sums of exitance carry no light, but are slow.
 class FlushDenormals {
  public:
   FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
@@ -29,10 +28,9 @@ inline std::size_t chunk_count(std::size_t n, std::size_t chunk) {
 }
 
 /// Calls body(begin, end, chunk index) over [0, n) divided into chunks of the given size, in parallel, each
-/// with denormals flushed. The division depends
-/// on n and chunk alone; bodies write to disjoint memory. A throwing body ends the loop, but not nested loops
-/// in other running
-/// bodies, whose callers expect complete results.
+/// with denormals flushed. The division depends on n and chunk alone; bodies write to disjoint memory. A
+/// throwing body ends the loop, but not nested loops in other running bodies, whose callers expect complete
+/// results.
 template <class Body>
 void parallel_chunks(std::size_t n, std::size_t chunk, const Body& body) {
   tbb::task_group_context alone(tbb::task_group_context::isolated);

@@ -11,8 +11,8 @@
 namespace opaline {
 
 /// Allocates zeroed pages from the system and does not initialize new elements: untouched memory costs no
-/// space and no time, as much of an image is often
-/// empty. For arithmetic types; elements reappearing after the vector shrank keep their old values.
+/// space and no time, as much of an image is often empty. For arithmetic types; elements reappearing after
+/// the vector shrank keep their old values.
 template <class T>
 struct ZeroedAllocator {
   using value_type = T;

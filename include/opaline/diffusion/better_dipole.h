@@ -9,10 +9,9 @@
 namespace opaline {
 
 /// Grosjean's diffusion coefficient, with exitance from fluence and flux (d'Eon 2012, A Better Dipole; d'Eon
-/// & Irving 2011). Multiple scattering only;
-/// adding single scattering would violate energy conservation, as the total is already 1 at alpha' = 1.
-/// Lengths and rates are in
-/// mean free paths, so every member is finite for sigma_a = 0 and a vanishing mean free path.
+/// & Irving 2011). Multiple scattering only; adding single scattering would violate energy conservation, as
+/// the total is already 1 at alpha' = 1. Lengths and rates are in mean free paths, so every member is finite
+/// for sigma_a = 0 and a vanishing mean free path.
 struct BetterDipole {
   double mean_free_path = 0;  ///< 1/sigma_t', mm: depth of the real source
   double strength = 0;        ///< alpha'^2

@@ -16,10 +16,8 @@
 namespace opaline {
 
 /// One channel; monostate: no scattering (sigma_s' = 0), and the diffuse part is exactly 0. A kind of profile
-/// is a file defining all of the functions
-/// below, and `Kind make_profile(const ReducedMedium&, std::type_identity<Kind>)`; a missing one does not
-/// compile. In the
-/// order of ProfileKind.
+/// is a file defining all of the functions below, and `Kind make_profile(const ReducedMedium&,
+/// std::type_identity<Kind>)`; a missing one does not compile. In the order of ProfileKind.
 using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion, BetterDipole,
                                     TabulatedProfile, Multipole, DirectionalDipole>;
 
@@ -34,8 +32,7 @@ double diffuse_reflectance_within(const ChannelProfile& profile, double r);
 double total_diffuse_reflectance(const ChannelProfile& profile);
 
 /// Distance beyond which the fraction `beyond` of the profile's total leaves: density 2 pi r R_d(r) / total
-/// for uniform
-/// `beyond`.
+/// for uniform `beyond`.
 /// in    beyond in (0, 1]; a scattering profile
 /// out   mm, finite, >= 0; relative error of the fraction under 1e-12 down to beyond = 1e-15
 /// from  normalized diffusion: Golubev's closed form; dipole: each source is z exp(-sigma_tr (d - z)) / d
@@ -43,12 +40,11 @@ double total_diffuse_reflectance(const ChannelProfile& profile);
 double sample_diffusion_distance(const ChannelProfile& profile, double beyond);
 
 /// Radius of a sphere around a point with random chords (isotropic, uniform) that intersect a surface element
-/// at distance r with the density R_d(r) / (2
-/// total) per area, for any orientation: density -pi R^2 R_d'(R) / total of R.
+/// at distance r with the density R_d(r) / (2 total) per area, for any orientation: density -pi R^2 R_d'(R) /
+/// total of R.
 /// in    u in (0, 1), v in (0, 1): independent
 /// from  expected intersections of an area dA inside a ball by such a chord: dA / (2 pi R^2) (Crofton); the
-///       line sampling of
-///       Walter et al. 2012, Bidirectional Lightcuts, builds on it
+///       line sampling of Walter et al. 2012, Bidirectional Lightcuts, builds on it
 double sample_chord_sphere_radius(const ChannelProfile& profile, double u, double v);
 
 /// Decay rate of the profile at large distances, 1/mm.

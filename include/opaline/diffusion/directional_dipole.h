@@ -11,10 +11,8 @@
 namespace opaline {
 
 /// Source along the refracted ray, and its image in a plane through entry and exit (Frisvad, Hachisuka &
-/// Kjeldsen 2014, Directional Dipole Model for
-/// Subsurface Scattering), in mean free paths. As published: negative values are clamped to 0; not
-/// reciprocal, and not energy
-/// conserving (published_total).
+/// Kjeldsen 2014, Directional Dipole Model for Subsurface Scattering), in mean free paths. As published:
+/// negative values are clamped to 0; not reciprocal, and not energy conserving (published_total).
 struct DirectionalKernel {
   double eta = 1;
   double decay = 0;          ///< sigma_tr
@@ -25,8 +23,7 @@ struct DirectionalKernel {
 };
 
 /// The kernel scaled to the exact albedo for diffuse light. Functions without a direction are means over
-/// diffuse light, from a table of some 3 ms of
-/// quadrature.
+/// diffuse light, from a table of some 3 ms of quadrature.
 struct DirectionalDipole : TableProfile {
   DirectionalKernel kernel;
 };
@@ -41,12 +38,11 @@ struct DirectedPlace {
 };
 
 /// Radiant exitance at `exit`, 1/mm^2, per unit of flux transmitted at `entry` from the direction
-/// `towards_light` (unit, outside). As for all profiles,
-/// the transmitted flux includes the boundary at the entry, and the exitance the boundary at the exit.
+/// `towards_light` (unit, outside). As for all profiles, the transmitted flux includes the boundary at the
+/// entry, and the exitance the boundary at the exit.
 /// in    dot(towards_light, entry.normal) > 0
 /// out   >= 0; where the modified normal is undefined, it is the entry's own (coincident entry and exit), or
-///       any perpendicular one
-///       (exit straight below the entry)
+///       any perpendicular one (exit straight below the entry)
 double directional_reflectance(const DirectionalDipole& profile, const DirectedPlace& entry,
                                const Vec3d& towards_light, const DirectedPlace& exit);
 /// Total reflectance for incidence at this cosine outside; by quadrature.

@@ -18,12 +18,9 @@ struct ShareTable {
 };
 
 /// A plate of a given thickness. The source is one point at the mean depth of first collisions within the
-/// plate, with the fraction of light colliding
-/// there: in a thick plate one mean free path deep, as in the dipole. Repeatedly mirrored at both
-/// extrapolated faces. Excludes light
-/// crossing the plate without a collision. Lengths in mean free paths, so every member but the thickness is
-/// finite for any mean
-/// free path.
+/// plate, with the fraction of light colliding there: in a thick plate one mean free path deep, as in the
+/// dipole. Repeatedly mirrored at both extrapolated faces. Excludes light crossing the plate without a
+/// collision. Lengths in mean free paths, so every member but the thickness is finite for any mean free path.
 struct Multipole {
   double mean_free_path = 0;                 ///< 1/sigma_t', mm
   double thickness = 0;                      ///< may be infinite: then equal to the dipole

@@ -16,10 +16,8 @@ struct RadialReference {
 };
 
 /// Exitance over the total, of integral 1 over the plane, lengths in mean free paths: the reference times
-/// exp(f(ln r)), with f a cubic spline through
-/// its values at knots, constant before the first and after the last of them. Decreasing. Near 0 it is a
-/// power law 1/r, far away
-/// the reference.
+/// exp(f(ln r)), with f a cubic spline through its values at knots, constant before the first and after the
+/// last of them. Decreasing. Near 0 it is a power law 1/r, far away the reference.
 class RadialTable {
  public:
   static constexpr double kFirst = 1e-3;  ///< the first knot

@@ -15,8 +15,7 @@ struct SlabLight {
 };
 
 /// An infinite plate in diffuse light, by random walks with isotropic scattering and Fresnel reflection at
-/// both faces; standard error of each fraction
-/// below 0.5 / sqrt(walks).
+/// both faces; standard error of each fraction below 0.5 / sqrt(walks).
 /// in    reduced_albedo in [0, 1]; optical_thickness in mean free paths, > 0; eta, inside over outside, > 0
 SlabLight slab_by_walks(double reduced_albedo, double optical_thickness, double eta, std::size_t walks);
 

@@ -21,12 +21,9 @@ struct CloudErrorInput {
 };
 
 /// Estimates the errors of a cloud of samples, from two trials. Sums at some 64 points are compared with a
-/// near field sqrt(2) times as wide, whose
-/// flatness error is twice as large and whose interpolated irradiance is smoother: the difference is about
-/// the error. A much
-/// smaller tolerance likewise gives the tree's error. The roughness is the deviation of 512 samples'
-/// irradiance from their
-/// neighbours' mean.
+/// near field sqrt(2) times as wide, whose flatness error is twice as large and whose interpolated irradiance
+/// is smoother: the difference is about the error. A much smaller tolerance likewise gives the tree's error.
+/// The roughness is the deviation of 512 samples' irradiance from their neighbours' mean.
 CloudError tell_cloud_error(const CloudErrorInput& input);
 
 }  // namespace opaline

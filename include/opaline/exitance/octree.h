@@ -19,8 +19,7 @@ struct FluxSample {
 };
 
 /// Nodes in depth-first order: the first child follows its parent, `skip` is the next node after a subtree.
-/// Arrays have lanes R, G, B and, last,
-/// area: each channel has its own flux-weighted centroid.
+/// Arrays have lanes R, G, B and, last, area: each channel has its own flux-weighted centroid.
 struct alignas(64) OctreeNode {
   std::array<float, 4> x{}, y{}, z{};  ///< centroids, mm; without flux: the area's centroid
   std::array<float, 4> flux{};  ///< sum of area x irradiance / Octree::flux_unit; last: sum of areas, mm^2

@@ -11,8 +11,7 @@
 namespace opaline {
 
 /// Least stake for which NearFieldSampler traces shadow rays from points far apart. Dense pixels use smaller
-/// stakes, but the estimated error of a
-/// cloud of samples does not depend on the image.
+/// stakes, but the estimated error of a cloud of samples does not depend on the image.
 inline constexpr float kRefinedStake = 0.02f;
 
 /// Stake: fraction of the exitance depending on the choice of the near field's irradiance, the point's own or

@@ -17,8 +17,8 @@
 namespace opaline {
 
 /// Exitance at vertices, interpolated to second order with slopes from their triangles; across creases and
-/// shadow edges, from a lattice of nodes on
-/// the triangle. Triangles large compared with the near field are divided first. Irradiance, near field and
+/// shadow edges, from a lattice of nodes on the triangle. Triangles large compared with the near field are
+/// divided first. Irradiance, near field and
 /// error are
 /// interpolated likewise.
 struct SurfaceCache {
@@ -59,18 +59,15 @@ struct SurfaceCache {
   std::size_t places() const { return vertices.size() + nodes.size(); }
 
   /// True if the exitance is too sharp for the cache here, beside a shadow edge. `at` then interpolates the
-  /// vertices; images should evaluate their points
-  /// instead.
+  /// vertices; images should evaluate their points instead.
   bool is_left_to_points(std::uint32_t mesh, std::uint32_t triangle, float u, float v) const;
 
   /// Exitance at a point of a triangle of the body, as from `evaluate`; irradiance: the point's own, if the
   /// cache needs it, or null to interpolate it.
   /// error p99 of the difference from brute force over max(it, 1e-3 of its p99) <= tolerance, per channel,
-  /// over the surface
-  ///       (test_surface_cache), without AddOwnLight; with it, where nothing sharper is cached
-  ///       (test_surface_caches), otherwise the
-  ///       mean is, and beside shadow edges it is as close to `direct` as shadow rays at each point
-  ///       (test_shadow_edge)
+  ///       over the surface (test_surface_cache), without AddOwnLight; with it, where nothing sharper is
+  ///       cached (test_surface_caches), otherwise the mean is, and beside shadow edges it is as close to
+  ///       `direct` as shadow rays at each point (test_shadow_edge)
   Exitance at(std::uint32_t mesh, std::uint32_t triangle, float u, float v,
               const RgbF* irradiance = nullptr) const;
 };

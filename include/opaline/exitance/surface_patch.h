@@ -21,8 +21,7 @@ inline std::uint32_t lattice_index(std::uint32_t segments, std::uint32_t i, std:
 }
 
 /// A point in one of the cells^2 triangles dividing a triangle. Inverted cells, between three others, have
-/// their first corner at (i + 1, j + 1) and
-/// opposite axes.
+/// their first corner at (i + 1, j + 1) and opposite axes.
 struct CellPlace {
   std::uint32_t i = 0, j = 0;
   bool upright = true;

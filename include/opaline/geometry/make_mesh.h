@@ -12,16 +12,14 @@ namespace opaline {
 /// Triangles of one shape in world space, checked and repaired.
 /// in    shape: any source; built-in shapes are tessellated to within 1e-3 of the true area
 /// out   at least one triangle; every position finite and below 1e18; zero-area and duplicate triangles
-///       dropped; parts wound
-///       outward, open ones if the shape has a medium; holes filled on request; normals by shape.normals
+///       dropped; parts wound outward, open ones if the shape has a medium; holes filled on request; normals
+///       by shape.normals
 /// error Error{bad_input} naming the file: missing, empty, truncated or unreadable mesh, NaN or huge
-/// coordinates, index out of
-///       range, no area; missing UVs if required
+///       coordinates, index out of range, no area; missing UVs if required
 CheckedMesh make_mesh(const Shape& shape, MeshUvs uvs = MeshUvs::unread);
 
 /// Cached results of loading a shape, reused after an edit: its triangles as read, and the results of checks
-/// independent of vertex positions. Some 100
-/// bytes per vertex.
+/// independent of vertex positions. Some 100 bytes per vertex.
 class MeshMemory {
  public:
   MeshMemory();

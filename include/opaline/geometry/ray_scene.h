@@ -42,8 +42,7 @@ struct TracedRay {
 };
 
 /// Quality of a ray structure. Both give the same hits, up to the choice between two triangles at equal
-/// distance. `quick` builds faster and traces slower,
-/// incoherent rays most.
+/// distance. `quick` builds faster and traces slower, incoherent rays most.
 enum class RayBuild { careful, quick };
 
 /// Ray queries against the meshes of a world. Batches of coherent rays are fastest (256 at once).
@@ -67,14 +66,12 @@ class RayScene {
   SurfacePoint surface_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v) const;
 
   /// Offset of a ray's origin from the surface of a mesh, along the geometric normal: 2^-18 of the mesh's
-  /// diagonal, more where floats far from the middle
-  /// of the world are coarser.
+  /// diagonal, more where floats far from the middle of the world are coarser.
   float offset(const SurfacePoint& point) const { return point.offset > 0 ? point.offset : largest_offset_; }
   float offset(std::uint32_t mesh, const Vec3f& position) const;
 
   /// Number of rays so far and CPU time inside Embree, all threads: the minimum of a render pass. Times every
-  /// eighth batch only, as the clock costs as much
-  /// as ten rays.
+  /// eighth batch only, as the clock costs as much as ten rays.
   struct Statistics {
     std::uint64_t rays = 0;
     double seconds = 0;

@@ -13,18 +13,16 @@
 namespace opaline {
 
 /// Every shape's mesh in the order of Scene::shapes, with the origin near their common centre and in a
-/// suitable unit of length: floats far from the
-/// origin cancel, and squares and cubes of very small or large lengths overflow or underflow. All later
-/// stages compute in this
-/// space. A point p of it is p * unit + origin in the scene.
+/// suitable unit of length: floats far from the origin cancel, and squares and cubes of very small or large
+/// lengths overflow or underflow. All later stages compute in this space. A point p of it is p * unit +
+/// origin in the scene.
 struct World {
   std::vector<Mesh> meshes;
   std::vector<MeshReport> reports;
   std::vector<Bounds> boxes;           ///< one per mesh, in the scene, mm
   std::vector<MeshMeasures> measures;  ///< one per mesh, in this space
   /// Centre of the scene, rounded to a multiple of a step. The step is a power of two between 1/8 and 1/4 of
-  /// the diagonal, so a small movement of one object
-  /// usually keeps the origin, and the bits of the others.
+  /// the diagonal, so a small movement of one object usually keeps the origin, and the bits of the others.
   Vec3d origin{};       ///< mm
   double unit = 1;      ///< mm; a power of 1024: translucent bodies, or the scene, have 1 to 1024 units
   double diagonal = 0;  ///< diagonal of the bounding box of everything, units; 0 for an empty scene

@@ -21,8 +21,7 @@ RgbF brightness_ordered_colour(double place);
 constexpr double darkest_error = 1e-4, brightest_error = 1;
 
 /// R, G, B for write_png at exposure 0: each pixel's largest error over the channels as a colour. Grey for
-/// uncovered pixels, green for covered pixels
-/// with a non-finite value.
+/// uncovered pixels, green for covered pixels with a non-finite value.
 /// in    errors of `layer`'s pixels; object: a flag per pixel
 Image error_colours(const RelativeErrors& errors, const Layer& layer,
                     const std::vector<std::uint8_t>& object);

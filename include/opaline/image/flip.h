@@ -22,8 +22,7 @@ std::vector<float> flip(const Layer& picture, const Layer& reference, double exp
                         double pixels_per_degree = flip_pixels_per_degree);
 
 /// Exposure in stops scaling the p99 of the brightest channel over the covered pixels to 1, a typical choice
-/// for viewing the reference. 0 if the p99 is
-/// not positive.
+/// for viewing the reference. 0 if the p99 is not positive.
 double display_exposure(const Layer& reference, const std::vector<std::uint8_t>& object);
 
 }  // namespace opaline

@@ -28,8 +28,7 @@ struct WriteReport {
 };
 
 /// Writes an EXR with all layers and metadata; the bytes depend on the image alone (no time stamp). Colour
-/// and N in half on request; P, Z,
-/// irradiance, variance and Cryptomatte's channels always in float.
+/// and N in half on request; P, Z, irradiance, variance and Cryptomatte's channels always in float.
 /// error Error{run_failed} naming the file: not writable, disk full; the old file remains unchanged
 WriteReport write_exr(const std::string& path, const Image& image, bool half);
 

@@ -44,8 +44,7 @@ struct RelativeErrors {
 };
 
 /// Relative errors of an image against its reference. The floor is 1e-3 of the p99 of |b| over the compared
-/// pixels of the channel; if that is 0,
-/// 1e-3 of the largest |b|, or of the largest |a| if all b are 0.
+/// pixels of the channel; if that is 0, 1e-3 of the largest |b|, or of the largest |a| if all b are 0.
 /// in    two layers of the same size and number of channels, linear; object: a flag per pixel
 RelativeErrors relative_errors(const Layer& picture, const Layer& reference,
                                const std::vector<std::uint8_t>& object);
@@ -84,27 +83,22 @@ struct HalvesComparison {
 };
 
 /// Error of h against the mean d of two references with independent noise, d1 and d2: the mean of (h - d1)(h
-/// - d2) / (d^2 + (0.01 m)^2) over the
-/// covered pixels, m the largest d of the channel there. The expectation of the product is the squared error
-/// without noise. Noise
-/// n (half_noise) biases the quotient by a relative part of the order of n^2, and by 1.5 n^4 (Gaussian n): at
-/// n = 5 % the latter
-/// alone appears as an error of 0.3 %.
+/// - d2) / (d^2 + (0.01 m)^2) over the covered pixels, m the largest d of the channel there. The expectation
+/// of the product is the squared error without noise. Noise n (half_noise) biases the quotient by a relative
+/// part of the order of n^2, and by 1.5 n^4 (Gaussian n): at n = 5 % the latter alone appears as an error of
+/// 0.3 %.
 /// in    three layers of the same size and number of channels, linear; object: a flag per pixel
 /// out   if all d are 0, m and mean(d) are those of |h|: large, not infinite
 HalvesComparison compare_with_halves(const Layer& h, const Layer& d1, const Layer& d2,
                                      const std::vector<std::uint8_t>& object);
 
 /// Error estimate against one noisy reference d of known variance v, for the worst channel: the root of the
-/// mean of ((h - d)^2 - v) / (r^2 + (0.01
-/// m)^2) over the covered pixels, m the largest d of the channel there. r^2 is d^2 for v = 0; in pixels with
-/// noise of 5 % or more
-/// it is the mean of d^2 - v over the neighbours, as the pixel's own noise would bias the quotient. 0 if the
-/// noise explains the
-/// whole difference.
+/// mean of ((h - d)^2 - v) / (r^2 + (0.01 m)^2) over the covered pixels, m the largest d of the channel
+/// there. r^2 is d^2 for v = 0; in pixels with noise of 5 % or more it is the mean of d^2 - v over the
+/// neighbours, as the pixel's own noise would bias the quotient. 0 if the noise explains the whole
+/// difference.
 /// in    three layers of the same size and number of channels, linear; object: a flag per pixel. Pixels not
-///       finite in all three
-///       are ignored
+///       finite in all three are ignored
 double error_beyond_noise(const Layer& h, const Layer& d, const Layer& variance,
                           const std::vector<std::uint8_t>& object);
 

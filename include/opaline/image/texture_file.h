@@ -15,8 +15,7 @@
 namespace opaline {
 
 /// Filter footprint: a position and the two sides of the parallelogram around it. u to the right, v downwards
-/// from the upper left corner, 1 the full
-/// image.
+/// from the upper left corner, 1 the full image.
 struct TexturePlace {
   float u = 0, v = 0;
   std::array<float, 2> side_x{}, side_y{};
@@ -44,18 +43,15 @@ struct TextureEncoding {
 class CachedPicture;
 
 /// A repeated image, or several side by side: "<UDIM>" in a file's name represents 1001 + column + 10 x row,
-/// rows counted upwards. Texels are read on
-/// demand at the appropriate size, in a cache of limited size.
+/// rows counted upwards. Texels are read on demand at the appropriate size, in a cache of limited size.
 class TextureFile {
  public:
   /// in    path: EXR, HDR, PNG, JPEG or TIFF, a name with "<UDIM>", or "asset.glb#image/3" by its index in
-  ///       the asset; space: not
-  ///       automatic
+  ///       the asset; space: not automatic
   /// out   the same object while the file is unchanged and in use; the image is the display window, 0 outside
   ///       the data window
   /// error Error{bad_input} naming the file: missing, not a regular file, damaged, not an image, no colours
-  /// or several layers of
-  ///       them, primaries not spanning a colour space
+  ///       or several layers of them, primaries not spanning a colour space
   static std::shared_ptr<const TextureFile> open(const std::string& path, ColorSpace space,
                                                  TextureContent content = TextureContent::data);
   /// Colour space of a file without a declared one: linear for floats, otherwise sRGB.

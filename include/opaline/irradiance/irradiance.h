@@ -24,34 +24,28 @@ struct IrradianceInput {
   std::uint64_t seed = 0;
   Monitor* monitor = nullptr;
   /// Uses the triangles' normals for cosines and Ft, conserving the incident flux. Interpolated normals
-  /// change it where the surface bends within few
-  /// triangles.
+  /// change it where the surface bends within few triangles.
   bool geometric_normals = false;
 };
 
 /// E(x) = integral of L_i Ft(omega_i) cos d omega is linear in each light's colour, and Ft is equal for all
-/// channels: one number per sample and light
-/// suffices, and a change of colour traces no ray.
+/// channels: one number per sample and light suffices, and a change of colour traces no ray.
 struct LightTransfer {
   /// E per unit emission at each sample, >= 0; beside an edge of this light's shadow, the mean over its
-  /// Voronoi cell (with twice the rays for an area light,
-  /// not included in relative_error).
+  /// Voronoi cell (with twice the rays for an area light, not included in relative_error).
   std::vector<float> weights;
   /// RMS over the samples of the estimated standard error, over the mean; 0 for delta lights (is_delta), and
-  /// for a single light sample, without an
-  /// estimate.
+  /// for a single light sample, without an estimate.
   double relative_error = 0;
   /// Relative bias of this light's total (area x weight, summed over the samples) from replacing weights
-  /// beside shadow edges by means over cells. With few
-  /// rays per sample, noise also selects samples for replacement, and the total becomes biased. Excludes
-  /// changes within their own
-  /// noise, and changes not explained by the noise of rays.
+  /// beside shadow edges by means over cells. With few rays per sample, noise also selects samples for
+  /// replacement, and the total becomes biased. Excludes changes within their own noise, and changes not
+  /// explained by the noise of rays.
   double edge_shift = 0;
 };
 
 /// One transfer per light. Cosines and Ft use the shading normal unless requested otherwise; tests of the
-/// light's side use the geometric one.
-/// Everything in the scene is opaque to shadow rays.
+/// light's side use the geometric one. Everything in the scene is opaque to shadow rays.
 std::vector<LightTransfer> compute_irradiance(const IrradianceInput& input);
 
 /// E per sample, W/mm^2, per unit area of the surface: the sum over lights of emission x weight.
@@ -66,8 +60,7 @@ struct PointIrradianceInput {
   int light_samples = 64;
   std::uint64_t seed = 0;
   /// Unless empty: one per point, receives the estimated variance of its irradiance, per channel, in double:
-  /// the square of a brightness exceeds float's
-  /// range.
+  /// the square of a brightness exceeds float's range.
   std::span<Rgb> variance = {};
   /// Unless empty: irradiance from other surfaces, one per point. Already included elsewhere: irradiance_at
   /// does not add it.

@@ -36,10 +36,8 @@ constexpr std::uint64_t permuted(std::uint64_t i, std::uint64_t count, std::uint
 }
 
 /// Key of a camera ray within its pixel: the rays of a pixel use successive parts of one sequence, so the
-/// pixel's mean has the error of all their light
-/// samples as one set. The order of parts is random for each pixel: its ray positions come from the same
-/// sequence, and would
-/// correlate with light directions.
+/// pixel's mean has the error of all their light samples as one set. The order of parts is random for each
+/// pixel: its ray positions come from the same sequence, and would correlate with light directions.
 /// in    ray: the rays of a pixel have successive numbers, from a multiple of samples_per_pixel
 inline std::uint64_t key_in_pixel(std::uint64_t ray, std::uint64_t samples_per_pixel) {
   if (samples_per_pixel == 1) return ray;

@@ -14,20 +14,17 @@
 namespace opaline {
 
 /// A lat-long image, twice as wide as high: +y at the top, +z in the middle, +x to its left, as in OpenEXR
-/// (ImfEnvmap.h). Importance sampling for a
-/// surface is by the mean of the image's channels times the cosine: first one of at most 64 x 32 blocks, from
-/// a table for the
-/// nearest of 17 x 17 normals, then a pixel of the block by its brightness. (The normals are those of an
-/// unfolded octahedron:
-/// Cigolle et al. 2014; floor and walls are among them.)
+/// (ImfEnvmap.h). Importance sampling for a surface is by the mean of the image's channels times the cosine:
+/// first one of at most 64 x 32 blocks, from a table for the nearest of 17 x 17 normals, then a pixel of the
+/// block by its brightness. (The normals are those of an unfolded octahedron: Cigolle et al. 2014; floor and
+/// walls are among them.)
 class EnvironmentPicture {
  public:
   /// in    pixels: rows from the top, all finite and >= 0
   EnvironmentPicture(std::size_t width, std::size_t height, std::vector<RgbF> pixels);
 
   /// Reads the display window of a file, black outside the data window. Returns the same object while the
-  /// file is unchanged and in use. Negative
-  /// radiance becomes 0, see warning().
+  /// file is unchanged and in use. Negative radiance becomes 0, see warning().
   /// error Error{bad_input}: as read_image; not the shape of an environment; a non-finite value
   static std::shared_ptr<const EnvironmentPicture> read(const std::string& path);
   const std::string& path() const { return path_; }  ///< path of the source file; empty: none
@@ -36,8 +33,7 @@ class EnvironmentPicture {
   RgbF radiance(const Vec3d& direction) const;
 
   /// A direction, and radiance over its density: their mean over the unit square, for directions above the
-  /// surface, is the integral over all
-  /// directions above it.
+  /// surface, is the integral over all directions above it.
   struct Sample {
     Vec3d direction;
     RgbF weight;
@@ -72,8 +68,7 @@ class EnvironmentPicture {
   float density(const Vec3d& direction, const Vec3d& normal) const;
 
   /// Cumulative table of the blocks reflected by a lobe, and of the brightest ones, by brightness and lobe.
-  /// Empty if the lobe is wide enough for cosine
-  /// sampling, or if everything it reflects is dark.
+  /// Empty if the lobe is wide enough for cosine sampling, or if everything it reflects is dark.
   struct InLobe {
     std::vector<std::uint16_t> blocks;  ///< in order
     std::vector<float> ends;

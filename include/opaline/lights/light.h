@@ -13,8 +13,7 @@
 namespace opaline {
 
 /// One sample of a light at a point: the contribution to irradiance is weight x cos x Ft x (1 if visible) x
-/// emission, with the light's colour
-/// (intensity, irradiance or radiance) as emission.
+/// emission, with the light's colour (intensity, irradiance or radiance) as emission.
 struct LightSample {
   Vec3f direction;  ///< unit, from the point towards the light
   float distance;   ///< infinity for directional lights and surroundings
@@ -32,8 +31,7 @@ Light with_emission(const Light& light, const Rgb& emission);
 bool is_delta(const Light& light);
 
 /// Shadow rays from a point to the light, given `light_samples` for a light with an area: 1 for delta lights;
-/// a third for a tree of delta lights
-/// (ManyLights).
+/// a third for a tree of delta lights (ManyLights).
 int shadow_rays(const Light& light, int light_samples);
 
 /// True if rays can hit the light: it has an area or is an environment.
@@ -53,8 +51,7 @@ struct Lobe {
 float mirrored(const Lobe& lobe, float cosine);
 
 /// Candidate directions per shadow ray for a specular lobe. An environment with many small lights has several
-/// candidates, with one chosen for the
-/// ray; one if the lobe has a table of the environment.
+/// candidates, with one chosen for the ray; one if the lobe has a table of the environment.
 int lobe_draws(const Light& light, const Lobe& lobe);
 
 /// True for the channels of one image, or of one light tree: their samples have the same directions.
@@ -70,8 +67,7 @@ Light recentred(const Light& light, const Vec3d& origin, double unit = 1);
 /// Samples a light from a point.
 /// in    unit_square: in [0, 1)^2, unused by delta lights; samples: number sharing the light's solid angle
 ///       normal: unit; constant environments are sampled by its cosine, all others by solid angle (sphere) or
-///       area
-///       (quad)
+///       area (quad)
 LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& normal,
                          std::array<double, 2> unit_square, int samples);
 

@@ -55,8 +55,8 @@ class LightTree {
     RgbF unshadowed{}, mean_unshadowed{};
   };
   /// Samples drawn.size() lights, or fewer if fewer contribute, in a similar order for neighbouring points. A
-  /// delta light with an expected number of 1 is
-  /// sampled once; if they are no more than drawn.size(), each is sampled.
+  /// delta light with an expected number of 1 is sampled once; if they are no more than drawn.size(), each is
+  /// sampled.
   /// in    random: in [0, 1); key: shared by draws with stratified `random`, selects the positions in the
   ///       strata
   void draw(const Place& at, double random, std::uint64_t key, std::span<Drawn> drawn) const;

@@ -19,9 +19,8 @@ struct MeasuredError {
 };
 
 /// Measures the error of samples, trees and surface caches of a prepared session at some 200 points of the
-/// image against Method::direct, which shares
-/// only mesh and profile with them. Continues until its noise is 0.7 times the expected error, or for
-/// kMostVerifySamples.
+/// image against Method::direct, which shares only mesh and profile with them. Continues until its noise is
+/// 0.7 times the expected error, or for kMostVerifySamples.
 /// in    session: hierarchical, prepared; expected: relative, > 0
 /// out   if the noise hides the error, a third of the noise is reported, and is in standard_error
 /// error Error{interrupted}

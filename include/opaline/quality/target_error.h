@@ -21,19 +21,15 @@ struct TargetError {
   bool is_short_of_rays = false;  ///< limited by kMostShadowRays
   bool sees_translucent = true;   ///< false: no error to predict
   /// For reach_volume_error: bound of the model error, none if a mesh is open or too thin; and the predicted
-  /// error: the target, or the least possible
-  /// one with this model.
+  /// error: the target, or the least possible one with this model.
   std::optional<double> model = {};
   double promised = 0;
 };
 
 /// Edits the session to the scene with sample spacing, tolerance, evaluator and, if shadow rays are too few,
-/// light_samples chosen for the target.
-/// Starts with a typical number of samples and increases it until the estimate of a small image
-/// (estimated_relative_error) is
-/// within the target with a margin. Chooses the evaluator only if the scene leaves it open. Bytes do not
-/// depend on the number of
-/// threads.
+/// light_samples chosen for the target. Starts with a typical number of samples and increases it until the
+/// estimate of a small image (estimated_relative_error) is within the target with a margin. Chooses the
+/// evaluator only if the scene leaves it open. Bytes do not depend on the number of threads.
 /// in    scene: hierarchical, evaluator not classic (no tolerance); its samples, sample_spacing and tolerance
 ///       are replaced;
 ///       target: relative, > 0
@@ -42,12 +38,9 @@ struct TargetError {
 TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);
 
 /// Like reach_error for Method::volume_diffusion, against random walks (Method::volume). The target is for
-/// the sum of the model error, a bound from
-/// the plan, and the estimated error of cells, samples and shadow rays. Chooses cell_size, sample_spacing and
-/// light_samples,
-/// trying coarse cells first. If the model error alone exceeds the target, chooses settings for the least
-/// possible error, and
-/// sets `reached` to false.
+/// the sum of the model error, a bound from the plan, and the estimated error of cells, samples and shadow
+/// rays. Chooses cell_size, sample_spacing and light_samples, trying coarse cells first. If the model error
+/// alone exceeds the target, chooses settings for the least possible error, and sets `reached` to false.
 /// in    scene: volume_diffusion; target: relative, > 0
 /// error as Session::edit and Session::prepare
 TargetError reach_volume_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);

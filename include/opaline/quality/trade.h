@@ -26,12 +26,10 @@ struct TradePoint {
 void set_point(Settings& settings, const TradePoint& point);
 
 /// Tries settings from a sixteenth of the scene's samples to four times as many, each with a matching
-/// tolerance, and Method::lambert. Measures the
-/// cost of preparing; predicts the cost of shading from some tiles. Estimates errors from a small image: by
-/// its own error layer,
-/// for lambert by the difference from the image with most samples. All errors are against the converged
-/// diffusion of the scene,
-/// the limit of Method::direct, and exclude the model error.
+/// tolerance, and Method::lambert. Measures the cost of preparing; predicts the cost of shading from some
+/// tiles. Estimates errors from a small image: by its own error layer, for lambert by the difference from the
+/// image with most samples. All errors are against the converged diffusion of the scene, the limit of
+/// Method::direct, and exclude the model error.
 /// in    scene: any method; the trade-off is of `hierarchical`. session: is edited; without a cache
 /// out   tried: called with each point, in order of samples, lambert last; never if no translucent shape is
 ///       visible

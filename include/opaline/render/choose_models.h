@@ -30,8 +30,7 @@ struct BodyModel {
   bool is_chosen = false;  ///< false: named by the scene
   std::string reason;
   /// Rms error of the radiant exitance against random walks over the mean, worst channel; none: unknown, for
-  /// profiles named by the scene and for open
-  /// meshes.
+  /// profiles named by the scene and for open meshes.
   std::optional<double> expected_error;
   std::optional<double> expected_error_of_diffusion;  ///< the same of Method::volume_diffusion
 };
@@ -45,8 +44,7 @@ std::string model_error_text(const BodyModel& model, Method method);
 BodyModel choose_model(const Medium& medium, const BodyShape& shape);
 
 /// Chooses the open profiles (Medium::profile is none) of a scene's media by their bodies. A medium with
-/// different choices becomes several media of
-/// the same name.
+/// different choices becomes several media of the same name.
 /// reference: bodies of another frame; bodies of the same names use their profiles
 void choose_models(Scene& scene, const World& world, std::span<const GroupPlan> reference = {});
 

@@ -31,8 +31,7 @@ struct DirectInput {
 
 struct DirectResult {
   /// Layers R G B A, diffuse, specular, albedo, N, P, Z, and variance of the diffuse radiance's mean,
-  /// infinite or 0 beyond float's range (radiances
-  /// beyond 1e19 or below 1e-18).
+  /// infinite or 0 beyond float's range (radiances beyond 1e19 or below 1e-18).
   RenderResult picture;
   std::size_t entry_samples = 0;  ///< a pixel
   double relative_error = 0;      ///< see relative_noise; infinite after a single pass
@@ -42,11 +41,9 @@ struct DirectResult {
 std::size_t entry_samples_per_pass(const Film& film);
 
 /// Continues `state` (default: empty) until Settings::entry_samples or Settings::until_error; state is that
-/// of the last whole pass, also if the
-/// monitor interrupts. The image depends on the scene and the number of passes alone, not on interruptions or
-/// threads. Unbiased:
-/// Russian roulette replaces weights of entries under 5 % of a typical one. Light paths and boundary as in
-/// `render`.
+/// of the last whole pass, also if the monitor interrupts. The image depends on the scene and the number of
+/// passes alone, not on interruptions or threads. Unbiased: Russian roulette replaces weights of entries
+/// under 5 % of a typical one. Light paths and boundary as in `render`.
 DirectResult render_direct(const DirectInput& input, DirectState& state);
 
 /// Mean of a pixel's passes and its variance; pixel: index into DirectState::sums.

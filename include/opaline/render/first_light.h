@@ -13,8 +13,8 @@ namespace opaline {
 Image coarse_picture(const RenderInput& input, int stride);
 
 /// The image from a sixteenth of the plan's samples, placed quickly, and one camera ray for 8 x 8 pixels or
-/// more: within a tenth of the CPU time of
-/// samples and image (test_first_light). `direct` uses the hierarchical preview.
+/// more: within a tenth of the CPU time of samples and image (test_first_light). `direct` uses the
+/// hierarchical preview.
 /// out   as coarse_picture
 Image first_light(const PrecomputeInput& input);
 

@@ -60,8 +60,8 @@ inline RgbF pixel_error(const PixelSample& sum, float all) {
 }
 
 /// Writes the mean of `count` samples to one pixel: radiance and coverage over all of them; albedo, normal,
-/// position, depth and irradiance over those
-/// with a hit, counted by sum.coverage. Returns 1 if the pixel's radiance is not finite, else 0.
+/// position, depth and irradiance over those with a hit, counted by sum.coverage. Returns 1 if the pixel's
+/// radiance is not finite, else 0.
 inline std::size_t store_pixel(const PixelSample& sum, int count, const MethodLayers& layers, float* out) {
   const float all = 1.0f / float(count), seen = sum.coverage > 0 ? 1.0f / sum.coverage : 0.0f;
   const auto put = [&out](const Vec3f& value, float scale) {

@@ -12,8 +12,7 @@
 namespace opaline {
 
 /// Warns of images without visible shapes, with the shapes' position; and of unlit, too dark or too bright
-/// ones, with lights that are distant, off or
-/// given in another unit of length. One line each.
+/// ones, with lights that are distant, off or given in another unit of length. One line each.
 /// in    image: of the scene, with R G B and the coverage A
 std::vector<std::string> picture_warnings(const Scene& scene, const World& world, const Image& image);
 

@@ -44,10 +44,8 @@ struct Plan {
 };
 
 /// Plans bodies and sample counts unless set: a spacing of the diffuse mean free path, limited to one to one
-/// and a half mean free paths, in the
-/// channel with the least; at least 10,000 samples. The sampling error is then under 1 % (mean) on all
-/// example scenes
-/// (test_default_samples).
+/// and a half mean free paths, in the channel with the least; at least 10,000 samples. The sampling error is
+/// then under 1 % (mean) on all example scenes (test_default_samples).
 Plan make_plan(const Scene& scene, const World& world);
 
 }  // namespace opaline

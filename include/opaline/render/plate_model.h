@@ -26,8 +26,7 @@ struct PlateModel {
 };
 
 /// Bodies thinner than ten mean free paths in some channel and many times wider than thick; about 0.02 s of
-/// CPU each, 1 s at an index of refraction of
-/// 10.
+/// CPU each, 1 s at an index of refraction of 10.
 std::vector<PlateModel> compare_plates(const Scene& scene, const Plan& plan);
 
 }  // namespace opaline

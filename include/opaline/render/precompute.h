@@ -66,8 +66,8 @@ Rgb reduced_absorption(Medium medium);
 /// A body's surface cut by the cells of its plan.
 CutSurface cut_surface(const PrecomputeInput& input, const Body& body);
 /// Irradiance at each body's samples from surfaces: translucent ones from their trees, opaque ones under
-/// direct light; one list per body. view: cache
-/// with HeldView::at_samples for the same samples, extended; or null
+/// direct light; one list per body. view: cache with HeldView::at_samples for the same samples, extended; or
+/// null
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
                                                   HeldView* view = nullptr);
 
@@ -76,8 +76,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
 std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights);
 
 /// Radiant exitance at arbitrary points of a body's surface. For mean free paths below the sample spacing,
-/// `render` traces shadow rays for the
-/// irradiance at its points; this function interpolates it.
+/// `render` traces shadow rays for the irradiance at its points; this function interpolates it.
 /// in    body: prepared; points: world space, mm; normals: unit, outward, one per point
 /// out   M_o in W/mm^2, one per point
 std::vector<RgbF> radiant_exitance(const Body& body, const World& world, std::span<const Vec3d> points,

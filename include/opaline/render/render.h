@@ -51,12 +51,10 @@ struct RenderResult {
 
 /// Radiance towards the camera.
 /// `hierarchical`: translucent surfaces emit M_o Ft(omega_o) / (pi (1 - F_bar)) with M_o from the trees;
-/// `lambert`: the same
-/// with M_o = total diffuse reflectance x E at the point itself, the limit of a vanishing mean free path and
-/// the cheapest
-/// method. Both add the specular reflection of area lights and environments, weight F. Opaque surfaces are
-/// Lambertian. Lights
-/// illuminate all surfaces; with settings.bounces, surfaces illuminate each other once.
+/// `lambert`: the same with M_o = total diffuse reflectance x E at the point itself, the limit of a vanishing
+/// mean free path and the cheapest method. Both add the specular reflection of area lights and environments,
+/// weight F. Opaque surfaces are Lambertian. Lights illuminate all surfaces; with settings.bounces, surfaces
+/// illuminate each other once.
 RenderResult render(const RenderInput& input);
 
 /// For RenderInput::bounced, given the other inputs.

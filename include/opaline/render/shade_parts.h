@@ -10,8 +10,7 @@
 namespace opaline {
 
 /// Tiles of an image, row by row. They are on a fixed grid of the full image and complete even in a crop:
-/// points evaluated together are the same, and so
-/// are a crop's pixels.
+/// points evaluated together are the same, and so are a crop's pixels.
 std::vector<Rectangle> tiles_of(const Film& film);
 
 /// Intersection of two overlapping rectangles.

@@ -34,7 +34,7 @@ class SurfaceTextures {
  public:
   /// Both must outlive the object.
   /// error Error{bad_input}: UVs reach a missing tile of a texture, reported at the texture's position in the
-  /// file
+  ///       file
   SurfaceTextures(const Scene& scene, const World& world);
 
   /// True if no surface has other values at other points, a tint, or an anisotropic boundary.
@@ -54,8 +54,7 @@ class SurfaceTextures {
   Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
 
   /// Factors on light entering and exiting at a point. An opaque surface's reflectance texture and vertex
-  /// colours apply on exit; a body's subsurface
-  /// weight applies once.
+  /// colours apply on exit; a body's subsurface weight applies once.
   SurfaceTint tint(const Place& place) const;
   /// Fraction of the light diffusely reflected at the surface of a body, instead of entering.
   RgbF reflected(const Place& place) const;

@@ -34,12 +34,10 @@ struct CarriedSamples {
 };
 
 /// Keeps each sample at its barycentrics, with the normal there. On a deforming surface, its cell deforms as
-/// well: parts of each triangle stay with their
-/// samples and keep their fraction of it, giving current areas and centroids. Samples of one sheet closer
-/// than kClosest radii
-/// are removed; samples are added where a ball of kWidest radii is empty; the others stay, and all cells are
-/// recomputed. The
-/// result depends on the two surfaces alone, not on intermediate ones.
+/// well: parts of each triangle stay with their samples and keep their fraction of it, giving current areas
+/// and centroids. Samples of one sheet closer than kClosest radii are removed; samples are added where a ball
+/// of kWidest radii is empty; the others stay, and all cells are recomputed. The result depends on the two
+/// surfaces alone, not on intermediate ones.
 CarriedSamples carry_samples(const CarryInput& input);
 
 inline constexpr float kClosest = 0.6f, kWidest = 1.5f;

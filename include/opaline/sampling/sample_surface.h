@@ -43,15 +43,14 @@ struct SurfaceSamples {
 };
 
 /// Cosine of 120 degrees: two normals belong to one sheet unless they face away from each other. The two
-/// faces of a thin plate are sampled separately,
-/// the sides of a crease together.
+/// faces of a thin plate are sampled separately, the sides of a crease together.
 inline bool same_sheet(const Vec3f& a, const Vec3f& b) {
   return dot(a, b) > -0.5f;
 }
 
 /// Samples at positions depending on the surface and the seed alone, not on the view, the lights, or threads.
-/// out   every triangle's centroid has a sample of its sheet within two radii
-///       cells: null, or receives each sample's cell, which takes a sixth more time
+/// out   every triangle's centroid has a sample of its sheet within two radii cells: null, or receives each
+///       sample's cell, which takes a sixth more time
 /// from  dart throwing in phase groups (Wei 2008) over a hash grid; areas: surface_shares
 SurfaceSamples sample_surface(const SamplingInput& input, SurfaceCells* cells = nullptr);
 

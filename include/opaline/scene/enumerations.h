@@ -135,8 +135,7 @@ constexpr NameList names_of(FilmColorSpace) {
 }
 
 /// Position of a translucent body's tint t: on entry (pre), on exit (post), or its root on both. With
-/// `medium`, a texture of the medium's colour
-/// varies the medium itself instead.
+/// `medium`, a texture of the medium's colour varies the medium itself instead.
 enum class TextureMix { pre, post, split, medium };
 inline constexpr std::array<std::string_view, 4> kTextureMixNames{"pre", "post", "split", "medium"};
 constexpr NameList names_of(TextureMix) {

@@ -14,11 +14,9 @@ namespace opaline {
 /// Reads and checks a scene file, or an asset (GLB, glTF, OBJ) converted by import_asset; lengths are
 /// converted to mm by its mm_per_unit.
 /// in    overrides: "media.marble.eta=1.4": a path of keys (array elements by index or by "name") and a JSON
-///       value (other texts
-///       are strings), applied before checking; frame: of keyed values and mesh sequences
+///       value (other texts are strings), applied before checking; frame: of keyed values and mesh sequences
 /// error Error{bad_input} with file, line and column, the expected and the given value, and the nearest valid
-/// name: no such file,
-///       broken JSON, unknown or duplicate key, wrong type, value out of range
+///       name: no such file, broken JSON, unknown or duplicate key, wrong type, value out of range
 Scene load_scene(const std::string& path, std::span<const std::string> overrides = {}, int frame = 1);
 
 /// The same from text; `file` names it in messages, and its folder is the base of relative mesh paths.
@@ -30,8 +28,7 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
 std::string read_scene_text(const std::string& path);
 
 /// A scene's text with the overrides applied, as JSON without comments; numbers keep their spelling. In a
-/// file of the same folder, it gives the same
-/// scene as text and overrides.
+/// file of the same folder, it gives the same scene as text and overrides.
 /// frame: replaces keyed values by their value at this frame; none: keeps them
 /// error as parse_scene, for checks before those of values
 std::string merged_scene(std::string_view text, const std::string& file,
@@ -44,8 +41,7 @@ std::string edited_scene(std::string_view text, const std::string& file,
                          std::span<const std::string> overrides);
 
 /// Replaces the last run of two or more # in a path by the frame's number, padded with zeros:
-/// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths are
-/// unchanged.
+/// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths are unchanged.
 std::string with_frame(const std::string& path, int frame);
 
 /// A single medium: a JSON object as in a scene's `media`; its name is "medium".

@@ -10,8 +10,7 @@
 namespace opaline {
 
 /// " (did you mean 'x' or 'y'?)" for candidates with this name in other programs, otherwise the closest one
-/// in edit distance, otherwise those ending
-/// with this word; or nothing.
+/// in edit distance, otherwise those ending with this word; or nothing.
 std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates);
 
 /// The same for an unknown key of a section: in the scene, camera, film and settings it also suggests paths

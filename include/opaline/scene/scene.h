@@ -51,8 +51,7 @@ struct Texture {
 };
 
 /// An anisotropic boundary, with different roughness along and across a tangent: the direction of u, or
-/// without UVs the horizontal one, perpendicular
-/// to +y.
+/// without UVs the horizontal one, perpendicular to +y.
 struct Grain {
   double anisotropy = 0;  ///< [0, 1], specular_roughness_anisotropy of OpenPBR: 0 is isotropic
   double rotation = 0;    ///< rotation of the tangent about the normal, counterclockwise, degrees
@@ -90,8 +89,7 @@ struct Medium {
   std::optional<ProfileKind> profile = ProfileKind::dipole;  ///< none: chosen for each body (choose_models.h)
   SourcePlace place{};
   /// Mean cosine g of the scattering angle, (-1, 1), with reduced coefficients. Used by random walks only;
-  /// diffusion depends on (1 - g) sigma_s
-  /// alone.
+  /// diffusion depends on (1 - g) sigma_s alone.
   double scatter_anisotropy = 0;
   /// Thickness of the plates and bodies made of it, mm, > 0; infinite: thick. Used by ProfileKind::multipole
   /// only.
@@ -120,8 +118,7 @@ inline bool is_partly_opaque(const Medium& medium) {
 }
 
 /// True if textures vary the medium's colour, or colour or radius, inside its bodies. Methods with a radial
-/// profile ignore this
-/// (SubsurfaceMethod::follows_textures_inside).
+/// profile ignore this (SubsurfaceMethod::follows_textures_inside).
 inline bool has_color_inside(const Medium& medium) {
   return medium.texture_mix == TextureMix::medium && medium.tint_texture;
 }
@@ -145,8 +142,7 @@ struct MeshFile {
   std::string path;         ///< as opened: the scene file's folder precedes a relative path
   bool fill_holes = false;  ///< closes every hole before rendering
   /// If set: scales the largest side of the bounding box to this length (mm), centres x and z on the origin,
-  /// and moves the mesh to y >= 0; applied before
-  /// the shape's transform.
+  /// and moves the mesh to y >= 0; applied before the shape's transform.
   std::optional<double> fit_size;
   /// Part of a file with several meshes: the indices "mesh/primitive" of a glTF asset, or the material name
   /// of an OBJ. Empty: the whole file.
@@ -159,8 +155,7 @@ struct MeshFile {
 };
 
 /// Tessellation levels of built-in curved shapes: 4^fineness times as many triangles. The largest omits
-/// 0.00005 of a sphere's area, each lower one
-/// four times as much.
+/// 0.00005 of a sphere's area, each lower one four times as much.
 constexpr int kMostFineness = 6, kLeastFineness = 4;
 
 // Built-in shapes; lengths in mm. `Slab` is a box with a separate thickness: x and z extent, thickness along
@@ -275,8 +270,7 @@ struct Surroundings {  ///< uniform radiance from all directions
 };
 class EnvironmentPicture;
 /// Environment map. A coloured image becomes three lights of one name, one per channel, so each light's
-/// irradiance is one number, as for other
-/// lights.
+/// irradiance is one number, as for other lights.
 struct EnvironmentLight {
   static constexpr std::string_view kType = "environment";
   static constexpr bool kCanBeSeen = true;
@@ -288,8 +282,8 @@ struct EnvironmentLight {
 };
 class LightTree;
 /// Many lights as one, sampled a few at a time at each point. Scene files do not contain it: with_trees
-/// (lights/light_tree.h) makes it from many
-/// lights in the world's space. Lights of different colours become three of one name, one per channel.
+/// (lights/light_tree.h) makes it from many lights in the world's space. Lights of different colours become
+/// three of one name, one per channel.
 struct ManyLights {
   static constexpr std::string_view kType = "many";
   static constexpr bool kCanBeSeen = false;
@@ -378,15 +372,13 @@ struct Scene {
   Film film;
   Settings settings;
   /// Frames from the first key of the camera or film to the last, if nothing else is keyed: images of the
-  /// same surfaces under the same light; otherwise
-  /// 1.
+  /// same surfaces under the same light; otherwise 1.
   std::size_t camera_frames = 1;
   friend bool operator==(const Scene&, const Scene&) = default;
 };
 
 /// Number of bounces between surfaces: Settings::bounces, or by default 1 if one reflecting shape can
-/// illuminate another and the method supports it. A
-/// body illuminates itself only on request.
+/// illuminate another and the method supports it. A body illuminates itself only on request.
 int bounces_of(const Scene& scene);
 /// Textures of a shape and of its medium.
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keys of a scene file, one row each: source of the reader's checks, the names in `--set` and error messages,
-// the image's metadata, the tables in
-// scenes/README.md and docs/laboratory.md, and the editors' JSON Schema.
+// the image's metadata, the tables in scenes/README.md and docs/laboratory.md, and the editors' JSON Schema.
 #pragma once
 
 #include <array>

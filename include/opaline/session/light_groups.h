@@ -21,13 +21,10 @@ struct LightGroup {
 std::vector<LightGroup> light_groups(const Scene& scene);
 
 /// Appends "diffuse_NAME", "specular_NAME" and, for visible lights, "emission_NAME" to the session's image:
-/// the contribution of that light alone,
-/// bounced light included. They sum to R, G, B within float rounding. Each is an image with all other lights
-/// dark; since trees are
-/// approximate, each pixel's contributions are scaled to the image's sum, by factors within the evaluator's
-/// tolerance of 1, or
-/// within the noise beside shadow edges. The cost per light is that of a change of its colour; none for a
-/// single light.
+/// the contribution of that light alone, bounced light included. They sum to R, G, B within float rounding.
+/// Each is an image with all other lights dark; since trees are approximate, each pixel's contributions are
+/// scaled to the image's sum, by factors within the evaluator's tolerance of 1, or within the noise beside
+/// shadow edges. The cost per light is that of a change of its colour; none for a single light.
 /// in    picture: from session.render()
 /// error as Session::render and light_groups; the session's scene is restored
 void add_light_groups(Session& session, Image& picture, Monitor* monitor = nullptr);

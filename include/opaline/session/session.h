@@ -52,10 +52,9 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Chooses the profiles of the bodies (choose_models.h) for all later scenes. For methods with samples,
-  /// also places the samples of this scene: later
-  /// scenes move them along, or place others on different surfaces without discarding these. The frames of a
-  /// shot are therefore
-  /// equal in any process, for any subset of frames.
+  /// also places the samples of this scene: later scenes move them along, or place others on different
+  /// surfaces without discarding these. The frames of a shot are therefore equal in any process, for any
+  /// subset of frames.
   /// error as edit
   void anchor(Scene scene, Monitor* monitor = nullptr);
 
@@ -74,8 +73,7 @@ class Session {
   void hold_view(bool hold);
 
   /// If true, each image is bit-identical to that of a new session: samples are placed again, instead of
-  /// moving along or staying denser than required,
-  /// if a new session would place others. Default: false.
+  /// moving along or staying denser than required, if a new session would place others. Default: false.
   void match_new_session(bool matches);
 
   /// False: frees the data needed by further edits only. Default: true. No image depends on it.

@@ -12,8 +12,8 @@
 namespace opaline {
 
 /// Stage results in a cache folder. A codec (session/stage_codecs.h) names the stage, bounds the size of its
-/// entry, and checks everything it reads:
-/// no entry, even a forged one, uses more memory than its result could need, or breaks a later stage.
+/// entry, and checks everything it reads: no entry, even a forged one, uses more memory than its result could
+/// need, or breaks a later stage.
 class StageCache {
  public:
   /// error Error{run_failed} naming the folder: missing, and cannot be created

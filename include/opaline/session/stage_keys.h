@@ -41,10 +41,8 @@ StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::
                              double unit);
 
 /// Cache key of the light transmitted at samples from one light: the samples, position and size of the light
-/// without its colour, the index of
-/// refraction, random numbers, and every mesh possibly shadowing the body from this light. Includes Embree's
-/// version and the
-/// machine's instruction set, which affect shadow rays.
+/// without its colour, the index of refraction, random numbers, and every mesh possibly shadowing the body
+/// from this light. Includes Embree's version and the machine's instruction set, which affect shadow rays.
 /// in    light: recentred
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light);
@@ -66,8 +64,7 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes);
 
 /// Cache key: surface type at each camera hit, including lights in front of surfaces, and random numbers for
-/// light samples there, but not
-/// boundaries (HeldView::set_fields).
+/// light samples there, but not boundaries (HeldView::set_fields).
 /// in    lights: recentred
 StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights);
 /// Cache key of irradiance at surface points, by light, independent of the camera.

@@ -9,10 +9,8 @@
 namespace opaline {
 
 /// Outgoing radiance of a half space in uniform light, relative to isotropic light of the same flux behind
-/// the boundary: 1 without absorption;
-/// otherwise larger near the horizon, from shallow paths. By reciprocity proportional to the reflected
-/// fraction of light incident
-/// at that angle.
+/// the boundary: 1 without absorption; otherwise larger near the horizon, from shallow paths. By reciprocity
+/// proportional to the reflected fraction of light incident at that angle.
 /// from  HalfSpace; measured against random walks in src/volume/README.md
 class AngularExit {
  public:

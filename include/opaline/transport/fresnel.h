@@ -8,8 +8,7 @@
 namespace opaline {
 
 /// Reflectance F seen from outside, for light at cosine `cos_outside` in [0, 1]; eta = inside / outside.
-/// Total reflection (eta < 1 beyond the critical
-/// angle) gives exactly 1. For float and double.
+/// Total reflection (eta < 1 beyond the critical angle) gives exactly 1. For float and double.
 template <class T>
 T fresnel_reflectance(T cos_outside, T eta) {
   const T sin2_inside = (T(1) - cos_outside * cos_outside) / (eta * eta);

@@ -19,8 +19,7 @@ inline double henyey_greenstein(double g, double cosine) {
 
 /// Samples the cosine of the scattering angle, from u uniform in [0, 1).
 /// from  the usual (1 + g^2 - ((1 - g^2) / (1 + g s))^2) / (2 g), s = 2u - 1, expanded to avoid cancellation
-///       at g = 0, where it is
-///       s
+///       at g = 0, where it is s
 inline double sample_henyey_greenstein(double g, double u) {
   const double s = 2 * u - 1, denominator = 1 + g * s;
   const double numerator = s + g * (.5 * (s * s + 3) + g * (s - .5 * g * (1 - s * s)));

@@ -3,8 +3,7 @@
 // with error bars.
 //
 // A beam enters the upper face at the origin. All fractions are of the transmitted flux; specular reflection
-// at the face is
-// excluded everywhere.
+// at the face is excluded everywhere.
 #pragma once
 
 #include <cstddef>
@@ -96,8 +95,7 @@ std::vector<double> default_radii(const HomogeneousMedium& medium);
 /// Random walks through a slab. The same bits for any number of threads.
 /// error Error{bad_input} naming the value out of range; Error{interrupted}
 /// from  Prahl et al. 1989, A Monte Carlo model of light propagation in tissue, with expected values for
-///       exiting light; tested
-///       against van de Hulst 1980 and Chandrasekhar's H functions (tests/volume)
+///       exiting light; tested against van de Hulst 1980 and Chandrasekhar's H functions (tests/volume)
 SlabWalks walk_slab(const HomogeneousMedium& medium, const Slab& slab, const SlabEntry& entry,
                     const LaboratorySettings& settings);
 

@@ -14,8 +14,7 @@
 namespace opaline {
 
 /// kappa / sigma_t of the exact decay exp(-kappa r) far from all sources: the root in (0, 1] of albedo
-/// atanh(kappa) = kappa, for albedo in (0, 1];
-/// 0 at 1.
+/// atanh(kappa) = kappa, for albedo in (0, 1]; 0 at 1.
 /// in    absorbed = 1 - albedo in [0, 1): avoids cancellation for small values
 /// from  Case & Zweifel 1967, Linear Transport Theory, sec. 4.4; relative error below 1e-13
 double decay_constant(double absorbed);

@@ -2,8 +2,8 @@
 // Random walks of light inside a body: free flights, collisions, and exits.
 //
 // A walk carries a weight, its fraction of the light. Exits at the boundary are counted by expected value,
-// absorption reduces
-// the weight, and Russian roulette ends walks without bias. Derived in src/transport/README.md.
+// absorption reduces the weight, and Russian roulette ends walks without bias. Derived in
+// src/transport/README.md.
 #pragma once
 
 #include <algorithm>
@@ -127,9 +127,8 @@ struct WalkEnd {
 };
 
 /// Follows one walk to its end; `walk` then has its last state.
-/// in    body.ahead(position, direction): BoundaryAhead of a ray starting inside
-///       watcher.visit(walk, ahead, crossing): called before every flight
-///       watcher.leave(LeavingLight): called at every exit
+/// in    body.ahead(position, direction): BoundaryAhead of a ray starting inside watcher.visit(walk, ahead,
+///       crossing): called before every flight watcher.leave(LeavingLight): called at every exit
 ///       most_collisions: maximum, ending the walk unfinished
 /// out   mean over walks: exited weight + absorbed + unfinished = weight at the start
 template <class Body, class Watcher>

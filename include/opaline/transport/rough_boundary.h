@@ -21,8 +21,7 @@ struct FacetAlphas {
 FacetAlphas facet_alphas(float roughness, float anisotropy = 0);
 
 /// Directions are local, unit, x along the tangent, z along the normal, away from the surface. Light
-/// reflected into the surface is transmitted, an
-/// approximation of multiple reflection at a dielectric.
+/// reflected into the surface is transmitted, an approximation of multiple reflection at a dielectric.
 class RoughBoundary {
  public:
   /// in    roughness: (0, 1], its square is GGX's alpha; eta: inside over outside

@@ -13,8 +13,7 @@
 namespace opaline {
 
 /// Weights of neighbouring means in each cell's quadratic. They depend on cell positions only, so fits of
-/// other means on the same cells
-/// share them; 700 bytes per cell.
+/// other means on the same cells share them; 700 bytes per cell.
 class CellWeights {
  public:
   explicit CellWeights(std::span<const SurfaceSample> samples);
@@ -51,10 +50,8 @@ class CellWeights {
 };
 
 /// Weighted least-squares fit: each cell has a quadratic over its tangent plane, fitted to the means of
-/// nearby cells; a point blends
-/// the quadratics of the cells around it. Exact for quadratic fields on a plane. Linear in the means, so
-/// their noise causes
-/// noise, not bias.
+/// nearby cells; a point blends the quadratics of the cells around it. Exact for quadratic fields on a plane.
+/// Linear in the means, so their noise causes noise, not bias.
 class CellFit {
  public:
   /// in    means, errors: one per sample's cell; errors: standard, mutually independent

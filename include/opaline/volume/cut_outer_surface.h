@@ -10,8 +10,7 @@
 namespace opaline {
 
 /// cut_surface without pieces of the meshes inside the solid, the region of nonzero winding number: overlaps,
-/// folds, inner shells. Equals
-/// cut_surface, bit for bit, without such pieces.
+/// folds, inner shells. Equals cut_surface, bit for bit, without such pieces.
 /// in    rays: of the world
 CutSurface cut_outer_surface(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
                              double cell, int parts);

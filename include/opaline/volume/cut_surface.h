@@ -11,8 +11,7 @@
 namespace opaline {
 
 /// Samples of a body's surface cut by a lattice: one per cell, sheet and direction of normals. Area and
-/// centroid are those of the surface
-/// in the cell; the position is on the triangle nearest to the centroid.
+/// centroid are those of the surface in the cell; the position is on the triangle nearest to the centroid.
 struct CutSurface {
   SurfaceSamples surface;
   std::vector<Vec3f> normals;  ///< geometric, outward, mean over the sample's surface; one per sample

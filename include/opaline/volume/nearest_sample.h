@@ -19,8 +19,7 @@ class NearestSample {
   };
 
   /// world: of the samples. With a world, triangles' normals identify sheets, as for the samples' areas, and
-  /// the nearest sample's cell
-  /// contains the point. Without, the samples' own normals identify them.
+  /// the nearest sample's cell contains the point. Without, the samples' own normals identify them.
   /// cube_edge: of the cubes visited by for_near, in mean spacings of the samples; radii of its size are the
   /// fastest
   explicit NearestSample(std::span<const SurfaceSample> samples, const World* world = nullptr,

@@ -45,8 +45,7 @@ double expected_cells(double area, double thickness, double cell);
 inline constexpr double kBytesOfCell = 275;
 
 /// Diffusion from the first collisions along the refracted rays, on cells growing inwards. Linear in the
-/// lights; the cells do not
-/// depend on them. Theory and measurements: src/volume/README.md.
+/// lights; the cells do not depend on them. Theory and measurements: src/volume/README.md.
 class VolumeDiffusion {
  public:
   explicit VolumeDiffusion(const VolumeDiffusionInput& input);
@@ -56,8 +55,8 @@ class VolumeDiffusion {
   /// in    lights: recentred; transfers: one per light, to the samples; tints: factors on the transmitted
   ///       light, one per sample, or empty
   /// out   exitance and error, one per sample. The error is the discretization error, from cells of twice the
-  ///       size, without that
-  ///       of diffusion itself. walks, relative_error, lost: 0. The same bits for any number of threads
+  ///       size, without that of diffusion itself. walks, relative_error, lost: 0. The same bits for any
+  ///       number of threads
   /// error Error{interrupted}
   VolumeExitance exitance(std::span<const Light> lights, std::span<const LightTransfer> transfers,
                           std::span<const RgbF> tints = {}, Monitor* monitor = nullptr) const;

@@ -71,11 +71,9 @@ struct VolumeExitance {
 bool walks_by_light(const VolumeInput& input);
 
 /// Continues `sums` (empty: from the beginning) up to kDefaultWalks or the requested error. `sums` consist of
-/// whole passes, also if the
-/// monitor interrupts. They depend on the input and the number of passes alone, not on interruptions or
-/// threads; with sums by
-/// light (above) not on the lights' emission. With until_error, passes are distributed over lights and
-/// channels by error.
+/// whole passes, also if the monitor interrupts. They depend on the input and the number of passes alone, not
+/// on interruptions or threads; with sums by light (above) not on the lights' emission. With until_error,
+/// passes are distributed over lights and channels by error.
 /// in    after_pass: called between passes
 /// error Error{interrupted}
 void walk_volume(const VolumeInput& input, VolumeSums& sums,
@@ -85,10 +83,8 @@ void walk_volume(const VolumeInput& input, VolumeSums& sums,
 VolumeExitance exitance_of(const VolumeInput& input, const VolumeSums& sums);
 
 /// Volumetric path tracing from the lights: light enters the body, refracted by the geometric normal, and
-/// random-walks until it is
-/// absorbed or leaves, where the cell of the nearest sample on its sheet collects it. Unbiased for the mean
-/// over each cell.
-/// The same bits for any number of threads.
+/// random-walks until it is absorbed or leaves, where the cell of the nearest sample on its sheet collects
+/// it. Unbiased for the mean over each cell. The same bits for any number of threads.
 /// error Error{interrupted}
 VolumeExitance volume_exitance(const VolumeInput& input);
 

@@ -45,8 +45,7 @@ struct Cluster {
 };
 
 /// Bit masks of nodes acceptable at every point of a cluster: as points with a second moment, and as an
-/// expansion around the cluster's
-/// centre. Lanes past the end of a list are undefined.
+/// expansion around the cluster's centre. Lanes past the end of a list are undefined.
 struct Verdict {
   std::uint32_t points = 0, expansion = 0;
 };
@@ -70,8 +69,7 @@ struct LaneKernels {
   void (*add_nodes)(const LaneInput& input, const std::uint32_t* list, std::size_t count,
                     const Packet& packet, PacketSums& sums);
   /// Adds all samples of leaves one by one. `whole` collects the pairs (sample, lane bits) closer than h on
-  /// another sheet, outside the table's
-  /// range; it has room for every sample of the leaves.
+  /// another sheet, outside the table's range; it has room for every sample of the leaves.
   std::size_t (*add_leaves)(const LaneInput& input, const std::uint32_t* list, std::size_t count,
                             const Packet& packet, PacketSums& sums, std::uint32_t (*whole)[2]);
 };

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The loops of lane_kernels.h on vectors of LANES floats: included once per instruction set, after its
-// lanes_*.inl with LANES, TARGET (a
-// function attribute), the vectors V (float) and I (32-bit integers), lookup, lookup_32 and lookup_16 (of the
-// first 32 and 16
-// segments), any, bits and total. Uses no function from another file: the linker would keep one copy for all
-// machines.
+// lanes_*.inl with LANES, TARGET (a function attribute), the vectors V (float) and I (32-bit integers),
+// lookup, lookup_32 and lookup_16 (of the first 32 and 16 segments), any, bits and total. Uses no function
+// from another file: the linker would keep one copy for all machines.
 
 #include "exitance/simd/lane_series.inl"
 

@@ -103,15 +103,13 @@ TARGET static inline V relative_change(V value, V change) {
 }
 
 // Estimates the fourth order of a series in the samples' offsets from the second: 0.9 of its square for a
-// power law 1/r^3 and a flat patch,
-// a third for exponentials.
+// power law 1/r^3 and a flat patch, a third for exponentials.
 TARGET static inline V with_fourth_order(V value, V change) {
   return value + change * (1 + 0.8f * relative_change(value, change));
 }
 
 // Sum of the kernel over a node with second moment C around its centroid at d: F(s) + F' tr C + 2 F'' d'Cd, s
-// = d'd. Limited to a quarter and
-// four times F: nearby, and far down an exponential, the series diverges.
+// = d'd. Limited to a quarter and four times F: nearby, and far down an exponential, the series diverges.
 TARGET static inline V node_kernel(const LaneTable& table, std::size_t channel, const Place& at, V first,
                                    V second) {
   const Series f = series(table, channel, at);

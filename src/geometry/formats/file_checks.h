@@ -60,8 +60,7 @@ class PolygonFan {
 };
 
 /// Triangulates concave and duplicate polygons, and warns of self-intersecting ones. The result also applies
-/// to other per-corner data of
-/// the file.
+/// to other per-corner data of the file.
 std::vector<Recut> cut_polygons(const std::string& path, SourceMesh& mesh, const std::vector<Fan>& fans);
 
 /// Copies per-vertex UVs to the corners of all triangles; uvs: empty, or one per vertex.

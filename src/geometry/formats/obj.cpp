@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Wavefront OBJ: reads v (with colours), vn, vt, s and f, and usemtl if the faces of one material are a part
-// of the file; counts and
-// reports other statements.
+// of the file; counts and reports other statements.
 #include <algorithm>
 #include <array>
 #include <limits>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PLY, text and binary. Reads x, y, z, nx, ny, nz, UVs and colours of vertices, and vertices, corner UVs and
-// colours of faces; ignores all
-// other properties, and other elements before the faces.
+// colours of faces; ignores all other properties, and other elements before the faces.
 #include <algorithm>
 #include <array>
 #include <cmath>

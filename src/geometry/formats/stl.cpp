@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // STL, text and binary: triangles without shared vertices. Reads coordinates as float; corners at the same
-// position become one vertex, with
-// smooth normals except across creases, as the format's parts often have sharp edges.
+// position become one vertex, with smooth normals except across creases, as the format's parts often have
+// sharp edges.
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -69,8 +69,7 @@ class TextCursor {
 };
 
 /// True if the whole word is a number, in the syntax of streams; values beyond double become infinite or
-/// zero. Accepts the non-finite
-/// values of old Microsoft libraries: -1.#IND00.
+/// zero. Accepts the non-finite values of old Microsoft libraries: -1.#IND00.
 inline bool parse_number(std::string_view word, double& value) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

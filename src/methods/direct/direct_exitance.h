@@ -21,8 +21,7 @@ struct DirectExitanceInput {
 };
 
 /// Unbiased estimates of M_o at each point, W/mm^2: mean over the samples of weight x E at their entries.
-/// Each entry traces one shadow
-/// ray per light, and one ray for indirect light.
+/// Each entry traces one shadow ray per light, and one ray for indirect light.
 std::vector<RgbF> direct_exitance(const DirectExitanceInput& input);
 
 }  // namespace opaline

@@ -34,16 +34,13 @@ struct Entry {
 /// Importance-samples entry points on the surfaces of a body by R_d of the distance.
 ///
 /// `disc_axes` (King et al. 2013, BSSRDF Importance Sampling): a line along one of three axes (the normal
-/// with probability
-/// 1/2, and two tangents) through a disc around the point, at a distance sampled from one channel's profile;
-/// every
-/// intersection with the body is an entry. Balance heuristic over axes and channels. R_d falls with distance
-/// and projection to
-/// the disc shortens distances, so weights are at most total / (1/4 x 1/sqrt(3) x 1/channels).
+/// with probability 1/2, and two tangents) through a disc around the point, at a distance sampled from one
+/// channel's profile; every intersection with the body is an entry. Balance heuristic over axes and channels.
+/// R_d falls with distance and projection to the disc shortens distances, so weights are at most total / (1/4
+/// x 1/sqrt(3) x 1/channels).
 /// `chords`: a random chord of a sphere around the point, see sample_chord_sphere_radius. Weights are at most
-/// 2 x total for one
-/// channel, for any surface.
-/// Channels with a mean free path below float resolution reflect locally: the exit itself is their entry.
+/// 2 x total for one channel, for any surface. Channels with a mean free path below float resolution reflect
+/// locally: the exit itself is their entry.
 class EntrySampler {
  public:
   EntrySampler(const GroupPlan& plan, const DiffuseProfile& profile, const RayScene& rays, double diagonal,

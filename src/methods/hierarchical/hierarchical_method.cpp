@@ -80,8 +80,7 @@ StageKey exitance_key(const BodyStages& stages, const HierarchicalState& state) 
 }
 
 /// Evaluates the exitance over the surface if cheaper than at the hits; the decision depends on the scene
-/// alone, not on cached results.
-/// Returns true if the body uses a surface cache.
+/// alone, not on cached results. Returns true if the body uses a surface cache.
 bool update_surface_cache(BodyStages& stages, HierarchicalState& state) {
   const std::size_t most = stages.most_cache_places;
   if (most == 0) return false;

@@ -44,8 +44,7 @@ void bound_far_side(HierarchicalState& state);
 void set_hierarchical_state(Body& body, std::vector<RgbF> irradiance, SplitKernel kernel);
 
 /// Laboratory::near_irradiance, but from the samples if all light is uniform over directions: rays at each
-/// point are as noisy as those
-/// at the samples, and there are no sharp shadows.
+/// point are as noisy as those at the samples, and there are no sharp shadows.
 NearIrradiance near_irradiance(const Scene& scene);
 /// Kernel of a body, split at a distance proportional to the sample spacing, mm.
 SplitKernel body_kernel(const DiffuseProfile& profile, double spacing, const World& world,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Exitance of a body's samples: summed at the hits (dual_tree, classic, brute_force), or interpolated in its
-// surface cache. Near
-// fields with shadow edges are traced at the hits; points not covered by the cache are summed there.
+// surface cache. Near fields with shadow edges are traced at the hits; points not covered by the cache are
+// summed there.
 #pragma once
 
 #include <optional>

@@ -13,9 +13,8 @@ namespace opaline {
 namespace {
 
 // Largest ratios of a cache's vertices, and of its points, to the image's points on the body. A cache point
-// costs about three times a
-// hit, being sparser and more often beside a shadow edge; a lookup costs a tenth. src/exitance/README.md has
-// the break-even.
+// costs about three times a hit, being sparser and more often beside a shadow edge; a lookup costs a tenth.
+// src/exitance/README.md has the break-even.
 constexpr double kBegin = 0.11, kMost = 0.4;
 
 // Estimates the image's points on each mesh, by rays through a few pixels.

@@ -11,8 +11,7 @@ namespace opaline {
 class CellField : public Field {
  public:
   /// local: diffuse reflectance of channels without a mean free path, which is below the resolution of cells;
-  /// 0 in the others. All must
-  /// outlive the field.
+  /// 0 in the others. All must outlive the field.
   CellField(const RenderInput& input, const Body& body, const CellFit& fit, const RgbF& local);
 
   /// The error is the sum of the means' noise and the interpolation error.

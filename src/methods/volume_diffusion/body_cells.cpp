@@ -28,8 +28,7 @@ std::array<HomogeneousMedium, 3> isotropic_media(const DiffuseProfile& profile) 
 }  // namespace
 
 // Cells of a body. In a heterogeneous medium, mean free paths below the cells' resolution are lengthened to
-// it, with the same
-// reflectance; the point of exit is known within a cell anyway.
+// it, with the same reflectance; the point of exit is known within a cell anyway.
 VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals) {
   const double cell = body.plan.cell / input.world.unit, least = cell / input.scene.settings.cell_size;
   const auto resolved = [least](ReducedMedium reduced) {

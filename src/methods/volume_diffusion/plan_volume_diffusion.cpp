@@ -67,8 +67,7 @@ void VolumeDiffusionMethod::plan(const BodyPlanning& input, GroupPlan& body,
 
 BodyMemory VolumeDiffusionMethod::memory(const BodyPlanning& input, const GroupPlan& body) const {
   // Bytes, fitted to bench_plan: per cell cutting the surface, exitance and error during the fits; per light,
-  // weights; with bounces, weights
-  // for a second fit, the fit, and the gathered light.
+  // weights; with bounces, weights for a second fit, the fit, and the gathered light.
   constexpr std::size_t kCutSample = 640, kLight = 4, kBounces = 500;
   constexpr double kVaryingCell = 350;  // its own medium, and the flux to each neighbour
   const double in_wires =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Edits of this page take precedence over the server's scene until a moment after the last edit: incoming
-// scenes may be older, and the
-// next edit builds on them.
+// scenes may be older, and the next edit builds on them.
 import {kPause} from "./connection.js";
 
 // Copy of a scene, or of a part of it, with the value at a path as in `--set`.

@@ -23,8 +23,7 @@ constexpr double kFlat = 0.97;
 // Least fraction of a face on each side of another face's plane for the two to cross.
 constexpr double kCrossing = 0.2;
 // Least fraction of an infinite wall for a wall to count as infinite. The difference is noise of few samples,
-// and would leave a small
-// spurious error under uniform light.
+// and would leave a small spurious error under uniform light.
 constexpr double kWhole = 0.8;
 // Fraction of the brightest trial's exitance below which errors are absolute. Relative errors are limited to
 // kMost.
@@ -75,8 +74,7 @@ struct Trial {
 };
 
 // Samples a neighbour of a sample at a crease. Its probability is proportional to the number of such samples
-// around it, so the weight
-// divides by that number.
+// around it, so the weight divides by that number.
 std::vector<Trial> draw_trials(const Octree& tree, float radius) {
   const std::vector<std::uint32_t> creased = samples_at_creases(tree);
   std::vector<bool> is_creased(tree.samples.size());
@@ -106,8 +104,7 @@ struct Face {
 };
 
 // Removes hidden parts. Where two bodies cross, each has a part inside the other: nothing on it is visible,
-// and a point outside does
-// not see faces above its own plane.
+// and a point outside does not see faces above its own plane.
 std::vector<Face> visible_faces(std::vector<Face> faces) {
   std::vector<Face> visible;
   for (const Face& f : faces) {
@@ -161,8 +158,7 @@ double part_there(const Face& face, double radius) {
 }
 
 /// Contributions to a near field: fraction of the plane on the point's own face, and the weighted transmitted
-/// irradiance of
-/// other faces, flux units.
+/// irradiance of other faces, flux units.
 struct NearLight {
   std::array<double, 3> plane{1, 1, 1}, walls{};
 };

@@ -17,10 +17,8 @@ struct CreaseErrorInput {
 };
 
 /// Mean relative error of the exitance over the surface facing the camera, per channel, from approximating
-/// the near field as flat. Beside
-/// a crease, part of it lies on another face, at other distances and with other irradiance. 0 without
-/// creases.
-/// Derived in src/exitance/README.md, "Creases".
+/// the near field as flat. Beside a crease, part of it lies on another face, at other distances and with
+/// other irradiance. 0 without creases. Derived in src/exitance/README.md, "Creases".
 std::array<float, 3> crease_error(const CreaseErrorInput& input);
 
 /// Near kernel R_d (1 - w) as rings around a point; masses sum to 1 in each channel with a near field.
@@ -33,8 +31,7 @@ class NearRings {
   std::array<double, 3> beyond_border(double distance) const;
 
   /// Weight of a perpendicular half plane starting at the foot of the point's perpendicular, of this length:
-  /// half of the kernel's mass at
-  /// larger distances.
+  /// half of the kernel's mass at larger distances.
   std::array<double, 3> on_wall(double distance) const;
 
  private:

@@ -17,12 +17,10 @@
 namespace opaline {
 
 /// Points of a surface on a lattice: intersections with lines parallel to the axes, one line per square of a
-/// grid. A triangle is
-/// intersected by the lines along the axis nearest to its normal n only, so each point represents an area of
-/// spacing^2 /
-/// |n_axis|, independent of the view. All threads share the cells; a cell's content depends on its key and
-/// the scene alone.
-/// With the transfer of each light cached, later images with other light colours trace no rays.
+/// grid. A triangle is intersected by the lines along the axis nearest to its normal n only, so each point
+/// represents an area of spacing^2 / |n_axis|, independent of the view. All threads share the cells; a cell's
+/// content depends on its key and the scene alone. With the transfer of each light cached, later images with
+/// other light colours trace no rays.
 class IrradianceLattice {
  public:
   struct Key {
@@ -40,8 +38,8 @@ class IrradianceLattice {
   };
 
   /// in    spacing: of the lines of level 0, mm; eta: of the boundary, as PointIrradianceInput's;
-  ///       light_samples: shadow rays per point and
-  ///       light with an area; holds_lights: caches the transfer of each light for later images
+  ///       light_samples: shadow rays per point and light with an area; holds_lights: caches the transfer of
+  ///       each light for later images
   IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta, int light_samples,
                     bool holds_lights);
 

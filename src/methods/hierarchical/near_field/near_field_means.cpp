@@ -9,8 +9,7 @@ namespace opaline {
 namespace {
 
 // Least cosine of a sampled point's normal. Points at grazing angles are rarely sampled and have large
-// weights: without a
-// bound, a few of them dominate the mean. src/exitance/README.md has the comparison.
+// weights: without a bound, a few of them dominate the mean. src/exitance/README.md has the comparison.
 constexpr float kGrazing = 0.2f;
 
 }  // namespace
@@ -30,10 +29,8 @@ NearFieldMeans::NearFieldMeans(const NearKernel& kernel, std::span<const Surface
 }
 
 // Evaluates the kernels of all points at a surface point, 0 for back faces, and their sampling densities
-// there. The kernel depends on
-// the straight distance. Sampling picks a distance in the tangent plane and projects along the normal, so the
-// density
-// falls with the cosine.
+// there. The kernel depends on the straight distance. Sampling picks a distance in the tangent plane and
+// projects along the normal, so the density falls with the cosine.
 void NearFieldMeans::find_densities(const SurfacePoint& place) {
   constexpr float kOutside = NearKernel::kRings;
   const float rings = kOutside / kernel_.radius;

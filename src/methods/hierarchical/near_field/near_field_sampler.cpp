@@ -16,8 +16,8 @@ namespace opaline {
 namespace {
 
 // Stakes: typical, and least for shadow rays to pay off: of sparse points, dense points, and points so dense
-// that many share
-// their rays. (Stake: fraction of the exitance depending on the near field's irradiance, stake_of.)
+// that many share their rays. (Stake: fraction of the exitance depending on the near field's irradiance,
+// stake_of.)
 constexpr float kUsual = 0.06f, kWorthApart = kRefinedStake, kWorthClose = 0.015f, kWorthShared = 0.005f;
 constexpr float kFinestAt = 0.1f;  // stake requiring the finest lattice
 // Samples at a typical stake: of an isolated point; of neighbours together, which cover each near field less
@@ -28,19 +28,17 @@ constexpr int kFewerRays = 16;      // shadow rays per light with an area at a p
 constexpr float kErrorLeft = 0.4f;  // remaining fraction of the interpolation error
 
 // In units of the narrowest channel's half-mass distance: coarsest lattice spacing; spacing of points below
-// which they use the
-// lattice, and below which they far outnumber its points; kernel's reach, above which its core is too narrow
-// for the lattice.
+// which they use the lattice, and below which they far outnumber its points; kernel's reach, above which its
+// core is too narrow for the lattice.
 constexpr double kCoarsest = 0.45, kClose = 0.85, kFineGrained = 0.33;
 constexpr float kFarthest = 12;
 constexpr double kPerPoint = 1;  // finest lattice spacing, over that of the points
 constexpr std::uint32_t kFinest = 4;
 constexpr std::size_t kDense = 32;  // least refined points of a batch for cells to pay off
 // Variance of a mean over the lattice beside a shadow edge with the lit fraction f, over f (1 - f) (spacing /
-// half-mass distance)^3.
-// It is (4 / pi) (1 / 6) / 0.25 times the integral of the squared kernel along the edge, sqrt(pi / 2) / pi^2
-// for a
-// Gaussian of unit rms distance. Each square on the edge adds 1/6 of the square of its weight.
+// half-mass distance)^3. It is (4 / pi) (1 / 6) / 0.25 times the integral of the squared kernel along the
+// edge, sqrt(pi / 2) / pi^2 for a Gaussian of unit rms distance. Each square on the edge adds 1/6 of the
+// square of its weight.
 constexpr float kLatticeVariance = 0.063f;
 
 // Median distance of successive points, mm.
@@ -194,8 +192,7 @@ std::optional<std::uint32_t> NearFieldSampler::finest_level(double apart, std::s
 }
 
 // Lattice level of a set. The deviation of a mean falls with the power 3/2 of the spacing, so sets with a
-// stake below kFinestAt use
-// coarser levels at equal error.
+// stake below kFinestAt use coarser levels at equal error.
 std::uint32_t NearFieldSampler::level_of(const Found& found, std::span<const std::uint32_t> set,
                                          std::uint32_t finest) const {
   float most = std::numeric_limits<float>::min();
@@ -205,8 +202,7 @@ std::uint32_t NearFieldSampler::level_of(const Found& found, std::span<const std
 }
 
 // Replaces the mixed irradiance of a near field by its mean; NaN: unknown. noise: variance of the mean, for
-// points either fully lit or
-// in shadow.
+// points either fully lit or in shadow.
 void NearFieldSampler::replace_mixed(const RgbF& own, const RgbF& mean, const RgbF& variance, Exitance& e,
                                      Rgb& noise) const {
   for (std::size_t c = 0; c < 3; ++c) {
@@ -276,8 +272,7 @@ float NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint
 }
 
 // All points use one low-discrepancy sequence, each from an index given by its number in the batch, so adding
-// or removing a point changes
-// no other between frames.
+// or removing a point changes no other between frames.
 void NearFieldSampler::draw(const PointIrradianceInput& lighting, std::uint32_t number, int count,
                             Places& places) const {
   const SurfacePoint& point = lighting.points[number];

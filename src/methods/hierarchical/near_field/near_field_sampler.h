@@ -17,23 +17,18 @@
 namespace opaline {
 
 /// Mean irradiance around points, weighted by the near kernel R_d (1 - w). By default the near field has one
-/// irradiance, a mixture of
-/// the point's own and the samples' mean (SplitKernel::own_irradiance). If the two differ, a shadow edge
-/// crosses the near
-/// field and the mixture is wrong, so shadow rays from points of the near field replace it. Dense points,
-/// such as pixels, share
-/// a lattice (IrradianceLattice), finer at higher stakes: its error beside an edge is of order 3/2 in the
-/// spacing. Sparse
-/// points sample their kernels, in numbers proportional to the expected deviation, and share the samples with
-/// neighbours.
+/// irradiance, a mixture of the point's own and the samples' mean (SplitKernel::own_irradiance). If the two
+/// differ, a shadow edge crosses the near field and the mixture is wrong, so shadow rays from points of the
+/// near field replace it. Dense points, such as pixels, share a lattice (IrradianceLattice), finer at higher
+/// stakes: its error beside an edge is of order 3/2 in the spacing. Sparse points sample their kernels, in
+/// numbers proportional to the expected deviation, and share the samples with neighbours.
 /// from  balance heuristic: Veach & Guibas 1995, sec. 3; allocation: Neyman 1934; stratified sampling of
 ///       edges: Mitchell 1996
 class NearFieldSampler {
  public:
   /// in    group: has meshes; must outlive the sampler. light_samples: shadow rays from a point to each light
-  ///       with an area, the maximum
-  ///       for refine. held: lattice of earlier images, reused if it fits, otherwise replaced; null: none is
-  ///       cached
+  ///       with an area, the maximum for refine. held: lattice of earlier images, reused if it fits,
+  ///       otherwise replaced; null: none is cached
   explicit NearFieldSampler(const Body& group, int light_samples,
                             std::shared_ptr<IrradianceLattice>* held = nullptr);
 

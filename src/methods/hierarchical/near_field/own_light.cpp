@@ -16,12 +16,10 @@ namespace opaline {
 namespace {
 
 // Largest weight of the point's own irradiance (SplitKernel::own_irradiance) that a cache resolves. Above it,
-// the near field's rms radius
-// is under a fifth of h, less than two segments of the finest lattice.
+// the near field's rms radius is under a fifth of h, less than two segments of the finest lattice.
 constexpr float kSharp = 0.8f;
 // Interpolation error, over the tolerance, left to lattices: at bumps of the mesh, resolved by its own
-// vertices, and by noise of a few
-// shadow rays beside an edge.
+// vertices, and by noise of a few shadow rays beside an edge.
 constexpr float kBumps = 1, kEdgeNoise = 2;
 // Stake (stake_of), over the tolerance, above which points are evaluated directly; src/exitance/README.md has
 // the comparison.

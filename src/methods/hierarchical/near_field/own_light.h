@@ -12,15 +12,14 @@
 namespace opaline {
 
 /// True if a cache can store the exitance depending on the point's own irradiance, so images trace no shadow
-/// rays. Excludes meshes without
-/// smooth normals, whose facets differ in irradiance; mean free paths far below the sample spacing, whose
-/// shadows are too sharp to
-/// interpolate; and bounced light, computed at the image's points only.
+/// rays. Excludes meshes without smooth normals, whose facets differ in irradiance; mean free paths far below
+/// the sample spacing, whose shadows are too sharp to interpolate; and bounced light, computed at the image's
+/// points only.
 bool can_hold_own_light(const Scene& scene, const World& world, const Body& group);
 
 /// Adds this exitance at the shader's points. Beside shadow edges, an explicitly requested cache leaves it to
-/// the points, to meet its
-/// tolerance; an automatic one, made for speed, stores the estimate of a few shadow rays.
+/// the points, to meet its tolerance; an automatic one, made for speed, stores the estimate of a few shadow
+/// rays.
 class OwnLight {
  public:
   /// Both must outlive the object.
