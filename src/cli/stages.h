@@ -20,8 +20,7 @@ class StageRunner {
 
   /// Runs work().
   /// error Error{interrupted} before it if the user has interrupted; errors of the stage. Checks only before
-  ///       a stage, so writing
-  /// is not interrupted between two files.
+  ///       a stage, so writing is not interrupted between two files.
   template <class Work>
   auto run_unmeasured(const std::string& stage, const Work& work, InnerStages inner = InnerStages::parts) {
     advance(&monitor_, 0);

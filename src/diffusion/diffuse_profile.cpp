@@ -112,8 +112,7 @@ double invert_albedo(ProfileKind kind, double total, double eta) {
   if (total >= 1) return 0;
   if (total <= 0) return 1;
   // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1. Solves for the logarithm, so the relative
-  // error of 1 - alpha' is small for weak
-  // absorption.
+  // error of 1 - alpha' is small for weak absorption.
   constexpr double kLeast = -80, kTolerance = 1e-12;
   const auto excess = [&](double logarithm) {
     return total_diffuse_reflectance(make_channel_profile(kind, {1, std::exp2(logarithm), eta})) - total;

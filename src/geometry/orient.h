@@ -26,8 +26,7 @@ struct Winding {
 /// Flips for a consistent winding of triangles sharing an edge of exactly two, with parts facing outward.
 /// Where neighbours disagree, the larger half of the part wins. See inward_parts.
 /// in    mesh: as read; sites: its triangles with shared (welded) vertices, no triangle with a vertex twice;
-///       edges: of these;
-///       decide_open: also decides open parts, otherwise they keep their winding
+///       edges: of these; decide_open: also decides open parts, otherwise they keep their winding
 Winding find_winding(const WoundMesh& mesh, const std::vector<Triangle>& sites, const EdgeTable& edges,
                      bool decide_open);
 

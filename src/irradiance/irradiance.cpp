@@ -16,8 +16,7 @@ namespace opaline {
 namespace {
 
 // Error estimate from the two halves of the low-discrepancy points, each low-discrepancy itself: the standard
-// error of the mean is the difference of
-// the halves' means times sqrt(n0 n1) / n.
+// error of the mean is the difference of the halves' means times sqrt(n0 n1) / n.
 class Halves {
  public:
   explicit Halves(int samples) : first_(samples / 2) {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of a kind of light, all defined in one header of this folder, as overloads for its struct in
-// scene.h; all_lights.h includes these
-// headers. A kind without one of them does not compile.
+// scene.h; all_lights.h includes these headers. A kind without one of them does not compile.
 //
 //     light_keys          rows of the section "light.<type>" without `name` and `visible`, `type` first;
-//     none: scene files
-//                         cannot contain this kind
+//                         none: scene files cannot contain this kind
 //     read_light          reads these keys; error: Error{bad_input} at the value
 //     geometry            all numbers affecting the light at a point, except the colour; part of cache keys
 //     lamp_of             bounds for a tree of many lights; none: trees cannot contain this kind

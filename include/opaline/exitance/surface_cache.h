@@ -18,9 +18,7 @@ namespace opaline {
 
 /// Exitance at vertices, interpolated to second order with slopes from their triangles; across creases and
 /// shadow edges, from a lattice of nodes on the triangle. Triangles large compared with the near field are
-/// divided first. Irradiance, near field and
-/// error are
-/// interpolated likewise.
+/// divided first. Irradiance, near field and error are interpolated likewise.
 struct SurfaceCache {
   static constexpr std::uint32_t kNone = ~0u, kLeftToPoints = ~0u - 1;
   struct Vertex {

@@ -94,8 +94,7 @@ using UseOfRay =
 
 /// Unblocked shadow rays of transfers_at, one by one: the mean of their sum at a point is its weight.
 /// in    lobes: one per point, for reflected light; many delta lights (ManyLights) then get more samples,
-///       mainly in the lobe.
-///       Empty: for the irradiance
+///       mainly in the lobe. Empty: for the irradiance
 void for_each_ray(const PointIrradianceInput& input, const UseOfRay& use, std::span<const Lobe> lobes = {});
 
 /// Irradiance at arbitrary points, all lights together: for shading without samples, or with too coarse ones.

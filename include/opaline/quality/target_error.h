@@ -31,8 +31,7 @@ struct TargetError {
 /// estimate of a small image (estimated_relative_error) is within the target with a margin. Chooses the
 /// evaluator only if the scene leaves it open. Bytes do not depend on the number of threads.
 /// in    scene: hierarchical, evaluator not classic (no tolerance); its samples, sample_spacing and tolerance
-///       are replaced;
-///       target: relative, > 0
+///       are replaced; target: relative, > 0
 /// out   measured errors are at most the target in about 95 % of scenes (bench_target_error)
 /// error as Session::edit and Session::prepare
 TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);

@@ -8,8 +8,7 @@
 namespace opaline {
 
 /// CPU time of an image, s, from costs measured by bench_plan; accurate to a factor of 3. Settings with an
-/// error threshold are counted up to their
-/// first estimate.
+/// error threshold are counted up to their first estimate.
 double expected_seconds(const Scene& scene, const Plan& plan);
 
 }  // namespace opaline
