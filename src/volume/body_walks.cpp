@@ -6,7 +6,7 @@
 namespace opaline {
 namespace {
 
-// In mean free paths; measured in src/volume/README.md.
+// In mean free paths; tuned by bench_walks.
 constexpr double kReach = 2;         // boundaries beyond are met by chance, not by expectation
 constexpr double kDeep = .5;         // at least this far from any surface, flights need no ray
 constexpr double kVoxel = 1;         // edge of FreeDistance's voxels, in the channel with the shortest
