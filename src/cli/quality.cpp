@@ -95,7 +95,7 @@ bool chooses_settings(const RenderArguments& arguments) {
 }
 
 double budget_left(const RenderArguments& arguments) {
-  // CPU time below the minimum is an error for any amount.
+  // A spent budget counts as 1 ms, and is reported as too small.
   return std::max(1e-3, *arguments.time_budget - process_cpu_seconds());
 }
 

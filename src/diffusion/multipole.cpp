@@ -165,7 +165,7 @@ double beyond(const Multipole& p, double face, double r) {
 constexpr double kLeast = -60;  // log2 of a radius, mean free paths
 
 constexpr int kPerOctave = 16;
-constexpr double kTrusted = 1e-9;  // least tail; below, the images' remainder of the total
+constexpr double kTrusted = 1e-9;  // smaller tails cancel in the sum over images
 constexpr double kTableStep = std::numbers::ln2 / kPerOctave;
 
 /// From 1e-4 of the smallest length to a remaining fraction of 1e-20.

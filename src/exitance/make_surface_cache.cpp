@@ -25,8 +25,8 @@ constexpr float kBent = 0.95f;
 // shadow edge blurred by the near field.
 constexpr double kReach = 2, kFinest = 0.25, kBlur = 0.5;
 
-// Change of the point's own contribution between two vertices, over all light and halved, above which a
-// shadow edge may be between them.
+// Change of the own contribution between two vertices, over the sum of their exitance, above which a shadow
+// edge may be between them.
 constexpr float kJump = 0.02f;
 
 // Position of a node: k of n segments along the edge of two vertices, shared by patches, or inside a patch.

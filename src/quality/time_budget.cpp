@@ -179,7 +179,7 @@ double BudgetSearch::goal() const {
   return std::min(affordable(search_.most_samples).samples / kBeyond, search_.most_samples);
 }
 
-/// True if a finished image would be within the time, or cheaper than now.
+/// True if the trial and its image fit into the time, or are cheaper than the current image.
 bool BudgetSearch::is_worth_trying(double samples) const {
   double shading = 0.75 * last().shading;  // near light is expensive with few samples
   if (tried_.size() > 1) {

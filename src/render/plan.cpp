@@ -82,7 +82,7 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
 }
 
 // A quick build saves time per triangle, and costs time per camera ray (coherent) and per shadow ray from a
-// sample; world.h has the measurement. Shadow edges need about as many rays again.
+// sample (incoherent), measured on the bunny. Shadow edges need about as many rays again.
 RayBuild cheaper_build(const Scene& scene, std::span<const Light> lights, const Plan& plan) {
   constexpr double kSaved = 300, kPictureRay = 5, kSampleRay = 75;  // ns
   const double samples = method_of(scene.settings.method).samples_with_shadow_rays(plan);

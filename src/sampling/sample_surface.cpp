@@ -19,8 +19,8 @@ namespace {
 // Radius over sqrt(area / count) for 6 rounds; test_density checks the resulting count.
 constexpr double kRadiusPerSpacing = 0.7195;
 
-// Ratio of samples to the requested number at which rounds stop. Six rounds on a smooth surface are within 3
-// % of the number.
+// Ratio of samples to the requested number at which rounds stop. Six rounds on a smooth surface are within
+// 3 % of the number.
 constexpr double kEnough = 1.1;
 
 Bounds bounds_of(const World& world, std::span<const std::uint32_t> meshes) {
